@@ -90,7 +90,10 @@ fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, O
         let existing = Existing::forced(arguments.force);
         FilePlace::reserve(path, existing, &arguments.inputs(), &mut console.warner())
     };
-    Ok((arguments.out.as_ref().map(reserve).transpose()?, arguments.report.as_ref().map(reserve).transpose()?))
+    Ok((
+        arguments.out.as_ref().map(reserve).transpose()?,
+        arguments.report.as_ref().map(reserve).transpose()?,
+    ))
 }
 
 /// Writes a calibration of which one joint was calibrated anew, and says so.

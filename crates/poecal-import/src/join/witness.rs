@@ -15,7 +15,11 @@ const DECIMALS: f64 = 1e4;
 
 /// A reading as it is typed into a controller; a factor as it is.
 fn typed(reading: f64, unit: NamedUnit) -> f64 {
-    if unit == NamedUnit::from(Unit::One) { reading } else { unit.to_si((unit.from_si(reading) * DECIMALS).round() / DECIMALS) }
+    if unit == NamedUnit::from(Unit::One) {
+        reading
+    } else {
+        unit.to_si((unit.from_si(reading) * DECIMALS).round() / DECIMALS)
+    }
 }
 
 /// Rows of some measurements without what was measured, as a file to fill in: their configurations, in order and to four decimals, with `id`, target and

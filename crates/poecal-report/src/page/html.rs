@@ -33,11 +33,14 @@ pub(crate) fn count(value: usize, key: impl Render) -> Markup {
 
 /// Text from `calibration.json`, as it stands there; words between backticks are code.
 pub(crate) fn quoted(text: &str, key: impl Render) -> Markup {
+    html! { span data-key=(key) { (coded(text)) } }
+}
+
+/// Text in which words between backticks are code.
+pub(crate) fn coded(text: &str) -> Markup {
     html! {
-        span data-key=(key) {
-            @for (k, piece) in text.split('`').enumerate() {
-                @if k % 2 == 1 { code { (piece) } } @else { (piece) }
-            }
+        @for (k, piece) in text.split('`').enumerate() {
+            @if k % 2 == 1 { code { (piece) } } @else { (piece) }
         }
     }
 }

@@ -26,6 +26,7 @@ pub(crate) const STYLE: &str = "
 .attested .result b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
 .attested table { width: 100%; }
 .attested :is(th, td) { padding: .1rem .6rem .1rem 0; }
+.attested tbody th { white-space: nowrap; }
 .attested caption { display: none; }
 .attested .scroll { margin: 0; }
 .attested .found b { display: block; font-size: 1.2rem; }

@@ -97,18 +97,30 @@ fn drawn(
         let ends = own().filter_map(|(_, it)| it.1.last()).map(|line| flat(&line[1])).collect();
         let arms = own().filter(|(k, _)| chosen.contains(k));
         let lines = arms.flat_map(|(_, it)| &it.1).map(lines).collect();
-        Arms { name: name.to_owned(), style, lines, points: ends }
+        Arms { name: name.to_owned(), style, lines, is_thin: true, points: ends }
     };
     let mut arms = vec![of(RowPart::Judge, "to judge by", 1), of(RowPart::Fit, "to fit", 0)];
     arms.retain(|it| !it.points.is_empty());
     if let Some(sight) = &options.conditions.sight {
         let place = vec![flat(&sight.place)];
-        arms.push(Arms { name: "device".to_owned(), style: 2, lines: cone(sight, &flat), points: place });
+        arms.push(Arms {
+            name: "device".to_owned(),
+            style: 2,
+            lines: cone(sight, &flat),
+            is_thin: true,
+            points: place,
+        });
     }
     let boxes: Vec<[[f64; 2]; 2]> =
         options.conditions.keep_out.iter().flat_map(|corners| outline(view, corners)).collect();
     if !boxes.is_empty() {
-        arms.push(Arms { name: "keep out".to_owned(), style: 3, lines: boxes, points: Vec::new() });
+        arms.push(Arms {
+            name: "keep out".to_owned(),
+            style: 3,
+            lines: boxes,
+            is_thin: true,
+            points: Vec::new(),
+        });
     }
     arms
 }

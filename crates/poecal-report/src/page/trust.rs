@@ -179,8 +179,8 @@ fn coverage(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// Largest over smallest expected error up to which all parts of the ranges are alike.
-const ALIKE: f64 = 1.3;
+/// Smallest over largest expected error from which on all parts of the ranges are alike.
+const ALIKE: f64 = 0.7;
 
 /// Expected errors over the joint ranges: a map, or a sentence where they hardly differ.
 fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
@@ -192,7 +192,7 @@ fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup 
         figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm"))
     };
     match all().min_by(order).zip(all().max_by(order)) {
-        Some((least, most)) if most.1.sigma_position_mm <= ALIKE * least.1.sigma_position_mm => html! {
+        Some((least, most)) if least.1.sigma_position_mm >= ALIKE * most.1.sigma_position_mm => html! {
             h3 { "Expected error over the joint ranges" }
             p {
                 "The expected error of position hardly depends on where a joint is: " (figure(least)) " to " (figure(most)) " mm (RMS) in each part of each \

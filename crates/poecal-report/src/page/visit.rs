@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::HtmlTable;
+use super::html::{HtmlTable, coded, decimal};
 use super::paper::{self, LISTED};
 use crate::summary::{delivered, expected, judged_on, leading};
 use crate::table::number;
@@ -76,8 +76,8 @@ pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> P
             h2 { "Joints" }
             (joints(told, file))
             h2 { "To do" }
-            p { (told.to_do()) }
-            @for note in told.notes.iter().take(LISTED) { p { "Note: " (short(note)) } }
+            p { (coded(&told.to_do())) }
+            @for note in told.notes.iter().take(LISTED) { p { "Note: " (coded(&short(note))) } }
             h2 { "Files, SHA-256" }
             (paper::files(std::iter::once(&told.inputs.calibration).chain(&told.inputs.measurements), &told.inputs.sha256))
             @if let Some(note) = &told.record.note { p { (short(note)) } }
@@ -90,7 +90,8 @@ pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> P
 
 /// The calibration beside the visit.
 fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Markup {
-    let mut table = HtmlTable::new("The robot when it was calibrated, and in this visit", 3, &["", "then", "now"]);
+    let mut table =
+        HtmlTable::new("The robot when it was calibrated, and in this visit", 3, &["", "then", "now"]);
     let text = |record: &Record, key: &str| {
         record.entries().into_iter().find(|it| it.0 == key).map(|it| it.2.to_owned())
     };
@@ -104,13 +105,17 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
     let then = then.and_then(|(_, model, _)| model.get(Quantity::Position));
     let then = then.map(|it| format!("{} mm (RMS), on {} {}", number(it.rms), set.count, judged_on(file)));
     let now = format!("{} mm (RMS), on {} rows", number(told.error_mm), told.rows);
-    table.cells([format!("Error of the {} model", delivered(file)), then.unwrap_or_else(|| "–".to_owned()), now]);
+    table.cells([
+        format!("Error of the {} model", delivered(file)),
+        then.unwrap_or_else(|| "–".to_owned()),
+        now,
+    ]);
     if let Some(found) = expected(file) {
         let words = format!("{} mm (RMS), 95 % below {} mm", number(found.error_mm), number(found.bound_mm));
         table.cells(["Expected error".to_owned(), words, String::new()]);
     }
     let left = told.left_words().unwrap_or_default();
-    let change = format!("{} mm (RMS){left}; noise {} mm a coordinate", number(told.change_mm), number(told.noise_mm));
+    let change = format!("{:.3} mm (RMS){left}; noise {:.3} mm a coordinate", told.change_mm, told.noise_mm);
     table.cells(["Change of measured places".to_owned(), "–".to_owned(), change]);
     let level = file.verdict.as_ref().map_or("not judged", |it| it.level.words());
     table.cells(["Level".to_owned(), level.to_owned(), told.level_words(level)]);
@@ -121,7 +126,8 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
 
 /// Each joint with its measured ranges, and the shift of its zero.
 fn joints(told: &Track, file: &CalibrationFile) -> Markup {
-    let heads = ["joint", "measured then", "measured now", "smallest visible shift (95 %)", "shift of its zero"];
+    let heads =
+        ["joint", "measured then", "measured now", "smallest visible shift (95 %)", "shift of its zero"];
     let mut table = HtmlTable::new("Measured ranges, and shifts of zeros since the calibration", 1, &heads);
     for joint in told.joints.iter().take(MOST_JOINTS) {
         let then = file.coverage.iter().find(|it| it.joint == joint.joint);
@@ -160,7 +166,8 @@ fn range([from, to]: [f64; 2], unit: &str) -> String {
 /// The shift of a joint's zero as found.
 fn shift_words(joint: &SightEntry) -> Option<String> {
     let (shift, sigma) = joint.shift.zip(joint.sigma_shift)?;
-    Some(format!("{shift:+.3} ± {sigma:.3} {}", joint.unit).replace('-', "−"))
+    let sign = if shift > 0.0 { "+" } else { "" };
+    Some(format!("{sign}{} ± {} {}", decimal(shift, 3), decimal(sigma, 3), joint.unit))
 }
 
 /// A sentence, cut where it would take a part of the page.

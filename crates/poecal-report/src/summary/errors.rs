@@ -2,8 +2,7 @@
 
 use super::super::found::found_words;
 use super::super::table::{
-    STATISTICS, corner_words, further_words, line, lines, number, number_or_dash,
-    pictures_words, row,
+    STATISTICS, corner_words, further_words, line, lines, number, number_or_dash, pictures_words, row,
 };
 use super::look::reasons;
 use super::{Expectation, expected};

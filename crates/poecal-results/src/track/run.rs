@@ -72,8 +72,7 @@ pub fn track(
     let is_far = explanation.as_ref().is_some_and(Explanation::is_far);
     let (change_m, noise_m) = in_metres(changes, &verdict, verdict.left);
     let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
-    let (left_m, _) =
-        in_metres(changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    let (left_m, _) = in_metres(changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
     let usual_m = usual_m(changes, *level, model);
     // Of a zero far off, what is not linear is left.
     let is_nearly = is_far && left_m < NEARLY * change_m;

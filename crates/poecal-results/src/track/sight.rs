@@ -92,7 +92,14 @@ pub(crate) fn joints(
             }
             () => Some(Unseen::NoMotion),
         };
-        Some(JointSight { joint: joint.name.clone(), slides, sigma: own, smallest: factor * own, unseen, shift: None })
+        Some(JointSight {
+            joint: joint.name.clone(),
+            slides,
+            sigma: own,
+            smallest: factor * own,
+            unseen,
+            shift: None,
+        })
     };
     zeros.filter_map(sight).collect()
 }
@@ -107,7 +114,8 @@ pub(crate) fn shifts(
 ) -> Vec<Option<Size>> {
     let is_of_zeros = best.is_some_and(|it| matches!(it.kind, Kind::Zero | Kind::TwoZeros));
     let shift = |zero: &Hypothesis| {
-        let named = best.filter(|_| is_of_zeros).and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
+        let named =
+            best.filter(|_| is_of_zeros).and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
         let beside = best.map_or_else(|| DMatrix::zeros(zero.columns.nrows(), 0), |it| it.columns.clone());
         let at = named.unwrap_or(beside.ncols());
         let columns = if named.is_some() { beside } else { joined(&beside, &zero.columns) };
