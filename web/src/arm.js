@@ -213,7 +213,7 @@ function shownControls(view) {
   add("nominal arm", "nominal", true);
   add(residualWords(view.scene), "arrows", true);
   const { worst, rows } = view.scene.arrows;
-  if (worst.size < rows.count) add(`all ${rows.count}, not the ${worst.size} largest alone`, "all arrows", false);
+  if (worst.size < rows.count) add(`all ${rows.count} residuals, not only the ${worst.size} largest`, "all arrows", false);
   const reach = view.scene.reachShare > 0 && add("reachable, but not measured", "reach", false);
   const kinds = deviceWords(view);
   add(kinds ? `${kinds} and names` : "names", "instruments", true);

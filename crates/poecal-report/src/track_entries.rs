@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::page::sampled;
 use poecal_fit::analysis::JointCoverage;
 use poecal_numerics::text::visible;
 use poecal_results::track::{Explanation, JointSight, Kind, Unseen};
@@ -99,6 +98,11 @@ fn because(unseen: Unseen) -> (&'static str, &'static str) {
 /// A value in degrees; of a slide in millimetres.
 pub(crate) fn shown(value: f64, slides: bool) -> f64 {
     if slides { 1e3 * value } else { value.to_degrees() }
+}
+
+/// The part of a range that rows sample, in the units of a page.
+pub(crate) fn sampled(found: &JointCoverage, slides: bool) -> [f64; 2] {
+    [found.sampled_min, found.sampled_max].map(|it| shown(it, slides))
 }
 
 impl SightEntry {

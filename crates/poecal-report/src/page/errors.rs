@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::devices::devices;
-use super::html::{HtmlTable, count, facts, figure, figure_or, path, plots, section as titled};
+use super::html::{HtmlTable, capital, count, facts, figure, figure_or, path, plots, section as titled};
 use super::lead::{kinds_words, sign, spaced};
 use super::{corners, figures};
 use crate::found::found_words;
@@ -24,12 +24,6 @@ pub(crate) fn error_words(quantity: Quantity, of: &str) -> String {
     };
     let of = if of.is_empty() { String::new() } else { format!(" {of}") };
     capital(&format!("{} error{of}{unit}", quantity.name()))
-}
-
-/// Words with a capital letter.
-pub(crate) fn capital(words: &str) -> String {
-    let (first, rest) = words.split_at(words.len().min(1));
-    format!("{}{rest}", first.to_uppercase())
 }
 
 /// Errors of the rows that were held out, or if there are none of those fitted, by each model, and what was measured.

@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped};
 
-use super::errors::capital;
+use super::html::capital;
 use super::lead::Lead;
 use crate::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
 use crate::summary::delivered;

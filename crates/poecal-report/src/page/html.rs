@@ -52,6 +52,12 @@ pub(crate) fn path(text: &str, key: impl Render) -> Markup {
     html! { span data-key=(key) { @for folder in folders { (folder) wbr; } (name) } }
 }
 
+/// Words with a capital letter.
+pub(crate) fn capital(words: &str) -> String {
+    let (first, rest) = words.split_at(words.len().min(1));
+    format!("{}{rest}", first.to_uppercase())
+}
+
 /// A value with decimals and a true minus; what rounds to zero has none.
 pub(crate) fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

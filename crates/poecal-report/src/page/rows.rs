@@ -4,8 +4,8 @@ use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
 use super::devices::devices;
-use super::errors::{capital, error_table, error_words};
-use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, section};
+use super::errors::{error_table, error_words};
+use super::html::{HtmlTable, capital, chart, count, decimal, figure, figure_or, folded, section};
 use super::lead::{Lead, component_words, sign, spaced};
 use super::{figures, readings_of, short};
 use crate::summary::delivered;

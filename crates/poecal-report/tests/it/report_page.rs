@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Sizes, calibrate};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_model::measurement::{Dataset, Measurement, Set};
+use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal_model::robot::{Joint, Robot};
 use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_report::calibration_page;
@@ -161,7 +161,7 @@ fn the_page_shows_the_delivered_model() {
         let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
         let drawn = data["rows"]["error_mm"].as_array().unwrap();
         for (row, drawn) in session.residuals().rows().iter().zip(drawn) {
-            let error = row.errors.position_mm().unwrap().delivered();
+            let error = row.errors.get(Quantity::Position).unwrap().delivered();
             // Six digits are drawn.
             assert!((drawn.as_f64().unwrap() - error).abs() <= 1e-5 * error, "{name}");
         }

@@ -42,6 +42,17 @@ pub enum Kind {
     TwoZeros,
 }
 
+/// An unknown of an explanation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Its value, radians, metres or a share.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Whether it is an angle.
+    pub turns: bool,
+}
+
 /// A motion that may explain changes, with its derivatives in standard deviations.
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {

@@ -1,6 +1,6 @@
 //! What a visit shows.
 
-use super::explain::{Hypothesis, Kind, Tried, Verdict};
+use super::explain::{Hypothesis, Kind, Size, Tried, Verdict};
 use super::model::Model;
 use super::options::{JudgedBy, MOST_RAD, State, TrackOptions};
 use super::sight::JointSight;
@@ -8,17 +8,6 @@ use super::visit::Of;
 use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
-
-/// An unknown of an explanation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
-    /// Its value, radians, metres or a share.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
-    /// Whether it is an angle.
-    pub turns: bool,
-}
 
 /// What explains the changes.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{Evidence, Hypothesis, Kind, Tests};
-use super::found::Size;
+use super::explain::{Evidence, Hypothesis, Kind, Size, Tests};
 use super::hypotheses::free;
 use super::model::Model;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};

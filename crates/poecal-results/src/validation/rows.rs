@@ -3,7 +3,7 @@
 use super::shown;
 use poecal_calibrate::JudgedRow;
 use poecal_model::measurement::{Dataset, Quantity};
-use poecal_model::robot::Robot;
+use poecal_model::robot::{ReadingKind, Robot};
 use poecal_storage::csv_text::cell;
 use poecal_storage::numbers::push_number;
 
@@ -28,15 +28,10 @@ impl JudgedRows<'_> {
         Quantity::ALL.into_iter().filter(|quantity| self.data.has(*quantity)).collect()
     }
 
-    /// The text of the file.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let quantities = self.measured();
-        let names = self.data.reading_names();
-        let kinds: Vec<_> = names.iter().map(|name| self.robot.reading_kind(name)).collect();
-        let has_stations = self.data.station_count() > 1;
+    /// The line of column names.
+    fn head(&self, quantities: &[Quantity], kinds: &[ReadingKind]) -> String {
         let mut out = FIRST.to_owned();
-        for quantity in &quantities {
+        for quantity in quantities {
             let (name, unit) = (quantity.name(), quantity.unit().symbol());
             for what in ["error", "expected", "bound95"] {
                 out.push_str(&format!(",{name}_{what}[{unit}]"));
@@ -45,18 +40,29 @@ impl JudgedRows<'_> {
                 out.push_str(&format!(",{component}[{unit}]"));
             }
         }
-        let has_pictures = !self.data.pictures.is_empty();
-        if has_pictures {
+        if !self.data.pictures.is_empty() {
             out.push_str(",corners[px],corners[mm]");
         }
-        for (name, kind) in names.iter().zip(&kinds) {
+        for (name, kind) in self.data.reading_names().iter().zip(kinds) {
             out.push(',');
             out.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
         }
-        if has_stations {
+        if self.data.station_count() > 1 {
             out.push_str(",instrument");
         }
         out.push('\n');
+        out
+    }
+
+    /// The text of the file.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let quantities = self.measured();
+        let names = self.data.reading_names();
+        let kinds: Vec<_> = names.iter().map(|name| self.robot.reading_kind(name)).collect();
+        let has_stations = self.data.station_count() > 1;
+        let has_pictures = !self.data.pictures.is_empty();
+        let mut out = self.head(&quantities, &kinds);
         for (k, (row, observation)) in self.rows.iter().zip(&self.data.observations).enumerate() {
             let file = self.data.files.get(observation.source.file as usize);
             let file = file.map(|path| path.display().to_string()).unwrap_or_default();

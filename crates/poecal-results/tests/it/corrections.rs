@@ -123,7 +123,7 @@ fn residuals_are_those_of_the_delivered_model() {
     let geometry = calibrate(&robot, &data, &options).unwrap();
     for calibration in [&corrected, &geometry] {
         for row in Residuals::of(&data, calibration).rows() {
-            let errors = row.errors.position_mm().unwrap();
+            let errors = row.errors.get(Quantity::Position).unwrap();
             let length = errors.residual().iter().map(|it| it * it).sum::<f64>().sqrt();
             // Sums of three squares in another order.
             assert!((length - errors.delivered()).abs() < 1e-12 * length);

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::paper::{self, LISTED};
+use super::{self as paper, LISTED};
 use crate::acceptance::plain;
 use crate::summary::{delivered, expected, judged_on, leading, why_larger};
 use crate::table::number;

@@ -2,13 +2,12 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::html::{HtmlTable, coded, decimal};
-use super::paper::{self, LISTED};
+use super::super::html::{HtmlTable, coded, decimal};
+use super::{self as paper, LISTED};
 use crate::summary::{delivered, expected, judged_on, leading};
 use crate::table::number;
 use crate::track::Track;
-use crate::track_entries::{SightEntry, shown};
-use poecal_fit::analysis::JointCoverage;
+use crate::track_entries::{SightEntry, sampled};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::JointKind;
 use poecal_numerics::text::visible;
@@ -152,11 +151,6 @@ fn joints(told: &Track, file: &CalibrationFile) -> Markup {
             @for it in told.invisible.iter().take(LISTED) { " " (visible(&it.joint)) ": " (it.words) "." }
         }
     }
-}
-
-/// The part of a range that rows sample, in the units of a page.
-pub(crate) fn sampled(found: &JointCoverage, slides: bool) -> [f64; 2] {
-    [found.sampled_min, found.sampled_max].map(|it| shown(it, slides))
 }
 
 fn range([from, to]: [f64; 2], unit: &str) -> String {

@@ -1,5 +1,12 @@
 //! A page of paper: complete in itself, without a script, on one page of A4.
 
+mod attested;
+mod visit;
+
+pub(crate) use attested::first_page;
+pub use attested::{Attest, certificate_page};
+pub use visit::visit_page;
+
 use std::collections::BTreeMap;
 
 use maud::{Markup, PreEscaped, html};
