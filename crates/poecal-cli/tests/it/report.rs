@@ -56,7 +56,7 @@ fn a_report_states_the_session() {
     folder.done("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
     folder.done("report poecal-out/calibration.json --record operator=Quirin -o page.html");
     let page = folder.read("page.html");
-    assert!(page.contains("4711") && page.contains("Quirin") && !page.contains("Walburga"));
+    assert!(page.contains("4711") && page.contains(">Quirin<") && !page.contains(">Walburga<"));
     let run = folder.run("report poecal-out/calibration.json --record colour=red -o other.html");
     assert!(run.code == 2 && !folder.path("other.html").exists(), "{}", run.err);
 }
