@@ -85,26 +85,6 @@ describe("paper", { skip: noPaper }, () => {
   });
   after(() => Promise.all([browser.close(), flat.close()]));
 
-  test("a visit, with all that it can say, on one page", async () => {
-    const out = SESSIONS[1][1]();
-    const visit = join(folder, "paper-visit.html");
-    const long = ["note", "tool", "place", "customer"].flatMap((key) => ["--record", `${key}=${"long words ".repeat(18)}`]);
-    const said = [...stated.flatMap((it) => ["--record", it]), ...long];
-    poecal("track", join(out, "calibration.json"), join(folder, "paper-seven/measurements.csv"), "--report", visit, "--history", "none", ...said);
-    const page = await browser.newPage();
-    await page.goto(pathToFileURL(visit).href);
-    const pdf = join(folder, "visit.pdf");
-    await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: true });
-    await page.close();
-    const pages = wordsOf(pdf);
-    assert.equal(pages.length, 1);
-    const text = pages[0].words.map(({ word }) => word).join(" ");
-    for (const words of ["4711", "then now", "A. Example", "smallest visible shift", "To do", "Approved by: name, date, signature"]) assert.ok(text.includes(words), words);
-    const [picture] = picturesOf(pdf, 1);
-    assert.equal(ink(picture, [0, MARGIN_MM / 210]) + ink(picture, [1 - MARGIN_MM / 210, 1]), 0, "it is printed on to its edge");
-    console.log(`a visit: printed to ${Math.round(100 * reach(picture))} %`);
-  });
-
   for (const [name, make] of SESSIONS) {
     test(`${name}: the certificate on one page, and an annex of few`, async () => {
       const out = make();
@@ -143,4 +123,25 @@ describe("paper", { skip: noPaper }, () => {
       }
     });
   }
+
+  test("a visit, with all that it can say, on one page", async () => {
+    // The session of poses of seven axes, from above.
+    const out = join(folder, "paper-seven-out");
+    const visit = join(folder, "paper-visit.html");
+    const long = ["note", "tool", "place", "payload"].flatMap((key) => ["--record", `${key}=${"long words ".repeat(18)}`]);
+    const said = [...stated.flatMap((it) => ["--record", it]), ...long];
+    poecal("track", join(out, "calibration.json"), join(folder, "paper-seven/measurements.csv"), "--report", visit, "--history", "none", ...said);
+    const page = await browser.newPage();
+    await page.goto(pathToFileURL(visit).href);
+    const pdf = join(folder, "visit.pdf");
+    await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: true });
+    await page.close();
+    const pages = wordsOf(pdf);
+    assert.equal(pages.length, 1);
+    const text = pages[0].words.map(({ word }) => word).join(" ");
+    for (const words of ["4711", "then now", "A. Example", "smallest visible shift", "To do", "Approved by: name, date, signature"]) assert.ok(text.includes(words), words);
+    const [picture] = picturesOf(pdf, 1);
+    assert.equal(ink(picture, [0, MARGIN_MM / 210]) + ink(picture, [1 - MARGIN_MM / 210, 1]), 0, "it is printed on to its edge");
+    console.log(`a visit: printed to ${Math.round(100 * reach(picture))} %`);
+  });
 });
