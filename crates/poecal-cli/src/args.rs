@@ -211,6 +211,10 @@ pub(crate) struct Validate {
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
     pub(crate) require: Option<Level>,
+    /// End with code 1 unless the calibration clearly predicts these measurements better than the nominal model, device frame and targets fitted
+    /// for both, with 95 % confidence
+    #[arg(long, help_heading = JUDGED)]
+    pub(crate) require_gain: bool,
     /// Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
     /// code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]

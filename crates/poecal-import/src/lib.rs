@@ -116,6 +116,8 @@ pub struct ReadOptions {
     pub boards: Vec<Board>,
     /// Noise of instruments that depends on the distance, for rows that state none.
     pub instrument_noise: Vec<InstrumentNoise>,
+    /// Joints that the model has beyond the robot's tip link, each with an end link that it moves: their columns are named.
+    pub beyond_tip: Vec<(String, String)>,
     /// What was understood of files of boards, a sentence each, for the warnings.
     pub said: Vec<String>,
 }

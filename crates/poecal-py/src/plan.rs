@@ -64,7 +64,7 @@ use crate::visit_plan::VisitOptions;
 /// gravity
 ///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
 /// margin_deg_mm
-///     How far every joint stays from its limits.
+///     How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
 /// keep_out_mm
 ///     Boxes into which no part of the robot may reach, each two corners in the base frame.
 /// floor_mm
@@ -104,11 +104,11 @@ use crate::visit_plan::VisitOptions;
 #[pyfunction]
 #[pyo3(signature = (robot, *, purpose="calibration", kind="point", count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None,
                     criterion="expected", targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
-                    frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=(0.0, 0.0),
+                    frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=None,
                     keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None,
                     distance_mm=None, acceptance_deg=None, facing=None, self_collision="avoid", stop_s=30.0, seed=1,
                     earlier=None, device=None, tool=None, repeatability_mm=None, target=None),
-        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=(0.0, 0.0), keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None, distance_mm=None, acceptance_deg=None, facing=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None, target=None)")]
+        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=None, keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None, distance_mm=None, acceptance_deg=None, facing=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None, target=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
@@ -132,7 +132,7 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
-    #[pyo3(from_py_with = arg::margin_deg_mm)] margin_deg_mm: (f64, f64),
+    #[pyo3(from_py_with = arg::margin_deg_mm)] margin_deg_mm: Option<(f64, f64)>,
     keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
     #[pyo3(from_py_with = arg::floor_mm)] floor_mm: Option<f64>,
     #[pyo3(from_py_with = arg::separation_deg)] separation_deg: Option<f64>,

@@ -42,6 +42,9 @@ fn words(limit: &AcceptedLimit) -> String {
 pub(crate) fn bounds(limit: &AcceptedLimit) -> String {
     let unit = &limit.unit;
     match limit.to {
+        Some(to) if limit.from == 0.0 => {
+            format!("at most {} {unit} with 95 % confidence", number(to))
+        }
         Some(to) => {
             format!("between {} and {} {unit} with 95 % confidence each", number(limit.from), number(to))
         }

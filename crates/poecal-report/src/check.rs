@@ -130,7 +130,8 @@ impl Check {
             sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
             notes: measurements.map_or_else(Vec::new, |file| file.notes.clone()),
             warnings: {
-                let of_model = model.doubts().into_iter().map(|it| format!("{}: {it}", model.path.display()));
+                let doubts = model.doubts().into_iter().chain(robot.placeholder_limits());
+                let of_model = doubts.map(|it| format!("{}: {it}", model.path.display()));
                 of_model.chain(measurements.map_or_else(Vec::new, |file| file.warnings.clone())).collect()
             },
             diagnosis: diagnosis.to_vec(),

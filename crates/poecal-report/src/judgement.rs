@@ -2,7 +2,9 @@
 
 use super::acceptance;
 use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, pictures_words, row};
-use poecal_calibrate::{Judgement, Level, ModelAccuracy, PartCoverage, Refitted, Statistic};
+use poecal_calibrate::{
+    Gain, Improvement, Judgement, Level, ModelAccuracy, PartCoverage, Refitted, Statistic,
+};
 use poecal_model::measurement::Quantity;
 
 /// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
@@ -39,6 +41,7 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         }
         line(&mut out, "sampled range", &range_words(judgement));
     }
+    line(&mut out, "gain", &gain_words(judgement));
     if let Some(found) = &judgement.acceptance {
         acceptance::lines(&mut out, found);
     }
@@ -64,6 +67,22 @@ pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
         Some(Level::DoNotUse) => "the calibration does not hold for these measurements",
         None => "the calibration has no bounds to test",
     }
+}
+
+/// How many times smaller errors are than those of the nominal model on these rows.
+fn gain_words(judgement: &Judgement) -> String {
+    let Some(found) = judgement.improvement else {
+        return "not known: too few rows to fit device frame and targets to them".to_owned();
+    };
+    let Improvement { factor, from, to } = found;
+    let clear = match found.gain() {
+        Gain::Clear => "",
+        Gain::Unclear => "no clear gain: ",
+        Gain::Loss => "a loss: ",
+    };
+    format!(
+        "{clear}the error of the nominal model is {factor:.2} times this one's ({from:.2} to {to:.2}), device frame and targets fitted for both"
+    )
 }
 
 /// The verdict with its one figure, and why it is no better.

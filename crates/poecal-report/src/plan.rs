@@ -43,6 +43,8 @@ pub struct Plan {
     tried: usize,
     left_out: Vec<[String; 2]>,
     without_limits: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    beyond_a_turn: Vec<String>,
     #[serde(skip)]
     robot_words: String,
 }
@@ -157,6 +159,7 @@ impl Plan {
             tried: found.refusals.tried,
             left_out: found.left_out.iter().map(|(a, b)| [a.clone(), b.clone()]).collect(),
             without_limits: found.without_limits.clone(),
+            beyond_a_turn: found.beyond_a_turn.clone(),
             robot_words: robot_words(&model.robot),
         }
     }
@@ -260,6 +263,10 @@ impl Plan {
         if !self.without_limits.is_empty() {
             let names = self.without_limits.join(", ");
             facts.push(("", format!("without limits, taken to 180 deg or 500 mm to either side: {names}")));
+        }
+        if !self.beyond_a_turn.is_empty() {
+            let names = self.beyond_a_turn.join(", ");
+            facts.push(("", format!("limits of more than a turn, taken within one: {names}")));
         }
         facts
     }

@@ -208,7 +208,11 @@ impl Model {
     /// Options that read files for this robot with what its controller counts.
     #[must_use]
     pub fn reads(&self, options: ReadOptions) -> ReadOptions {
-        ReadOptions { controller: self.controller().cloned(), ..options }
+        let beyond_tip = match &self.source {
+            ModelSource::Urdf(document) => document.beyond().to_vec(),
+            ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
+        };
+        ReadOptions { controller: self.controller().cloned(), beyond_tip, ..options }
     }
 
     /// The URDF that was read, or calibrated; none of other models.

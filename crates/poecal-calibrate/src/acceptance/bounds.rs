@@ -23,10 +23,19 @@ pub(crate) struct Bounded {
     pub(crate) to: Option<f64>,
 }
 
-/// Absolute errors of one quantity, rows of one configuration together, and how far the noise of each measurement may be off.
+/// Absolute error of a row, and 95 % bounds of the noise of its measurement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MeasuredError {
+    pub(crate) error: f64,
+    /// Of the noise that may be there: it contains the model error where no noise is stated.
+    pub(crate) possible_noise: f64,
+    /// Of the noise that is shown: stated, or found by repeated measurements.
+    pub(crate) shown_noise: f64,
+}
+
+/// Absolute errors of one quantity, rows of one configuration together.
 pub(crate) struct Errors {
-    /// Error and 95 % bound of the noise of each row.
-    pub(crate) configurations: Vec<Vec<(f64, f64)>>,
+    pub(crate) configurations: Vec<Vec<MeasuredError>>,
     /// Numbers that a row measured.
     pub(crate) components: usize,
 }
@@ -47,7 +56,7 @@ impl Errors {
     /// (47): a mean square of as many degrees of freedom as its scatter over configurations shows, at most those of independent numbers.
     fn root_mean_square(&self) -> Option<Bounded> {
         let (count, groups) = (self.rows() as f64, self.configurations.len() as f64);
-        let square = |rows: &[(f64, f64)]| rows.iter().map(|(error, _)| error * error).sum::<f64>();
+        let square = |rows: &[MeasuredError]| rows.iter().map(|row| row.error * row.error).sum::<f64>();
         let mean = self.configurations.iter().map(|rows| square(rows)).sum::<f64>() / count;
         if !mean.is_finite() {
             return None;
@@ -55,7 +64,7 @@ impl Errors {
         if groups < 2.0 || mean == 0.0 {
             return Some(Bounded { found: mean.sqrt(), from: 0.0, to: (mean == 0.0).then_some(0.0) });
         }
-        let off = |rows: &Vec<(f64, f64)>| (square(rows) - mean * rows.len() as f64).powi(2);
+        let off = |rows: &Vec<MeasuredError>| (square(rows) - mean * rows.len() as f64).powi(2);
         let sum = self.configurations.iter().map(off).sum::<f64>() / (count * count);
         let found = sum / (mean * mean) * groups * groups / (groups - 1.0);
         let spread = (groups * found + BELIEVED * ONE_NUMBER) / (groups + BELIEVED);
@@ -66,15 +75,14 @@ impl Errors {
     /// (48): order statistics, whatever the distribution; a configuration counts by its largest error for the upper bound, and by that of
     /// its first row for the lower one.
     fn quantile(&self) -> Option<Bounded> {
-        let sorted = |of: fn(&Vec<(f64, f64)>) -> Option<f64>| {
+        let sorted = |of: fn(&Vec<MeasuredError>) -> Option<f64>| {
             let mut errors: Vec<f64> = self.configurations.iter().filter_map(of).collect();
             errors.sort_unstable_by(f64::total_cmp);
             errors
         };
-        let largest = sorted(|rows| rows.iter().map(|(error, _)| *error).max_by(f64::total_cmp));
-        let first = sorted(|rows| rows.first().map(|(error, _)| *error));
-        let found =
-            Statistic::of(self.configurations.iter().flatten().map(|(error, _)| *error).collect())?.p95;
+        let largest = sorted(|rows| rows.iter().map(|row| row.error).max_by(f64::total_cmp));
+        let first = sorted(|rows| rows.first().map(|row| row.error));
+        let found = Statistic::of(self.configurations.iter().flatten().map(|row| row.error).collect())?.p95;
         let count = largest.len();
         // Fewer than k of the errors lie below the quantile with this probability.
         let fewer = |k: usize| k.checked_sub(1).map_or(0.0, |k| binomial_at_most(k, count, KEPT));
@@ -96,12 +104,12 @@ impl Errors {
     /// (49): the largest error that was found, and how far the noise of its measurement may be off.
     fn largest(&self) -> Option<Bounded> {
         let rows = || self.configurations.iter().flatten();
-        let most = |of: fn(&(f64, f64)) -> f64| rows().map(of).max_by(f64::total_cmp);
+        let most = |of: fn(&MeasuredError) -> f64| rows().map(of).max_by(f64::total_cmp);
         // That noise alone exceeds its bound in none of the rows.
         let of = |risk: f64| upper_quantile(risk, self.components).sqrt();
         let all = of(RISK / self.rows() as f64) / of(RISK);
-        let from = rows().map(|(error, noise)| error - all * noise).max_by(f64::total_cmp)?.max(0.0);
-        Some(Bounded { found: most(|(error, _)| *error)?, from, to: most(|(error, noise)| error + noise) })
+        let from = rows().map(|row| row.error - all * row.shown_noise).max_by(f64::total_cmp)?.max(0.0);
+        Some(Bounded { found: most(|row| row.error)?, from, to: most(|row| row.error + row.possible_noise) })
     }
 }
 
@@ -122,6 +130,11 @@ mod tests {
 
     use super::*;
     use crate::Decision;
+
+    /// An error whose noise is stated.
+    fn measured(error: f64, noise: f64) -> MeasuredError {
+        MeasuredError { error, possible_noise: noise, shown_noise: noise }
+    }
 
     fn uniform(random: &mut ChaCha8Rng) -> f64 {
         (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64
@@ -167,7 +180,8 @@ mod tests {
                     let limit = if statistic == AcceptedStatistic::Rms { 1.0 } else { quantile };
                     let (mut passed, mut failed) = (0, 0);
                     for _ in 0..TRIALS {
-                        let rows = (0..count).map(|_| vec![(error(kind, &mut random), 0.0)]).collect();
+                        let rows =
+                            (0..count).map(|_| vec![measured(error(kind, &mut random), 0.0)]).collect();
                         let found =
                             Errors { configurations: rows, components: 3 }.bounded(statistic).unwrap();
                         match Decision::of(limit, found.from, found.to) {
@@ -190,10 +204,11 @@ mod tests {
     #[test]
     fn rows_of_a_configuration_are_no_further_evidence() {
         let mut random = ChaCha8Rng::seed_from_u64(8);
-        let single: Vec<Vec<(f64, f64)>> = (0..40).map(|_| vec![(error(1, &mut random), 0.0)]).collect();
-        let thrice: Vec<Vec<(f64, f64)>> = single.iter().map(|rows| rows.repeat(3)).collect();
+        let single: Vec<Vec<MeasuredError>> =
+            (0..40).map(|_| vec![measured(error(1, &mut random), 0.0)]).collect();
+        let thrice: Vec<Vec<MeasuredError>> = single.iter().map(|rows| rows.repeat(3)).collect();
         for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95] {
-            let of = |rows: &Vec<Vec<(f64, f64)>>| {
+            let of = |rows: &Vec<Vec<MeasuredError>>| {
                 Errors { configurations: rows.clone(), components: 1 }.bounded(statistic).unwrap()
             };
             let (one, three) = (of(&single), of(&thrice));
@@ -214,10 +229,10 @@ mod tests {
         for trial in 0..3000 {
             let (configurations, rows) = (1 + trial % 90, 1 + trial % 3);
             let noise = (trial % 5) as f64 * 0.2;
-            let row = |random: &mut ChaCha8Rng| (error(trial % 3, random), noise * uniform(random));
+            let row = |random: &mut ChaCha8Rng| measured(error(trial % 3, random), noise * uniform(random));
             let all = (0..configurations).map(|_| (0..rows).map(|_| row(&mut random)).collect()).collect();
             let errors = Errors { configurations: all, components: 3 };
-            let seen = errors.configurations.iter().flatten().map(|(error, _)| *error).fold(0.0, f64::max);
+            let seen = errors.configurations.iter().flatten().map(|row| row.error).fold(0.0, f64::max);
             for statistic in [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max] {
                 let Bounded { found, from, to } = errors.bounded(statistic).unwrap();
                 assert!(
@@ -234,17 +249,25 @@ mod tests {
     /// The noise of the measurement is added to the largest error before it passes, and taken off before it fails.
     #[test]
     fn the_largest_error_is_guarded_by_the_noise() {
-        let errors = Errors { configurations: vec![vec![(0.3, 0.1)], vec![(0.2, 0.25)]], components: 3 };
+        let errors = Errors {
+            configurations: vec![vec![measured(0.3, 0.1)], vec![measured(0.2, 0.25)]],
+            components: 3,
+        };
         let found = errors.bounded(AcceptedStatistic::Max).unwrap();
         assert_eq!((found.found, found.to), (0.3, Some(0.2 + 0.25)));
         // Of two rows: the roots of the 97.5 % and 95 % points of χ² of three numbers, 9.348 and 7.815.
         assert!((found.from - (0.3 - 0.1 * (9.3484f64 / 7.8147).sqrt())).abs() < 1e-5, "{}", found.from);
+        // Noise that nothing shows widens the upper bound alone.
+        let row = MeasuredError { error: 0.3, possible_noise: 0.4, shown_noise: 0.0 };
+        let unknown = Errors { configurations: vec![vec![row]], components: 3 };
+        let found = unknown.bounded(AcceptedStatistic::Max).unwrap();
+        assert_eq!((found.from, found.to), (0.3, Some(0.3 + 0.4)));
         // Noise alone, in many rows, is beyond its bound for one row, and fails no limit in more than one session of twenty.
         let mut random = ChaCha8Rng::seed_from_u64(9);
         let guard = 7.8147f64.sqrt();
         let failed = (0..400)
             .filter(|_| {
-                let rows = (0..500).map(|_| vec![(length(&mut random, [1.0; 3]), guard)]).collect();
+                let rows = (0..500).map(|_| vec![measured(length(&mut random, [1.0; 3]), guard)]).collect();
                 Errors { configurations: rows, components: 3 }.bounded(AcceptedStatistic::Max).unwrap().from
                     > 0.0
             })
@@ -256,7 +279,7 @@ mod tests {
         let failed = (0..400)
             .filter(|_| {
                 let rows = (0..200)
-                    .map(|_| (0..3).map(|_| (length(&mut random, [1.0; 3]), 0.0)).collect())
+                    .map(|_| (0..3).map(|_| measured(length(&mut random, [1.0; 3]), 0.0)).collect())
                     .collect();
                 Errors { configurations: rows, components: 3 }.bounded(AcceptedStatistic::P95).unwrap().from
                     > guard
@@ -267,9 +290,9 @@ mod tests {
         );
         assert!(failed <= 35, "{failed}");
         // Too few rows have no upper bound: 58 of the 95 % statistic, one of the RMS.
-        let few = Errors { configurations: vec![vec![(1.0, 0.0)]; 58], components: 1 };
+        let few = Errors { configurations: vec![vec![measured(1.0, 0.0)]; 58], components: 1 };
         assert_eq!(few.bounded(AcceptedStatistic::P95).unwrap().to, None);
-        let one = Errors { configurations: vec![vec![(1.0, 0.0)]], components: 1 };
+        let one = Errors { configurations: vec![vec![measured(1.0, 0.0)]], components: 1 };
         assert_eq!(one.bounded(AcceptedStatistic::Rms).unwrap().to, None);
     }
 }

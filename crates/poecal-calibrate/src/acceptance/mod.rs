@@ -3,7 +3,7 @@
 mod bounds;
 mod limits;
 
-pub(crate) use bounds::{Bounded, Errors, mean_square};
+pub(crate) use bounds::{Bounded, Errors, MeasuredError, mean_square};
 pub use limits::{AcceptanceLimits, AcceptedModel, AcceptedStatistic, Limit};
 
 use schemars::JsonSchema;

@@ -10,7 +10,7 @@ use poecal_fit::problem::{Prior, Problem};
 use poecal_fit::state::{Estimate, sample_rows};
 use poecal_fit::uncertainty::{PriorInformation, Uncertainty, View, discrepancy};
 use poecal_model::measurement::{Dataset, Noise};
-use poecal_numerics::solve::{LeastSquares as _, Normal};
+use poecal_numerics::solve::LeastSquares as _;
 
 /// Rows of which residuals are searched for structure.
 const MANY: usize = 4000;
@@ -37,9 +37,8 @@ pub(crate) fn uncertainty(
     if let Some(optics) = optics {
         optics.loosen(task.session.data, &problem, estimate, &mut normal);
     }
-    let mut believed = Normal::new(layout.dim());
-    prior.add(estimate, &layout, 1.0, &mut believed);
-    let prior = PriorInformation { normal: believed, is_fitted: true, weight: Some(weight * variance) };
+    let prior = PriorInformation::of_weight((prior, 1.0), estimate, &layout);
+    let prior = PriorInformation { weight: Some(weight * variance), ..prior };
     let of = (&task.session, estimate);
     let summary = FitSummary::new(of, task.rows.to_vec(), (layout, normal), prior, noise, task.options);
     let FitSummary { remainder, normal, .. } = &summary;
@@ -60,7 +59,7 @@ pub(crate) fn uncertainty(
     (found.scatter, found.extrapolation) = (1.0, 1.0);
     let root = growth.sqrt();
     found.standard_deviation.values_mut().for_each(|(_, sigma)| *sigma *= root);
-    Uncertainty::new(&view, summary.layout.clone(), &normal.gram, &found)
+    Uncertainty::new(&view, summary.layout.clone(), normal, &found)
 }
 
 /// Rows of every target seen from every station that stand for all of them, and the weights of all rows with which their information is that of

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::pixels::{PixelAccuracy, pixel_accuracy};
+use crate::steps::level::Gain;
 use poecal_fit::state::{Estimate, RowError, Session};
 use poecal_model::measurement::{Dataset, Measured, Quantity};
 use poecal_numerics::unit::Unit;
@@ -156,7 +157,7 @@ impl ModelAccuracy {
     }
 }
 
-/// Root mean square error of the registered model over that of another, on the same rows.
+/// Root mean square error of the nominal model, registered, over that of another, on the same rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Improvement {
     /// The factor.
@@ -165,6 +166,14 @@ pub struct Improvement {
     pub from: f64,
     /// Upper end.
     pub to: f64,
+}
+
+impl Improvement {
+    /// Whether the other model is clearly better.
+    #[must_use]
+    pub fn gain(&self) -> Gain {
+        Gain::of_interval([self.from.ln(), self.to.ln()])
+    }
 }
 
 /// Improvement of each quantity by the models that are fitted.

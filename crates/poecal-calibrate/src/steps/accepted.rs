@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::acceptance::{Errors, mean_square};
+use crate::acceptance::{Errors, MeasuredError, mean_square};
 use crate::run::located::rows_of_fitted_stations;
 use crate::validate::judge::{check_count, judged_rows};
 use crate::{
@@ -23,7 +23,10 @@ struct Rows<'a> {
     session: Session<'a>,
     rows: &'a [u32],
     errors: &'a [RowError],
+    /// By which rows are weighted.
     noise: Noise,
+    /// The part of it that stated noise or repeated measurements show; none without an uncertainty.
+    shown: Option<Noise>,
     /// Factor on the errors of rows that parts of the model were fitted to.
     factor: f64,
 }
@@ -45,14 +48,15 @@ pub(crate) fn accepted(
     let session = calibration.session(data, &packed).with_noise_ratios(&calibration.noise_ratios);
     let corrected = calibration.correction.as_ref().filter(|it| it.has_terms());
     let corrected = corrected.filter(|_| accept.model == AcceptedModel::Corrected);
-    let (model, errors, noise) = match corrected {
-        Some(found) => (AcceptedModel::Corrected, found.errors(data, &rows), found.noise),
+    let (model, errors, noise, uncertainty) = match corrected {
+        Some(found) => (AcceptedModel::Corrected, found.errors(data, &rows), found.noise, &found.uncertainty),
         None => {
             let errors = session.errors(&rows, &calibration.models.calibrated);
-            (AcceptedModel::Calibrated, errors, calibration.noise)
+            (AcceptedModel::Calibrated, errors, calibration.noise, &calibration.trust.uncertainty)
         }
     };
-    let judged = Rows { session, rows: &rows, errors: &errors, noise, factor: 1.0 };
+    let shown = uncertainty.as_ref().map(|it| it.discrepancy.noise);
+    let judged = Rows { session, rows: &rows, errors: &errors, noise, shown, factor: 1.0 };
     Ok(Acceptance::new(model, AcceptedRows::HeldOut, judged.limits(&accept.limits)?))
 }
 
@@ -74,8 +78,9 @@ pub fn accepted_by(
     let fitted: usize = judged.free.iter().map(|it| it.model().columns().len()).sum();
     let factor = (numbers as f64 / numbers.saturating_sub(fitted) as f64).sqrt();
     let rows = data.all_rows();
-    let judged =
-        Rows { session: judged.session, rows: &rows, errors: &judged.errors, noise: subject.noise, factor };
+    let shown = subject.uncertainty.as_ref().map(|it| it.uncertainty.discrepancy.noise);
+    let (session, errors) = (judged.session, &judged.errors);
+    let judged = Rows { session, rows: &rows, errors, noise: subject.noise, shown, factor };
     Ok(Acceptance::new(model, AcceptedRows::Judged, judged.limits(&accept.limits)?))
 }
 
@@ -100,12 +105,19 @@ impl Rows<'_> {
         let error = |row: &u32| {
             let error = self.errors.get(self.rows.binary_search(row).ok()?)?;
             let length = self.factor * error.length(quantity)?;
-            let sigma = self.session.noise_of(self.session.observation(*row), self.noise)[quantity];
-            let components = error.part(quantity).len();
-            Some((length, sigma * upper_quantile(RISK, components).sqrt()))
+            let observation = self.session.observation(*row);
+            let sigma = |noise: Noise| self.session.noise_of(observation, noise)[quantity];
+            let possible = sigma(self.noise);
+            let shown = self.shown.map_or(possible, |shown| sigma(shown).min(possible));
+            let bound = upper_quantile(RISK, error.part(quantity).len()).sqrt();
+            Some(MeasuredError {
+                error: length,
+                possible_noise: bound * possible,
+                shown_noise: bound * shown,
+            })
         };
         let grouped = self.session.data.configurations(self.rows);
-        let configurations: Vec<Vec<(f64, f64)>> =
+        let configurations: Vec<Vec<MeasuredError>> =
             grouped.iter().map(|rows| rows.iter().filter_map(error).collect()).collect();
         let configurations: Vec<_> = configurations.into_iter().filter(|rows| !rows.is_empty()).collect();
         let components = self.errors.iter().map(|error| error.part(quantity).len()).max().unwrap_or(1);

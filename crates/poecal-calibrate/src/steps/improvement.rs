@@ -1,4 +1,4 @@
-//! How many times smaller errors are than those of the registered model: theory.md §9 (50).
+//! How many times smaller errors are than those of the registered or nominal model on the same rows: theory.md §9 (50).
 
 use crate::{Calibration, Improvement, Improvements};
 use poecal_fit::state::RowError;
@@ -17,24 +17,31 @@ pub(crate) fn improvements(calibration: &Calibration, data: &Dataset) -> Option<
         return None;
     }
     let before = session.errors(rows, &calibration.models.registered);
-    let groups = data.configurations(rows);
-    let of = |after: &[RowError]| {
-        Measured::of(|quantity| {
-            let sums = groups.iter().map(|group| {
-                let own = group.iter().filter_map(|row| rows.binary_search(row).ok());
-                own.fold([0.0, 0.0], |[a, b], at| {
-                    let square = |errors: &[RowError]| {
-                        errors.get(at).and_then(|it| it.length(quantity)).map_or(0.0, |it| it * it)
-                    };
-                    [a + square(&before), b + square(after)]
-                })
-            });
-            improvement(&sums.collect::<Vec<_>>(), before.iter().any(|it| !it.part(quantity).is_empty()))
-        })
-    };
+    let of = |after: &[RowError]| paired(data, rows, [&before, after]);
     let after = session.errors(rows, &calibration.models.calibrated);
     let corrected = calibration.correction.as_ref().map(|found| of(&found.errors(data, rows)));
     Some(Improvements { calibrated: of(&after), corrected })
+}
+
+/// (50) of each quantity, from errors of the same rows by two models, before and after; `rows` ascend.
+pub(crate) fn paired(
+    data: &Dataset,
+    rows: &[u32],
+    [before, after]: [&[RowError]; 2],
+) -> Measured<Improvement> {
+    let groups = data.configurations(rows);
+    Measured::of(|quantity| {
+        let sums = groups.iter().map(|group| {
+            let own = group.iter().filter_map(|row| rows.binary_search(row).ok());
+            own.fold([0.0, 0.0], |[a, b], at| {
+                let square = |errors: &[RowError]| {
+                    errors.get(at).and_then(|it| it.length(quantity)).map_or(0.0, |it| it * it)
+                };
+                [a + square(before), b + square(after)]
+            })
+        });
+        improvement(&sums.collect::<Vec<_>>(), before.iter().any(|it| !it.part(quantity).is_empty()))
+    })
 }
 
 /// (50) of sums of squares before and after, by configuration.

@@ -50,7 +50,7 @@ impl Level {
     }
 }
 
-/// Whether the delivered model predicts better than the nominal model anywhere inside the sampled range.
+/// Whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gain {

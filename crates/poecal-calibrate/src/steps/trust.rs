@@ -62,7 +62,7 @@ pub(crate) fn trust(
     let FitSummary { layout, normal, remainder, .. } = summary;
     let found = discrepancy(view, normal, remainder, cross_validation.as_ref());
     let mut uncertainty = (remainder.numbers > normal.dim())
-        .then(|| Uncertainty::new(view, layout.clone(), &normal.gram, &found))
+        .then(|| Uncertainty::new(view, layout.clone(), normal, &found))
         .flatten();
     let coverage = coverage(&view.session, view.rows);
     let left_out_m = cross_validation.as_ref().and_then(|found| found.random.rms.get(Quantity::Position));

@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use crate::acceptance::{Acceptance, AcceptedModel};
-use crate::run::accuracy::{ModelAccuracy, model_accuracy};
+use crate::run::accuracy::{Improvement, ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
-use crate::steps::level::Level;
+use crate::steps::improvement::paired;
+use crate::steps::level::{Gain, Level};
 use crate::trust::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
     coverage_checks, promised_rows,
@@ -70,7 +71,7 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None, acceptance: None, moved_device: None, base_from_device: poecal_arm::lie::Pose::identity(),
+///     in_sampled_range: None, improvement: None, acceptance: None, moved_device: None, base_from_device: poecal_arm::lie::Pose::identity(),
 ///     rows: vec![] };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
@@ -91,6 +92,10 @@ pub struct Judgement {
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
     pub in_sampled_range: Option<InSampledRange>,
+    /// Error of the nominal model over that of the delivered one on these rows, device frame and targets fitted for both; `None` where the rows
+    /// are too few for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub improvement: Option<Improvement>,
     /// Whether the limits that were asked for are kept; `None` if none were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<Acceptance>,
@@ -199,11 +204,25 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         nominal,
         promised,
         in_sampled_range,
+        improvement: improvement(subject, data),
         acceptance: None,
         moved_device: None,
         base_from_device: rows.estimate.device_from_base.inverse(),
         rows: each,
     })
+}
+
+/// Error of the nominal robot over that of the calibrated one on the same rows, with device frame and targets refitted for both: theory.md §9 (50).
+fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement> {
+    let both =
+        Subject { refit_frame: subject.frame != DeviceFrameKnowledge::Base, refit_tool: true, ..*subject };
+    check_count(&both, data).ok()?;
+    let [before, after] = [both.nominal, both.calibrated].map(|robot| {
+        let packed = Packed::of(robot, data);
+        judged_rows(&both, robot, data, &packed).errors
+    });
+    let (_, found) = paired(data, &data.all_rows(), [&before, &after]).leading()?;
+    Some(found)
 }
 
 /// Errors of a robot's predictions, with device frame and targets refitted as asked.
@@ -305,6 +324,20 @@ impl Judgement {
                 in_sampled_range: self.in_sampled_range.as_ref(),
             },
         }
+    }
+
+    /// Why the measurements do not show a clear gain over the nominal model; `None` if they do.
+    #[must_use]
+    pub fn gain_doubt(&self) -> Option<String> {
+        let Some(found) = self.improvement else {
+            return Some("these rows are too few to compare it with the nominal model".to_owned());
+        };
+        let Improvement { factor, from, to } = found;
+        (found.gain() != Gain::Clear).then(|| {
+            format!(
+                "on these rows the error of the nominal model is {factor:.2} times that of this one, from {from:.2} to {to:.2} with 95 % confidence"
+            )
+        })
     }
 
     /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the

@@ -198,9 +198,9 @@ pub(crate) struct FitArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "What can be measured")]
 pub(crate) struct ConditionArgs {
-    /// How far every joint stays from its limits
-    #[arg(long, value_name = "ANGLE,LENGTH", default_value = "0deg,0mm")]
-    pub(crate) margin: LengthAndAngle,
+    /// How far every joint stays from its limits [default: 2deg,5mm; of a list that is stated none]
+    #[arg(long, value_name = "ANGLE,LENGTH")]
+    pub(crate) margin: Option<LengthAndAngle>,
     /// Box into which no part of the robot may reach, by two corners (repeatable)
     #[arg(long, value_name = "X,Y,Z:X,Y,Zmm", value_parser = box_m, allow_hyphen_values = true)]
     pub(crate) keep_out: Vec<[[f64; 3]; 2]>,

@@ -40,6 +40,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     let place = FolderPlace::reserve(&arguments.out, contents, existing, &[], &mut console.warner())?;
     let written = write_project(place, &project)?;
     console.warnings(&written.notes);
+    console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
     let next = format!(
         "read {}: measure, fill in measurements.csv, and run `poecal calibrate` in that folder",
         shown(&written.folder.join("README.md"))

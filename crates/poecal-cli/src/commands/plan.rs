@@ -37,6 +37,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let page = arguments.report.as_ref().map(reserved).transpose()?;
     let options = arguments.columns.options();
     let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
     let reading = model.reads(options?);
     let read = |path: &PathBuf| readings(path, &model, &reading, console);
     let list = arguments.candidates.as_ref().map(read).transpose()?;
@@ -200,7 +201,7 @@ fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Cond
         facing: it.facing.unwrap_or([0.0, 0.0, 1.0]).into(),
     });
     Ok(Conditions {
-        margin: [it.margin.angle_rad, it.margin.length_m],
+        margin: it.margin.as_ref().map(|margin| [margin.angle_rad, margin.length_m]),
         keep_out: it.keep_out.clone(),
         floor_m: it.floor,
         separation_rad: it.separation.unwrap_or(0.0),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 
-use poecal_calibrate::{AcceptanceLimits, Decision, Level};
+use poecal_calibrate::{AcceptanceLimits, Decision, Judgement, Level};
 use poecal_import as measurements;
 use poecal_import::{MeasurementFile, ReadOptions};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -75,11 +75,19 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     console.warnings(&found.warnings());
     let refused = found.judgement.acceptance.as_ref().is_some_and(|it| it.decision != Decision::Pass);
     let fails = found.verdict.level == Some(Level::DoNotUse);
-    let code = if refused || fails { WORSE } else { told };
-    let Some(required) = arguments.require else { return Ok(code) };
-    let Some(reason) = found.judgement.falls_short(required) else { return Ok(code) };
-    console.warning(format!("not what --require {} asks for: {reason}", required.word()));
-    Ok(WORSE.max(told))
+    let missing = required_and_missing(arguments, &found.judgement);
+    missing.iter().for_each(|it| console.warning(it));
+    Ok(if refused || fails || !missing.is_empty() { WORSE.max(told) } else { told })
+}
+
+/// What is required and not shown by the measurements, a sentence each.
+fn required_and_missing(arguments: &Validate, judgement: &Judgement) -> Vec<String> {
+    let level = arguments.require.and_then(|required| {
+        let reason = judgement.falls_short(required)?;
+        Some(format!("not what --require {} asks for: {reason}", required.word()))
+    });
+    let gain = judgement.gain_doubt().filter(|_| arguments.require_gain);
+    level.into_iter().chain(gain.map(|why| format!("not what --require-gain asks for: {why}"))).collect()
 }
 
 /// What was judged, and by what.

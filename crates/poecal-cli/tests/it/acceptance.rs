@@ -47,6 +47,27 @@ fn limits_are_kept_exceeded_or_neither() {
     assert_eq!(by, AcceptedRows::CrossValidation);
 }
 
+/// Without a noise that is stated or repeated, the largest error that was seen is the robot's: it bounds the maximum from below.
+#[test]
+fn a_maximum_is_no_less_than_was_seen_but_for_noise_that_is_shown() {
+    let folder = session(Kind::POSE);
+    let largest = |words: &str| {
+        let (_, _) = decided(&folder, &format!("--accept max:20mm {words}"));
+        calibration(&folder, "poecal-out").acceptance.unwrap().limits[0].clone()
+    };
+    let unknown = largest("");
+    println!("{unknown:?}");
+    let of_noise = unknown.to.unwrap() - unknown.found;
+    assert!(of_noise > 0.0 && unknown.from >= 0.9 * unknown.found && unknown.from <= unknown.found);
+    // A noise that is stated is taken off, and no more than it is added.
+    let stated = largest("--sigma-position 0.01mm --sigma-rotation 0.01mrad");
+    println!("{stated:?}");
+    let taken_off = stated.found - stated.from;
+    // Of three numbers, in the largest of the rows: at least the bound for one of them, 2.795 times the noise, and at most 2 times that.
+    assert!((0.02795..0.0559).contains(&taken_off), "{taken_off}");
+    assert!((stated.to.unwrap() - stated.found - 0.02795).abs() < 2e-5);
+}
+
 #[test]
 fn other_measurements_decide_and_those_of_the_calibration_do_not() {
     let folder = session(Kind::POSE);

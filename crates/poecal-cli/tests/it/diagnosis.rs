@@ -184,3 +184,15 @@ fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them(
     let told = folder.done("calibrate robot.urdf called.csv --columns map.toml --out results");
     assert!(told.starts_with("verdict       good"), "{told}");
 }
+
+/// A file that moves a joint beyond the tip link says which link to state instead; nothing is said where the column is of no joint.
+#[test]
+fn readings_of_a_joint_beyond_the_tip_link_are_named() {
+    let folder = session(Kind::POINT);
+    let run = folder.run("calibrate robot.urdf measurements.csv --tip-link link5");
+    let words = "measurements.csv: has readings of `joint6`, beyond the tip link: if what was measured moves with it, state the link that carries it, \
+                 like `--tip-link tool`";
+    assert!(run.err.contains(words), "{}", run.err);
+    let run = folder.run("calibrate robot.urdf measurements.csv");
+    assert!(!run.err.contains("beyond the tip link"), "{}", run.err);
+}

@@ -2,6 +2,7 @@
 
 use crate::folder::Folder;
 use crate::offsets::COLUMN;
+use crate::session::ROBOT;
 
 fn folder() -> Folder {
     let folder = Folder::new();
@@ -117,4 +118,46 @@ fn a_row_that_is_off_is_named() {
     let run = folder.run("watch column.toml off.csv --once --robot-error 0.05mm");
     assert_eq!(run.code, 1);
     assert!(run.out.contains("row 26: WRONG"), "{}", run.out);
+}
+
+/// Chosen configurations keep 2 deg from the limits and one turn; a stated margin is kept to, and limits that no robot has are named.
+#[test]
+fn configurations_stay_within_a_turn_and_away_from_the_limits() {
+    let folder = Folder::new();
+    folder.write("robot.urdf", ROBOT);
+    let planned = |words: &str| {
+        let run =
+            folder.run(&format!("plan robot.urdf --count 40 --judge 20 --force --out joints.csv {words}"));
+        assert_eq!(run.code, 0, "{}", run.err);
+        let text = folder.read("joints.csv");
+        let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+        let of = |row: &str| row.split(',').skip(3).map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+        let rows: Vec<Vec<f64>> = rows.map(of).collect();
+        let extreme = |joint: usize| {
+            rows.iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it[joint]), b.max(it[joint])])
+        };
+        (run, [extreme(1), extreme(5)])
+    };
+    let (usual, [second, sixth]) = planned("");
+    assert!(usual.out.contains("limits of more than a turn, taken within one: joint6"), "{}", usual.out);
+    // Limits of -105 to 175 deg; planned lists go to the ends.
+    assert!(second[0] >= -103.0 && second[1] <= 173.0 && second[0] < -95.0, "{second:?}");
+    assert!(sixth[0] >= -180.0 && sixth[1] <= 180.0, "{sixth:?}");
+    let (_, [second, _]) = planned("--margin 20deg,0mm");
+    assert!(second[0] >= -85.0 && second[1] <= 155.0, "{second:?}");
+    assert!(!usual.err.contains("placeholders"), "{}", usual.err);
+    // Every joint by 401 deg to either side, as models are exported of which nobody stated the limits.
+    let wide: Vec<String> = ROBOT
+        .lines()
+        .map(|line| match line.trim_start().starts_with("<limit") {
+            true => "<limit lower=\"-7\" upper=\"7\" effort=\"10\" velocity=\"1\"/>".to_owned(),
+            false => line.to_owned(),
+        })
+        .collect();
+    folder.write("robot.urdf", wide.join("\n"));
+    let (run, [second, _]) = planned("");
+    let words = "every joint has the limits -401 to 401 deg, which are placeholders";
+    assert!(run.err.contains(words) && second[0] >= -180.0 && second[1] <= 180.0, "{second:?} {}", run.err);
+    assert!(folder.done("check robot.urdf").split_whitespace().collect::<Vec<_>>().join(" ").contains(words));
 }

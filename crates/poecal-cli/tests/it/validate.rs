@@ -48,6 +48,38 @@ fn folder() -> Folder {
     folder
 }
 
+/// The gain over the nominal model is asked for by itself: rows of the calibrated robot show it, those of another one or too few do not.
+#[test]
+fn a_gain_is_required_of_rows_that_judge() {
+    let folder = folder();
+    let judge =
+        |words: &str| folder.run(&format!("validate poecal-out/calibration.json {words} --history none"));
+    let clear = judge("inside.csv --require-gain");
+    assert_eq!((clear.code, clear.err.as_str()), (0, ""), "{}", clear.out);
+    assert!(clear.out.contains("\ngain          the error of the nominal model is "), "{}", clear.out);
+    let json: serde_json::Value = serde_json::from_str(&judge("inside.csv --json").out).unwrap();
+    assert_eq!(json["verdict"]["gain"], "clear");
+    let [factor, from, to] = ["factor", "from", "to"].map(|key| json["improvement"][key].as_f64().unwrap());
+    // Simulated errors of 1 deg and 2 mm an axis are hundreds of times the noise; what noise leaves of the improvement is scatter of few rows.
+    assert!(1.0 < from && from <= factor && factor <= to && factor > 20.0, "{json}");
+    // Of another robot the calibrated model is no better than the nominal one.
+    let lost = judge("other.csv --require-gain");
+    assert_eq!(lost.code, 1);
+    assert!(
+        lost.err
+            .contains("not what --require-gain asks for: on these rows the error of the nominal model is"),
+        "{}",
+        lost.err
+    );
+    // Two rows of three numbers are fewer than the frame's and the target's unknowns.
+    let rows = folder.read("inside.csv");
+    folder.write("few.csv", rows.lines().take(3).collect::<Vec<_>>().join("\n") + "\n");
+    let few = judge("few.csv --require-gain");
+    assert_eq!(few.code, 1);
+    assert!(few.err.contains("too few to compare it with the nominal model"), "{}", few.err);
+    assert_eq!(judge("few.csv").code, 0);
+}
+
 #[test]
 fn a_promise_is_required_of_all_rows_or_of_those_inside() {
     let folder = folder();

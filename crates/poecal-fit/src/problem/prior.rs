@@ -35,8 +35,9 @@ pub struct Prior {
     drifts: Vec<f64>,
     terms: Vec<JointTerm>,
     term_priors: Vec<TermPrior>,
-    /// Whether terms have a prior.
+    /// Whether terms have a prior, and drifts of clocks.
     terms_count: bool,
+    clocks_count: bool,
 }
 
 /// Prior standard deviation of a term of a joint's value, in the unit of its coefficient.
@@ -97,6 +98,7 @@ impl Prior {
             terms: robot.terms.clone(),
             term_priors: Vec::new(),
             terms_count: true,
+            clocks_count: true,
         }
     }
 
@@ -128,6 +130,14 @@ impl Prior {
         let screws: usize = counted.map(|axis| if axis.turns { 4 } else { 2 }).sum();
         let free = screws.saturating_sub(if self.base_free { 6 } else { 0 }).max(1);
         (2.0 * self.at_best_base(estimate).0.cost_of_axes() / free as f64).max(1.0)
+    }
+
+    /// The same of the axes alone, and of the terms alone: parts that have a size each.
+    #[must_use]
+    pub fn parts(&self) -> [Self; 2] {
+        let without = Prior { targets: Vec::new(), clocks_count: false, ..self.clone() };
+        let terms = Prior { axes: Vec::new(), base_free: false, ..without.clone() };
+        [without.without_terms(), terms]
     }
 
     /// Deviations after a motion of the base.
@@ -209,7 +219,9 @@ impl Prior {
         if self.terms_count {
             self.add_terms(estimate, layout, weight, normal);
         }
-        self.add_clocks(estimate, layout, weight, normal);
+        if self.clocks_count {
+            self.add_clocks(estimate, layout, weight, normal);
+        }
         // Products of each unknown's column with those of the base.
         let by_base = deviations.by_base.as_ref().filter(|_| !normal.gram.is_empty());
         let mut shared: Vec<(usize, Vector6<f64>)> = Vec::new();

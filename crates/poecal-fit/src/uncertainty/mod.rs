@@ -11,6 +11,7 @@ mod neighbours;
 mod order;
 mod pattern;
 mod prediction;
+mod prior_size;
 mod refit;
 mod remainder;
 mod share;
@@ -29,6 +30,7 @@ pub use share::Shares;
 pub use view::{PriorInformation, View};
 
 use motions::{motions, products};
+use prior_size::own_size;
 
 use std::f64::consts::TAU;
 
@@ -40,6 +42,7 @@ use crate::state::{Estimate, Linkage, Packed, Sight};
 use poecal_model::measurement::{ByQuantity, Quantity};
 use poecal_model::robot::JointKind;
 use poecal_numerics::linalg::{self, Factor};
+use poecal_numerics::solve::Normal;
 
 /// Configurations whose columns share one matrix: enough for a quick product, few enough for the cache.
 const TOGETHER: usize = 32;
@@ -66,16 +69,17 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Covariance of a fit, theory.md §9 (39), from the upper triangle of its whitened `JᵀJ` and its unknowns. `None` if a number is not
+    /// Covariance of a fit, theory.md §9 (39) and (39d), from its whitened normal equations and its unknowns. `None` if a number is not
     /// finite.
     #[must_use]
-    pub fn new(view: &View<'_>, layout: Layout, gram: &[f64], found: &Discrepancy) -> Option<Self> {
+    pub fn new(view: &View<'_>, layout: Layout, normal: &Normal, found: &Discrepancy) -> Option<Self> {
+        let gram = &normal.gram;
         let outside = (found.extrapolation > found.scatter)
             .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
         let sampled = ranges(&view.session, view.rows);
         Some(Uncertainty {
             estimate: view.estimate.clone(),
-            covariance: inflated(gram, layout.dim(), view, found.scatter)?,
+            covariance: own_size(inflated(gram, layout.dim(), view, found.scatter)?, normal, view),
             covariance_outside: outside.flatten(),
             sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
             layout,

@@ -17,6 +17,8 @@ pub struct PriorInformation {
     pub normal: Normal,
     /// Whether the fit contained the prior; if not, it only bounds undetermined directions.
     pub is_fitted: bool,
+    /// The parts of it that are of the joints' axes and of their terms; none of a prior that the fit did not contain.
+    pub parts: Vec<Normal>,
     /// Weight that the fit gave it beside whitened residuals; none if that was the variance of these.
     pub weight: Option<f64>,
 }
@@ -25,22 +27,32 @@ impl PriorInformation {
     /// The information of a prior at an estimate (theory.md §6 (27a)); without a prior, `I/(0.03 L)²` (theory.md §9, below (39)).
     #[must_use]
     pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
+        if let Some(prior) = prior {
+            return Self::of_weight((prior, 1.0 / prior.looseness(estimate)), estimate, layout);
+        }
         let n = layout.dim();
         let mut normal = Normal::new(n);
-        match prior {
-            Some(prior) => prior.add(estimate, layout, 1.0 / prior.looseness(estimate), &mut normal),
-            None => {
-                let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
-                normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
-            }
-        }
-        PriorInformation { normal, is_fitted: prior.is_some(), weight: None }
+        let information = 1.0 / (PLAUSIBLE * length_m).powi(2);
+        normal.gram.iter_mut().step_by(n + 1).for_each(|value| *value = information);
+        PriorInformation { normal, is_fitted: false, parts: Vec::new(), weight: None }
+    }
+
+    /// The information of a prior of some weight that was in the fit.
+    #[must_use]
+    pub fn of_weight((prior, weight): (&Prior, f64), estimate: &Estimate, layout: &Layout) -> Self {
+        let of = |prior: &Prior| {
+            let mut normal = Normal::new(layout.dim());
+            prior.add(estimate, layout, weight, &mut normal);
+            normal
+        };
+        let parts = prior.parts().iter().map(of).collect();
+        PriorInformation { normal: of(prior), is_fitted: true, parts, weight: None }
     }
 
     /// No information of `n` unknowns.
     #[must_use]
     pub fn none(n: usize) -> Self {
-        PriorInformation { normal: Normal::new(n), is_fitted: false, weight: None }
+        PriorInformation { normal: Normal::new(n), is_fitted: false, parts: Vec::new(), weight: None }
     }
 
     /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.

@@ -48,6 +48,28 @@ pub(crate) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
     ends
 }
 
+/// Joints that move below a link, each with the first end link that it moves, in the order of the file.
+pub(crate) fn beyond(tree: &Tree, link: usize) -> Vec<(String, String)> {
+    let below = joints_below(tree);
+    let children = |link: usize| below.get(link).map_or(&[][..], Vec::as_slice);
+    // Parents before their children.
+    let mut order = children(link).to_vec();
+    let mut at = 0;
+    while let Some(&joint) = order.get(at) {
+        order.extend(children(tree.joints[joint].child));
+        at += 1;
+    }
+    let mut ends: Vec<usize> = tree.joints.iter().map(|joint| joint.child).collect();
+    for &joint in order.iter().rev() {
+        if let Some(&next) = children(tree.joints[joint].child).first() {
+            ends[joint] = ends[next];
+        }
+    }
+    order.sort_unstable();
+    let moving = order.into_iter().filter(|&joint| tree.joints[joint].kind.moves());
+    moving.map(|joint| (tree.joints[joint].name.to_owned(), tree.link_name(ends[joint]).to_owned())).collect()
+}
+
 /// The links below a moving joint from which several of the ends lead on, such as a flange with two tools, the nearest to the ends first; each
 /// with the number of moving joints above it.
 pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usize, usize)> {

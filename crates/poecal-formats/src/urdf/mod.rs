@@ -47,6 +47,7 @@ pub struct UrdfDocument {
     ends: Vec<End>,
     /// Pose in the base of the link from which the chain leads down: the base itself, or one that it is joined to by fixed joints.
     base_from_top: Pose,
+    beyond: Vec<(String, String)>,
     made_from: Option<&'static str>,
 }
 
@@ -99,6 +100,7 @@ impl UrdfDocument {
             parts,
             ends,
             base_from_top,
+            beyond: ends::beyond(&tree, chain.tip),
             made_from: None,
         })
     }
@@ -114,6 +116,12 @@ impl UrdfDocument {
     pub fn selection(&self) -> ChainSelection {
         let links: Vec<&str> = self.ends.iter().map(|end| end.link.as_str()).collect();
         ChainSelection::of(&self.robot, &links)
+    }
+
+    /// Joints beyond the tip link, which the robot does not have, each with an end link that it moves.
+    #[must_use]
+    pub fn beyond(&self) -> &[(String, String)] {
+        &self.beyond
     }
 
     /// The same, made from a file of another form.

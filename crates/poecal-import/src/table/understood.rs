@@ -112,5 +112,21 @@ impl Reader<'_> {
         };
         let columns = columns.join(", ");
         self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
+        self.warn_of_joints_beyond(path, layout);
+    }
+
+    /// Says that a file has readings of joints beyond the tip link.
+    fn warn_of_joints_beyond(&mut self, path: &Path, layout: &ColumnLayout) {
+        let of_column = |name: &str| {
+            let plain = name.split('[').next().unwrap_or(name).trim();
+            self.options.beyond_tip.iter().find(|(joint, _)| joint == plain)
+        };
+        let mut found = layout.ignored.iter().filter_map(|(name, _)| of_column(name));
+        let Some((joint, end)) = found.next() else { return };
+        let more = if found.next().is_some() { " and others" } else { "" };
+        self.found.warnings.push(format!(
+            "{}: has readings of `{joint}`{more}, beyond the tip link: if what was measured moves with it, state the link that carries it, like `--tip-link {end}`",
+            path.display()
+        ));
     }
 }

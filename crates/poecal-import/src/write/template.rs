@@ -73,13 +73,13 @@ pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
     Ok(format!("{text}{columns}\n"))
 }
 
-/// A table of `count` random configurations within the limits (±180° and ±0.5 m where there are none). Every twentieth is the first again,
+/// A table of `count` random configurations within the limits with some margin, within a turn (±180° and ±0.5 m where there are none). Every twentieth is the first again,
 /// which shows repeatability and drift.
 pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
     let names = robot.reading_names();
     let units = reading_units(&names, robot)?;
     let mut text = format!(
-        "# {count} configurations to measure, random within the limits of the joints (180 deg, 500 mm to either side where a joint has none).\n\
+        "# {count} configurations to measure, random within the limits of the joints, 2 deg and 5 mm from them (180 deg, 500 mm to either side where a joint has none).\n\
          # COLLISIONS ARE NOT CHECKED, in them or on the way, nor whether the device sees the target there: go through\n\
          # them slowly or in simulation first, and replace or leave out what does not work. Every twentieth is the first again, which\n\
          # shows how well the robot repeats and whether anything drifts. What they would determine: poecal identify\n\
@@ -87,7 +87,7 @@ pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
         reading_header(&names, &units)
     );
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let configurations = Configurations::new(robot);
+    let configurations = Configurations::new(robot).to_measure();
     let first = configurations.random(&mut generator);
     for row in 1..=count {
         let again = row == 1 || row % RETURN_EVERY == 0;

@@ -60,6 +60,8 @@ pub struct Limits {
 impl Limits {
     /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits where none are known.
     pub const PLACEHOLDER_M: f64 = 100.0;
+    /// One turn (rad), with room for rounded numbers.
+    pub const TURN_RAD: f64 = std::f64::consts::TAU + 1e-3;
     /// Number (rad, m) beyond which a limit is none: files write 1e16 or infinity where there is none.
     pub const NONE_BEYOND: f64 = 1e5;
 

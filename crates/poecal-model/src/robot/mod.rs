@@ -297,6 +297,37 @@ impl Robot {
     }
 }
 
+impl Robot {
+    /// That the limits of the joints are placeholders, a sentence: all that turn have the same, and more than a turn to either side.
+    #[must_use]
+    pub fn placeholder_limits(&self) -> Option<String> {
+        let turning = self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute);
+        let limits: Vec<Limits> = turning.map(|joint| joint.limits).collect::<Option<_>>()?;
+        let first = *limits.first().filter(|_| limits.len() > 2)?;
+        let is_wide = first.lower < -Limits::TURN_RAD && first.upper > Limits::TURN_RAD;
+        (is_wide && limits.iter().all(|it| *it == first)).then(|| {
+            format!(
+                "every joint has the limits {:.0} to {:.0} deg, which are placeholders: state the limits of the robot in the model",
+                first.lower.to_degrees(),
+                first.upper.to_degrees()
+            )
+        })
+    }
+
+    /// Readings of joints that turn by more than one turn within their limits.
+    #[must_use]
+    pub fn readings_beyond_a_turn(&self) -> Vec<String> {
+        let is_beyond = |name: &String| {
+            let mut own = self.joints.iter().filter(|joint| joint.reading.name == *name);
+            own.any(|joint| {
+                let span = joint.limits.map_or(0.0, |it| it.upper - it.lower);
+                joint.kind == JointKind::Revolute && span > Limits::TURN_RAD
+            })
+        };
+        self.reading_names().iter().filter(|name| is_beyond(name)).cloned().collect()
+    }
+}
+
 /// Refuses a name that is too long for messages and tables.
 ///
 /// # Errors

@@ -54,6 +54,28 @@ impl Configurations {
         self
     }
 
+    /// Usual distance from the limits, where controllers do not stop yet: 2°, 5 mm.
+    pub const MARGIN: [f64; 2] = [2.0 * std::f64::consts::PI / 180.0, 5e-3];
+
+    /// The same with the usual margin and within a turn: what a robot is asked to reach.
+    #[must_use]
+    pub fn to_measure(self) -> Self {
+        self.within(Self::MARGIN).within_a_turn()
+    }
+
+    /// The same with turning readings within one turn, about zero as far as the range allows: further turns are the same poses.
+    #[must_use]
+    pub fn within_a_turn(mut self) -> Self {
+        let half = std::f64::consts::PI;
+        for (kind, lower, upper) in &mut self.readings {
+            if *kind == ReadingKind::Angle && *upper - *lower > 2.0 * half {
+                let middle = 0.0_f64.clamp(*lower + half, *upper - half);
+                (*lower, *upper) = (middle - half, middle + half);
+            }
+        }
+        self
+    }
+
     /// The configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
     #[must_use]
     pub fn nearest(&self, readings: &[f64]) -> Vec<f64> {

@@ -88,7 +88,7 @@ pub(crate) fn keep_measurable(
         .filter(|&at| {
             let found = checker.measured(&list[at * width..(at + 1) * width]);
             // Where the robot was, no limit of a model forbids.
-            let found = found.filter(|&it| it != Obstacle::Limits || conditions.margin != [0.0; 2]);
+            let found = found.filter(|&it| it != Obstacle::Limits || conditions.margin.is_some());
             refusals.add(found);
             found.is_none()
         })

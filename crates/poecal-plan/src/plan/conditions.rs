@@ -29,8 +29,9 @@ const AT_TARGET_M: f64 = 1e-3;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conditions {
-    /// How far every joint stays from its limits: turning, radians, and sliding, metres.
-    pub margin: [f64; 2],
+    /// How far every joint stays from its limits: turning, radians, and sliding, metres. Unless it is stated: [`Configurations::MARGIN`] where
+    /// configurations are chosen freely, and none of a list.
+    pub margin: Option<[f64; 2]>,
     /// Boxes into which no part of the robot may reach, by two corners, metres.
     pub keep_out: Vec<[[f64; 3]; 2]>,
     /// Height above which all links that move stay, metres.
@@ -147,7 +148,10 @@ impl Refusals {
 /// Conditions of a robot, ready to judge configurations.
 pub(crate) struct Checker<'a> {
     robot: &'a Robot,
+    /// Ranges of chosen configurations: with their margin, within a turn.
     configurations: Configurations,
+    /// Ranges of listed ones.
+    allowed: Configurations,
     conditions: &'a Conditions,
     avoided: &'a [f64],
     travel: Travel,
@@ -159,7 +163,8 @@ pub(crate) struct Checker<'a> {
 
 impl<'a> Checker<'a> {
     pub(crate) fn new(robot: &'a Robot, conditions: &'a Conditions) -> Self {
-        let configurations = Configurations::new(robot).within(conditions.margin);
+        let within = |usual| Configurations::new(robot).within(conditions.margin.unwrap_or(usual));
+        let (configurations, allowed) = (within(Configurations::MARGIN).within_a_turn(), within([0.0; 2]));
         let capsules = &conditions.capsules;
         let before = |body: Body| body.joint().map(|joint| robot.body_before(joint));
         let are_neighbours = |a: Body, b: Body| a == b || before(a) == Some(b) || before(b) == Some(a);
@@ -192,6 +197,7 @@ impl<'a> Checker<'a> {
         Checker {
             robot,
             configurations,
+            allowed,
             conditions,
             avoided: &[],
             travel: Travel::new(robot, 1.0),
@@ -205,14 +211,14 @@ impl<'a> Checker<'a> {
         Checker { avoided, travel: Travel::new(self.robot, length_m), ..self }
     }
 
-    /// Ranges of the readings with their margin.
+    /// Ranges of chosen readings.
     pub(crate) fn configurations(&self) -> &Configurations {
         &self.configurations
     }
 
     /// What forbids the robot to be there; the device aside.
     pub(crate) fn robot(&self, readings: &[f64]) -> Option<Obstacle> {
-        if !self.configurations.contain(readings) {
+        if !self.allowed.contain(readings) {
             return Some(Obstacle::Limits);
         }
         let Conditions { keep_out, floor_m, capsules, .. } = self.conditions;

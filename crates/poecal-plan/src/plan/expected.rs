@@ -35,9 +35,11 @@ impl ExpectedErrors {
     pub(crate) fn seen(experiment: &Experiment, squares: &Squares, [noise, terms]: [f64; 2]) -> Self {
         let (robot, rest) = (experiment.robot_error_m, experiment.rest_m);
         let of_terms = (robot * robot - rest * rest).max(0.0) * terms;
+        // Chosen rows may leave less of the terms than random ones do in the limit, which is the robot error that is stated.
+        let beyond = (squares.terms - of_terms).max(0.0);
         ExpectedErrors {
-            undetermined_m: (squares.expected() - of_terms).max(0.0).sqrt(),
-            robot_m: (of_terms + rest * rest * noise).sqrt(),
+            undetermined_m: (squares.true_noise + beyond).max(0.0).sqrt(),
+            robot_m: (of_terms.min(squares.terms) + rest * rest * noise).sqrt(),
             corrected_undetermined_m: squares.corrected.max(0.0).sqrt(),
             corrected_robot_m: experiment.left_m * noise.sqrt(),
         }
@@ -125,4 +127,41 @@ pub(crate) fn enough(curve: &[CurvePoint]) -> Option<usize> {
         (0..2).all(|k| then[k] >= (1.0 - WORTH_IT) * now[k])
     };
     curve.iter().find(gains_little).map(|point| point.count)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::plan::{PlanOptions, PlannedFit, plan};
+    use nalgebra::Vector3;
+    use poecal_model::simulate::elbow;
+
+    /// What more rows would remove falls with their number and is never nothing, three targets in a configuration or one.
+    #[test]
+    fn more_rows_always_remove_something() {
+        for targets in [1, 3] {
+            let fit = PlannedFit {
+                count: 60,
+                targets,
+                target_offset: Some(Vector3::new(0.1, 0.0, 0.05)),
+                ..PlannedFit::default()
+            };
+            let options = PlanOptions { fit, candidates: 400, ..PlanOptions::default() };
+            let curve = plan(&elbow(), &options).unwrap().curve;
+            let left_mm: Vec<f64> = curve.iter().map(|it| 1e3 * it.expected.undetermined_m).collect();
+            println!("{targets} targets: {left_mm:.4?} mm");
+            // What noise leaves falls with the root of the number. Of the chosen rows each is worth less than those before, and of what terms leave
+            // the share is chance, so that half of that is asked for.
+            for (few, more) in curve.iter().zip(&curve[1..]) {
+                let root = (few.count as f64 / more.count as f64).sqrt();
+                let [few, more] = [few, more].map(|it| it.expected.undetermined_m);
+                assert!(more >= 0.5 * root * few && more < 1.05 * few, "{few} to {more}");
+            }
+            // The whole is the sum of squares of its parts.
+            let total = curve[0].expected;
+            assert!(
+                (total.calibrated_m().powi(2) - total.undetermined_m.powi(2) - total.robot_m.powi(2)).abs()
+                    < 1e-18
+            );
+        }
+    }
 }

@@ -144,6 +144,11 @@ impl<'a> Planner<'a> {
             refusals: self.refusals,
             left_out: self.left_out,
             without_limits: self.without_limits,
+            beyond_a_turn: if self.options.list.is_some() {
+                Vec::new()
+            } else {
+                self.experiment.robot.readings_beyond_a_turn()
+            },
         })
     }
 

@@ -31,6 +31,8 @@ pub struct Plan {
     pub left_out: Vec<(String, String)>,
     /// Joints without limits, which were taken within ±180° or ±0.5 m.
     pub without_limits: Vec<String>,
+    /// Joints whose limits span more than a turn, which were taken within one.
+    pub beyond_a_turn: Vec<String>,
     /// The way from row to row: sum of the largest turn of a joint, radians (of one that slides, over the length that a radian counts).
     pub travel_rad: f64,
 }

@@ -49,11 +49,6 @@ impl Squares {
         self.noise + self.terms
     }
 
-    /// Of the calibrated model, as it is.
-    pub(crate) fn expected(&self) -> f64 {
-        self.true_noise + self.terms
-    }
-
     /// What is minimised.
     pub(crate) fn value(&self, weights: &Weights) -> f64 {
         weights.calibrated * self.calibrated() + weights.corrected * self.corrected

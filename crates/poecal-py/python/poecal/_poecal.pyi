@@ -2331,7 +2331,7 @@ def plan(
     tolerance_deg_mm: _Pair | None = ...,
     corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
-    margin_deg_mm: _Pair = (0.0, 0.0),
+    margin_deg_mm: _Pair | None = None,
     keep_out_mm: Sequence[ArrayLike] | None = None,
     floor_mm: _Number | None = None,
     separation_deg: _Number | None = None,
@@ -2397,7 +2397,7 @@ def plan(
     gravity
         Where gravity pulls, in the robot's base frame, default (0, 0, -1).
     margin_deg_mm
-        How far every joint stays from its limits.
+        How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
     keep_out_mm
         Boxes into which no part of the robot may reach, each two corners in the base frame.
     floor_mm
@@ -2471,7 +2471,7 @@ def plan(
     tolerance_deg_mm: _Pair | None = ...,
     corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
-    margin_deg_mm: _Pair = (0.0, 0.0),
+    margin_deg_mm: _Pair | None = None,
     keep_out_mm: Sequence[ArrayLike] | None = None,
     floor_mm: _Number | None = None,
     separation_deg: _Number | None = None,

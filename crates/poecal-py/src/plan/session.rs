@@ -48,7 +48,7 @@ pub(super) struct Aim<'a, 'py> {
 
 /// Where the robot may be.
 pub(super) struct Room<'a, 'py> {
-    pub(super) margin_deg_mm: (f64, f64),
+    pub(super) margin_deg_mm: Option<(f64, f64)>,
     pub(super) keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
     pub(super) floor_mm: Option<f64>,
     pub(super) separation_deg: Option<f64>,
@@ -114,7 +114,7 @@ impl Session<'_, '_> {
             ("tolerance_deg_mm", !usual),
             ("corrections", believe.corrections.is_some()),
             ("gravity", believe.gravity.is_some()),
-            ("margin_deg_mm", room.margin_deg_mm != (0.0, 0.0)),
+            ("margin_deg_mm", room.margin_deg_mm.is_some()),
             ("keep_out_mm", room.keep_out_mm.is_some()),
             ("floor_mm", room.floor_mm.is_some()),
             ("separation_deg", room.separation_deg.is_some()),
@@ -202,10 +202,13 @@ fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -
     let (capsules, notes) = if is_avoiding { capsules_of(model) } else { Default::default() };
     crate::warn(py, &notes)?;
     Ok(Conditions {
-        margin: [
-            size("margin_deg_mm", room.margin_deg_mm.0, f64::to_radians)?,
-            size("margin_deg_mm", room.margin_deg_mm.1, from_mm)?,
-        ],
+        margin: match room.margin_deg_mm {
+            Some((angle, length)) => {
+                let name = "margin_deg_mm";
+                Some([size(name, angle, f64::to_radians)?, size(name, length, from_mm)?])
+            }
+            None => None,
+        },
         keep_out: boxes.enumerate().map(named).collect::<PyResult<_>>()?,
         floor_m: room.floor_mm.map(from_mm),
         separation_rad: angle("separation_deg", room.separation_deg)?.unwrap_or(0.0),

@@ -37,10 +37,10 @@ impl CalibrationFile {
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let judgement = self.judged(data, refit_frame, refit_tool)?;
         let Some(file) = self.corrected() else { return Ok(judgement) };
-        let Judgement { calibrated: errors, promised, in_sampled_range, rows, .. } =
+        let Judgement { calibrated: errors, promised, in_sampled_range, improvement, rows, .. } =
             file.judged(data, refit_frame, refit_tool)?;
         let corrected = Some(JudgedModel { errors, promised, in_sampled_range });
-        Ok(Judgement { corrected, rows, ..judgement })
+        Ok(Judgement { corrected, improvement, rows, ..judgement })
     }
 
     /// [`CalibrationFile::judge`] with the device's frame refitted where that stands elsewhere than at the calibration, and the rows show it: the

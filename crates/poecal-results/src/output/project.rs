@@ -20,8 +20,6 @@ const README: &str = include_str!("project/README.md");
 
 /// Numbers of rows that are planned: with fewer nothing is to choose, of more all lists are alike.
 const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
-/// How far joints stay from their limits, radians and metres: controllers stop at these.
-const MARGIN: [f64; 2] = [0.035, 0.002];
 /// Candidates of a list: few, since it is a beginning; of more than eight joints as many fewer as the square of their number grows, which is how
 /// the time of each grows.
 fn candidates(joints: usize) -> usize {
@@ -84,11 +82,7 @@ impl Project<'_> {
             fit: PlannedFit { session, count: rows - judge, robot_error: self.model.left_error(), ..usual },
             judge: Some(judge),
             candidates: candidates(robot.joints.len()),
-            conditions: Conditions {
-                margin: MARGIN,
-                capsules: capsules_of(self.model).0,
-                ..Conditions::default()
-            },
+            conditions: Conditions { capsules: capsules_of(self.model).0, ..Conditions::default() },
             with_curve: false,
             seed: self.seed,
             ..PlanOptions::default()

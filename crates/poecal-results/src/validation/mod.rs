@@ -12,7 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use super::calibration_file::CalibrationFile;
 use super::record::Record;
-use poecal_calibrate::{AcceptanceLimits, AcceptedModel, JudgedError, Judgement, Level, Promise, Refitted};
+use poecal_calibrate::{
+    AcceptanceLimits, AcceptedModel, Gain, JudgedError, Judgement, Level, Promise, Refitted,
+};
 use poecal_import::{InputEntry, JoinEntry};
 use poecal_model::measurement::{Dataset, Measured, Quantity};
 use poecal_numerics::error::Result;
@@ -54,6 +56,9 @@ pub struct ValidationVerdict {
     pub reasons: Vec<String>,
     /// The model that is delivered.
     pub model: AcceptedModel,
+    /// Whether it predicts these measurements better than the nominal model; absent where they are too few.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gain>,
     /// Its errors.
     #[serde(flatten)]
     pub errors: Measured<VerdictError>,
@@ -230,7 +235,8 @@ impl ValidationVerdict {
                 inside_bound95: part.map(|it| it.inside_bound95),
             })
         });
-        ValidationVerdict { level, reasons, model: found.model, errors }
+        let gain = judgement.improvement.map(|it| it.gain());
+        ValidationVerdict { level, reasons, model: found.model, gain, errors }
     }
 }
 

@@ -145,7 +145,7 @@ fn limits(found: &Acceptance) -> Markup {
                     tr {
                         td { (limit.quantity) " " (limit.statistic.words()) " at most " (plain(limit.limit)) " " (limit.unit) }
                         td { (number(limit.found)) " " (limit.unit) }
-                        td { (number(limit.from)) " to " @if let Some(to) = limit.to { (number(to)) " " (limit.unit) } @else { "not shown" } }
+                        td { @if limit.from > 0.0 { (number(limit.from)) " to " } @else { "at most " } @if let Some(to) = limit.to { (number(to)) " " (limit.unit) } @else { "not shown" } }
                         td { b { (limit.decision.words()) } }
                     }
                 }
