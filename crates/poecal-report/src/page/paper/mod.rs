@@ -27,6 +27,7 @@ pub(crate) const STYLE: &str = "
 .attested .top img { max-width: 10rem; max-height: 4rem; }
 .attested dl { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.4rem; margin: 0; }
 .attested dl div { display: grid; grid-template-columns: 8rem 1fr; border-bottom: 1px solid #d9dde3; padding: .12rem 0; min-height: 1.5em; }
+.attested dl div.wide { grid-column: 1 / -1; }
 .attested dt { color: #52606d; }
 .attested dd { margin: 0; overflow-wrap: anywhere; }
 .attested .result { display: grid; grid-template-columns: 1fr 1fr; gap: .3rem 1.4rem; margin: .2rem 0; }
@@ -51,6 +52,9 @@ main > .attested { border: 0; margin: 0; padding: 0; }
 @media print { main { padding: 0; max-width: none; } }
 ";
 
+/// Letters of an entry from which on it takes both columns.
+const WIDE: usize = 50;
+
 /// The page with its only sheet.
 pub(crate) fn page(title: &str, version: &str, sheet: &Markup) -> Page {
     // The page is the whole document: no heads and feet beside it.
@@ -70,13 +74,12 @@ pub(crate) fn stated(
 ) -> Markup {
     let known = record.entries();
     let text = |key: &str| known.iter().find(|it| it.0 == key).map(|it| it.2.to_owned());
-    html! {
-        dl {
-            @for (key, label) in entries {
-                div { dt { (label) } dd { (text(key).or_else(|| instead(key)).unwrap_or_default()) } }
-            }
-        }
-    }
+    let entry = |&(key, label): &(&'static str, &'static str)| {
+        let text = text(key).or_else(|| instead(key)).unwrap_or_default();
+        let class = (text.chars().count() >= WIDE).then_some("wide");
+        html! { div class=[class] { dt { (label) } dd { (text) } } }
+    };
+    html! { dl { @for it in entries { (entry(it)) } } }
 }
 
 /// The first few files with their checksums.

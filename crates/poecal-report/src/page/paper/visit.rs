@@ -160,8 +160,9 @@ fn range([from, to]: [f64; 2], unit: &str) -> String {
 /// The shift of a joint's zero as found.
 fn shift_words(joint: &SightEntry) -> Option<String> {
     let (shift, sigma) = joint.shift.zip(joint.sigma_shift)?;
-    let sign = if shift > 0.0 { "+" } else { "" };
-    Some(format!("{sign}{} ± {} {}", decimal(shift, 3), decimal(sigma, 3), joint.unit))
+    let value = decimal(shift, 3);
+    let sign = if shift > 0.0 && value.contains(|c| ('1'..='9').contains(&c)) { "+" } else { "" };
+    Some(format!("{sign}{value} ± {} {}", decimal(sigma, 3), joint.unit))
 }
 
 /// A sentence, cut where it would take a part of the page.
