@@ -19,6 +19,13 @@ use poecal_results::record::Record;
 const MOST_JOINTS: usize = 12;
 /// Letters of a sentence that are printed at most.
 const LONGEST: usize = 320;
+/// Smaller than a certificate, since it has two tables.
+const STYLE: &str = "
+.visit { font-size: .72rem; line-height: 1.25; }
+.visit h1 { font-size: 1.5rem; }
+.visit h2 { margin: .5rem 0 .15rem; }
+.visit .hands span { min-height: 3.2rem; }
+";
 /// What the page states of the robot and its cell; what is missing is a blank line to write on.
 const STATED: [(&str, &str); 8] = [
     ("certificate", "Certificate"),
@@ -65,8 +72,8 @@ pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> P
     let robot = file.record.clone().overridden(&told.record);
     let instead = |key: &str| (key == "robot").then(|| file.robot.name.clone());
     let sheet = html! {
-        style { (PreEscaped(paper::STYLE)) }
-        section.attested aria-label="Visit" {
+        style { (PreEscaped(paper::STYLE)) (PreEscaped(STYLE)) }
+        section.attested.visit aria-label="Visit" {
             div.top { h1 { "Check of a calibrated robot" } }
             (paper::stated(&robot, &STATED, instead))
             h2 { "Result" }
@@ -81,7 +88,6 @@ pub fn visit_page(told: &Track, file: &CalibrationFile, time: Option<&str>) -> P
             (paper::files(std::iter::once(&told.inputs.calibration).chain(&told.inputs.measurements), &told.inputs.sha256))
             @if let Some(note) = &told.record.note { p { (short(note)) } }
             (paper::hands("Checked by"))
-            p.small { "Made by poecal " (told.poecal_version) @if let Some(day) = day { " on " (day) } "." }
         }
     };
     paper::page(&title, told.poecal_version, &sheet)
