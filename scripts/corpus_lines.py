@@ -8,7 +8,7 @@ import re
 
 WORDS = {
     "KINDS": "pose|mixed|relative|point|component|distance|ball-bar|distance-change|sphere|socket|plane|height|flush|direction",
-    "FORMS": "urdf|toml|poe|dh|mdh|hayati|origins|ur|xarm|franka|pal|lerobot|mjcf|sdf|usd|csv|offsets|c",
+    "FORMS": "urdf|toml|poe|dh|mdh|hayati|origins|ur|xarm|franka|pal|lerobot|mjcf|sdf|usd|csv|offsets|tf|c",
     "CLOSED": "kuka|fanuc|staubli|yaskawa|abb",
     "SHELLS": "bash|elvish|fish|powershell|zsh",
     "COMMANDS": "init|plan|identify|simulate|board|watch|calibrate|check|import|hand-eye|tcp|detect|report|certificate|export|apply|offsets"

@@ -12,6 +12,7 @@ export function showArm(place, data) {
     scene = new Scene(data);
   } catch {
     place.innerHTML = '<p class="note">This browser has no WebGL, which the picture that turns needs: it is drawn from two sides.</p>';
+    place.parentElement.classList.add("no-webgl");
     return;
   }
   const still = document.getElementById("still");
@@ -211,6 +212,8 @@ function shownControls(view) {
   };
   add("nominal arm", "nominal", true);
   add(residualWords(view.scene), "arrows", true);
+  const { worst, rows } = view.scene.arrows;
+  if (worst.size < rows.count) add(`all ${rows.count} residuals, not only the ${worst.size} largest`, "all arrows", false);
   const reach = view.scene.reachShare > 0 && add("reachable, but not measured", "reach", false);
   const kinds = deviceWords(view);
   add(kinds ? `${kinds} and names` : "names", "instruments", true);

@@ -6,15 +6,27 @@ import { roomForArrows } from "./places.js";
 const UP = new Vector3(0, 1, 0);
 const NOTHING = new Matrix4().makeScale(0, 0, 0);
 
-/** Room for each arrow, metres: many are shorter, so that they stay apart. */
-export function roomOf({ rows, instruments }, size) {
-  return Math.min(0.06 * size * Math.min(1, Math.sqrt(300 / rows.count)), ...instruments.map((it) => roomForArrows(it, size)));
+/** How many residuals the picture begins with: the largest. */
+const WORST = 100;
+
+/** Room for each arrow, metres. */
+export function roomOf({ instruments }, size) {
+  return Math.min(0.06 * size, ...instruments.map((it) => roomForArrows(it, size)));
+}
+
+/** The rows of the largest errors. */
+function worstOf({ error_mm }) {
+  const order = error_mm.map((_, row) => row).sort((a, b) => error_mm[b] - error_mm[a] || a - b);
+  return new Set(order.slice(0, WORST));
 }
 
 export class Arrows {
   constructor({ rows }, size, room, material) {
     const isArrow = (shift) => shift !== null;
     this.rows = rows;
+    this.worst = worstOf(rows);
+    // Whether all are drawn, and not the worst alone.
+    this.all = false;
     this.has = { arrows: rows.residual.some(isArrow), dots: !rows.residual.every(isArrow) };
     const width = Math.min(size * (rows.count > 800 ? 0.0013 : 0.0024), room / 30);
     this.dots = new InstancedMesh(new SphereGeometry(size * (rows.count > 800 ? 0.004 : 0.0075), 10, 8), material, rows.count);
@@ -28,11 +40,16 @@ export class Arrows {
 
   /** Puts every arrow where its target was predicted, so many times as long as it is. */
   place(factor) {
-    if (this.placed === factor) return;
-    this.placed = factor;
+    const placed = `${factor} ${this.all}`;
+    if (this.placed === placed) return;
+    this.placed = placed;
     const { rows } = this;
     rows.predicted.forEach((from, row) => {
       const shift = rows.residual[row];
+      if (!this.all && !this.worst.has(row)) {
+        for (const mesh of [this.dots, this.shafts, this.heads]) mesh.setMatrixAt(row, NOTHING);
+        return;
+      }
       this.dots.setMatrixAt(row, shift ? NOTHING : new Matrix4().makeTranslation(...from));
       const arrow = scale(shift ?? [0, 0, 0], 1e-3 * factor);
       const length = Math.max(Math.hypot(...arrow), 1e-6);

@@ -218,6 +218,10 @@ export class Scene {
 
   show(part, on) {
     if (part === "instruments") this.instruments.show(on);
+    else if (part === "all arrows") {
+      this.arrows.all = on;
+      this.arrows.place(this.arrowScale);
+    }
     else this.parts[part].visible = on;
     this.render();
   }

@@ -4,6 +4,7 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
+import { pathToFileURL } from "node:url";
 import { launch, open, skip } from "./browser.mjs";
 import { ROOT, calibrate, folder, poecal } from "./cases.mjs";
 
@@ -116,8 +117,31 @@ describe("paper", { skip: noPaper }, () => {
         reaches.slice(0, -1).forEach((it, k) => assert.ok(it > FILLED, `page ${k + 1} ends at ${it} of its height`));
         // The robot is on the second page, drawn by WebGL or as lines.
         assert.equal(text[1].includes("From the side"), how === "without WebGL", how);
+        // What is said of the drawing is printed with it alone.
+        assert.equal(text[1].includes("nominal in grey, calibrated in colour"), how === "with WebGL", how);
         console.log(`${name}, ${how}: 1 + ${pages.length - 1} pages, printed to ${reaches.map((it) => `${Math.round(100 * it)} %`).join(", ")}`);
       }
     });
   }
+
+  test("a visit, with all that it can say, on one page", async () => {
+    // The session of poses of seven axes, from above.
+    const out = join(folder, "paper-seven-out");
+    const visit = join(folder, "paper-visit.html");
+    const long = ["note", "tool", "place", "payload"].flatMap((key) => ["--record", `${key}=${"long words ".repeat(18)}`]);
+    const said = [...stated.flatMap((it) => ["--record", it]), ...long];
+    poecal("track", join(out, "calibration.json"), join(folder, "paper-seven/measurements.csv"), "--report", visit, "--history", "none", ...said);
+    const page = await browser.newPage();
+    await page.goto(pathToFileURL(visit).href);
+    const pdf = join(folder, "visit.pdf");
+    await page.pdf({ path: pdf, preferCSSPageSize: true, printBackground: true });
+    await page.close();
+    const pages = wordsOf(pdf);
+    assert.equal(pages.length, 1);
+    const text = pages[0].words.map(({ word }) => word).join(" ");
+    for (const words of ["4711", "then now", "A. Example", "smallest visible shift", "To do", "Approved by: name, date, signature"]) assert.ok(text.includes(words), words);
+    const [picture] = picturesOf(pdf, 1);
+    assert.equal(ink(picture, [0, MARGIN_MM / 210]) + ink(picture, [1 - MARGIN_MM / 210, 1]), 0, "it is printed on to its edge");
+    console.log(`a visit: printed to ${Math.round(100 * reach(picture))} %`);
+  });
 });

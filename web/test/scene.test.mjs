@@ -3,6 +3,8 @@ import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
+import { Matrix4, MeshBasicMaterial } from "three";
+import { Arrows } from "../src/arrows.js";
 import { compose, invert, poseOf, subtract } from "../src/kinematics.js";
 import { launch, open, skip } from "./browser.mjs";
 import { ROOT, calibrate, dataOf, folder, poecal } from "./cases.mjs";
@@ -19,6 +21,28 @@ before(async () => {
   if (!skip) browser = await launch();
 });
 after(() => browser?.close());
+
+test("the picture begins with the hundred largest residuals", () => {
+  const count = 300;
+  const each = (value) => Array.from({ length: count }, (_, row) => value(row));
+  // Every third row is one of the largest errors; rows of dots have no shift.
+  const errors = each((row) => (row % 3 === 1 ? 2 : 1) + row / count / 10);
+  const rows = { count, error_mm: errors, predicted: each((row) => [row, 0, 0]), residual: each((row) => (row % 2 ? null : [0, 0, errors[row]])) };
+  const arrows = new Arrows({ rows }, 1, 0.06, new MeshBasicMaterial());
+  const drawn = () => {
+    const has = (mesh, row) => {
+      const matrix = new Matrix4();
+      mesh.getMatrixAt(row, matrix);
+      return matrix.determinant() !== 0;
+    };
+    return each((row) => has(arrows.dots, row) || (has(arrows.shafts, row) && has(arrows.heads, row)));
+  };
+  arrows.place(10);
+  assert.deepEqual(drawn(), each((row) => row % 3 === 1));
+  arrows.all = true;
+  arrows.place(10);
+  assert.deepEqual(drawn(), each(() => true));
+});
 
 /** A binary STL of a surface about z: radius and height of its rings. */
 function stl(rings, around) {

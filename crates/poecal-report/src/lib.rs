@@ -45,7 +45,8 @@ pub use identify::Identify;
 pub use judgement::{judged, judgement};
 pub use offsets::Offsets;
 pub use page::{
-    Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page, validation_page,
+    Attest, calibration_page, calibration_page_with, certificate_page, fleet_page, plan_page,
+    validation_page, visit_page,
 };
 pub use plan::Plan;
 pub use summary::{Detail, summary, unsaid};

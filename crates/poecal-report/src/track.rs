@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use super::table::line;
-use super::track_entries::{ExplanationEntry, InvisibleEntry, SightEntry, shown, sight_table};
+use super::track_entries::{ExplanationEntry, InvisibleEntry, SightEntry, Use, shown, sight_table, to_do};
 use poecal_model::robot::JointKind;
 use poecal_numerics::text::visible;
 use poecal_results::calibration_file::{CalibrationFile, RepairedPart};
+use poecal_results::record::Record;
 use poecal_results::track::{JudgedBy, Repaired, State, Tracked, Witnesses};
 use poecal_results::validation::{TRACK, ValidationInputs};
 
@@ -21,25 +22,31 @@ pub struct Track {
     pub robot: String,
     /// What was judged, and by what.
     pub inputs: ValidationInputs,
+    /// What is stated of the visit, not of the calibration's session.
+    #[serde(skip_serializing_if = "Record::is_empty")]
+    pub record: Record,
     state: State,
     judged_by: JudgedBy,
-    rows: usize,
+    /// Where the measuring device is stated to be, and how the tool was mounted: words of `--device` and `--tool`.
+    device: &'static str,
+    tool: &'static str,
+    pub(crate) rows: usize,
     repeated: usize,
     explanation: Option<ExplanationEntry>,
     alternatives: Vec<ExplanationEntry>,
     /// Joints of whose zeros no shift is visible.
-    invisible: Vec<InvisibleEntry>,
-    joints: Vec<SightEntry>,
+    pub(crate) invisible: Vec<InvisibleEntry>,
+    pub(crate) joints: Vec<SightEntry>,
     /// Root mean square change of measured places beside what is free, millimetres.
-    change_mm: f64,
+    pub(crate) change_mm: f64,
     /// The same of what the explanation leaves.
     left_mm: f64,
     /// Standard deviation of a coordinate of such a change, millimetres, and its degrees of freedom; null of a known one.
-    noise_mm: f64,
+    pub(crate) noise_mm: f64,
     freedom: Option<f64>,
     /// Root mean square error of the delivered model in this visit, millimetres.
-    error_mm: f64,
-    notes: Vec<String>,
+    pub(crate) error_mm: f64,
+    pub(crate) notes: Vec<String>,
 }
 
 /// What repeats of chosen configurations would show.
@@ -65,7 +72,7 @@ impl WitnessPlan {
             configurations: found.configurations.len(),
             are_new,
             noise_mm: 1e3 * found.sigma_m,
-            joints: found.joints.iter().map(SightEntry::of).collect(),
+            joints: found.joints.iter().map(|it| SightEntry::of(it, &[])).collect(),
             invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
         }
     }
@@ -132,14 +139,17 @@ impl Track {
             poecal_version: env!("CARGO_PKG_VERSION"),
             robot: robot.to_owned(),
             inputs,
+            record: Record::default(),
             state: found.state,
             judged_by: found.judged_by,
+            device: if found.options.device_is_known { "known" } else { "anew" },
+            tool: if found.options.tool_is_anew { "anew" } else { "same" },
             rows: found.rows,
             repeated: found.repeated,
             explanation: found.explanation.as_ref().map(ExplanationEntry::of),
             alternatives: found.alternatives.iter().map(ExplanationEntry::of).collect(),
             invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
-            joints: found.joints.iter().map(SightEntry::of).collect(),
+            joints: found.joints.iter().map(|it| SightEntry::of(it, &found.ranges)).collect(),
             change_mm: 1e3 * found.change_m,
             left_mm: 1e3 * found.left_m,
             noise_mm: 1e3 * found.noise_m,
@@ -147,6 +157,12 @@ impl Track {
             error_mm: 1e3 * found.error_m,
             notes: found.notes.clone(),
         }
+    }
+
+    /// The same with what is stated of the visit.
+    #[must_use]
+    pub fn with_record(self, record: Record) -> Self {
+        Track { record, ..self }
     }
 
     /// What changed, in a sentence.
@@ -171,32 +187,72 @@ impl Track {
     }
 
     /// The state with what changed.
-    fn state_words(&self) -> String {
+    pub(crate) fn state_words(&self) -> String {
         match (&self.explanation, self.state) {
             (Some(_), State::Changed) => format!("changed: {}", self.answer()),
             (..) => self.answer(),
         }
     }
 
-    /// The table.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let mut out = String::new();
-        let by = match self.judged_by {
+    /// By what it was judged.
+    pub(crate) fn judged_words(&self) -> String {
+        match self.judged_by {
             JudgedBy::Repeats => format!(
                 "{} of {} rows that repeat earlier ones, measured against measured",
                 self.repeated, self.rows
             ),
             JudgedBy::Model => format!("the model, at {} rows", self.rows),
+        }
+    }
+
+    /// What the explanation leaves of the change.
+    pub(crate) fn left_words(&self) -> Option<String> {
+        let left = || format!(", {:.3} mm of which the explanation leaves", self.left_mm);
+        self.explanation.as_ref().map(|_| left())
+    }
+
+    /// The level of the calibration after the visit, by its level before.
+    pub(crate) fn level_words(&self, before: &str) -> String {
+        match (self.state, self.explanation.as_ref().map(|it| to_do(it).0)) {
+            (State::Unchanged, _) | (State::Changed, Some(Use::Whole)) => before.to_owned(),
+            (State::Changed, Some(Use::Axes)) => format!("axes: {before}; tool: do not use"),
+            (State::Changed, Some(Use::None) | None) => "do not use".to_owned(),
+        }
+    }
+
+    /// What to do after the visit.
+    pub(crate) fn to_do(&self) -> String {
+        let Some(found) = &self.explanation else {
+            return match self.state {
+                State::Unchanged => "Nothing: the calibration stays in use.".to_owned(),
+                State::Changed => "Do not use the calibration: calibrate again.".to_owned(),
+            };
         };
+        let (_, words) = to_do(found);
+        let apart = if self.alternatives.is_empty() {
+            ""
+        } else {
+            " First tell the explanations apart: repeat more configurations of the calibration."
+        };
+        format!("{words}.{apart}")
+    }
+
+    pub(crate) fn device_words(&self) -> &'static str {
+        if self.device == "known" { "where it was" } else { "set up anew: its place is fitted" }
+    }
+
+    pub(crate) fn tool_words(&self) -> &'static str {
+        if self.tool == "anew" { "mounted anew: its targets are fitted" } else { "on the flange as it was" }
+    }
+
+    /// The table.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
         line(&mut out, "robot", &self.robot);
         line(&mut out, "state", &self.state_words());
-        line(&mut out, "judged by", &by);
-        let left = if self.explanation.is_some() {
-            format!(", {:.3} mm of which the explanation leaves", self.left_mm)
-        } else {
-            String::new()
-        };
+        line(&mut out, "judged by", &self.judged_words());
+        let left = self.left_words().unwrap_or_default();
         line(
             &mut out,
             "change",

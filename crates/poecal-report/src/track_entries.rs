@@ -4,12 +4,15 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use poecal_fit::analysis::JointCoverage;
 use poecal_numerics::text::visible;
 use poecal_results::track::{Explanation, JointSight, Kind, Unseen};
 
 /// What explains the changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ExplanationEntry {
+    #[serde(skip)]
+    pub(crate) of: Kind,
     pub(crate) kind: &'static str,
     /// The joint of it; of two zeros both, null where it is of none.
     pub(crate) joint: Option<String>,
@@ -50,6 +53,14 @@ pub(crate) struct SightEntry {
     /// Smallest shift of its zero that is visible with 95 %; null where none is.
     pub(crate) smallest: Option<f64>,
     pub(crate) sigma: Option<f64>,
+    /// Part of its range that the visit samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) sampled: Option<[f64; 2]>,
+    /// Shift of its zero as found beside the explanation, and its standard deviation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) shift: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) sigma_shift: Option<f64>,
 }
 
 /// Word of a kind.
@@ -89,13 +100,22 @@ pub(crate) fn shown(value: f64, slides: bool) -> f64 {
     if slides { 1e3 * value } else { value.to_degrees() }
 }
 
+/// The part of a range that rows sample, in the units of a page.
+pub(crate) fn sampled(found: &JointCoverage, slides: bool) -> [f64; 2] {
+    [found.sampled_min, found.sampled_max].map(|it| shown(it, slides))
+}
+
 impl SightEntry {
-    pub(crate) fn of(it: &JointSight) -> Self {
+    pub(crate) fn of(it: &JointSight, ranges: &[JointCoverage]) -> Self {
+        let range = ranges.iter().find(|range| range.joint == it.joint);
         SightEntry {
             joint: it.joint.clone(),
             unit: if it.slides { "mm" } else { "deg" },
             smallest: Some(shown(it.smallest, it.slides)).filter(|_| it.unseen.is_none()),
             sigma: Some(shown(it.sigma, it.slides)).filter(|it| it.is_finite()),
+            sampled: range.map(|range| sampled(range, it.slides)),
+            shift: it.shift.map(|shift| shown(shift.value, it.slides)),
+            sigma_shift: it.shift.map(|shift| shown(shift.sigma, it.slides)),
         }
     }
 }
@@ -119,6 +139,7 @@ impl ExplanationEntry {
         let other = if is_pair { own(1) } else { None };
         let millimetres = length.filter(|_| !share);
         ExplanationEntry {
+            of: found.kind,
             kind: kind(found.kind),
             joint: name(0).filter(|_| is_of_joint),
             other_joint: name(1).filter(|_| is_pair),
@@ -145,6 +166,58 @@ impl ExplanationEntry {
             _ => self.kind.to_owned(),
         }
     }
+}
+
+/// Whether programs and the calibration are used on, and what to do, by what explains the changes.
+pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
+    let joint = found.joint.as_deref().map(visible).unwrap_or_default();
+    let named = found.named();
+    match found.of {
+        Kind::Device => (
+            Use::Whole,
+            "Nothing on the robot: the measuring device is not where it was. Find out whether it or the robot's base was moved".to_owned(),
+        ),
+        Kind::Tool => (
+            Use::Axes,
+            "Look at the tool and its mounting. Measure its tip again (`poecal tcp`), or state `--tool anew` if it was taken off".to_owned(),
+        ),
+        Kind::Target => {
+            (Use::Axes, format!("Fasten the {named}, or do without it: measure the visit again with the other targets"))
+        }
+        Kind::Lengths => (
+            Use::None,
+            "Measure again at the temperature of the calibration, after the same warming up; if it stays, calibrate again".to_owned(),
+        ),
+        Kind::Zero => (
+            Use::None,
+            format!(
+                "Look at motor, encoder, belt and brake of {joint}, and set its mastering again. If nothing is found, calibrate its zero: `poecal track --recalibrate {joint} --out FILE`"
+            ),
+        ),
+        Kind::Axis => (
+            Use::None,
+            format!(
+                "Look for damage at {joint}. Calibrate its axis (`poecal track --recalibrate {joint}.axis --out FILE`), or the whole robot again"
+            ),
+        ),
+        Kind::Give => {
+            (Use::None, format!("Look at bearing, gear and balancer of {joint}, and at the payload; then calibrate again"))
+        }
+        Kind::TwoZeros => {
+            (Use::None, format!("Look at the mastering of {named}; then calibrate again"))
+        }
+    }
+}
+
+/// How far a calibration is used after a visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Use {
+    /// As before.
+    Whole,
+    /// The axes as before, the tool not.
+    Axes,
+    /// Not at all.
+    None,
 }
 
 /// An explanation with its size.

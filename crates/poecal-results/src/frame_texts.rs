@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use poecal_arm::lie::{Pose, rotation};
+use poecal_storage::numbers::shortest;
 
 /// A frame by the names of its parent and its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,9 +142,9 @@ impl NamedFrame {
             listed(self.pose.translation.as_slice(), " "),
             format!("# {name}: X Y Z (mm)"),
             listed(&millimetres, " "),
-            format!("# {name}: ROS 2, with the axes of the flange"),
+            format!("# {name}: ROS 2, with the axes of {}", self.parent),
             self.static_transform_publisher(),
-            format!("# {name}: URDF, with the axes of the flange"),
+            format!("# {name}: URDF, with the axes of {}", self.parent),
             self.urdf_joint(),
         ]
         .join("\n")
@@ -153,8 +154,9 @@ impl NamedFrame {
     /// All short forms, each under its name.
     #[must_use]
     pub fn short_forms(&self) -> String {
-        let rows: Vec<String> =
-            self.matrix().iter().map(|row| format!("  [{}]", listed(row, ", "))).collect();
+        // All digits, for programs that read it.
+        let digits = |row: &[f64; 4]| row.map(|it| shortest(it + 0.0)).join(", ");
+        let rows: Vec<String> = self.matrix().iter().map(|row| format!("  [{}]", digits(row))).collect();
         let millimetres: Vec<f64> = self.pose.translation.iter().map(|it| 1e3 * it).collect();
         let [a, b, c] = self.rpy().map(f64::to_degrees);
         let [qx, qy, qz, qw] = self.pose.quaternion_xyzw();

@@ -21,6 +21,7 @@ const FORMS = {
   usd: ["USD physics", "usda"],
   csv: ["origins of the joints, a row each", "csv"],
   offsets: ["joint offsets that come nearest", "json"],
+  tf: ["what was located, as transforms", "txt"],
   c: ["arrays of C for a controller", "h"],
   urdf: ["the URDF again, of the model below", "urdf"],
 };

@@ -105,6 +105,8 @@ impl CoverageSums {
 pub struct JudgedError {
     /// Length of measured minus predicted.
     pub length: f64,
+    /// Measured minus predicted by component, of vectors in the device's axes; NaN where one was not measured.
+    pub residual: [f64; Quantity::MOST_COMPONENTS],
     /// What was promised; `None` without uncertainty.
     pub promised: Option<Promise>,
 }
@@ -132,9 +134,18 @@ pub struct JudgedRow {
 impl JudgedRow {
     /// A row of which nothing was promised.
     pub(crate) fn of(error: &RowError) -> Self {
-        let errors =
-            Measured::of(|quantity| Some(JudgedError { length: error.length(quantity)?, promised: None }));
+        let errors = Measured::of(|quantity| JudgedError::of(error, quantity, None));
         JudgedRow { errors, inside_sampled_range: true, corners: None }
+    }
+}
+
+impl JudgedError {
+    /// Of a quantity, if it was measured.
+    fn of(error: &RowError, quantity: Quantity, promised: Option<Promise>) -> Option<Self> {
+        let length = error.length(quantity)?;
+        let (measured, vector) = (error.measured(quantity), error.vector(quantity));
+        let residual = std::array::from_fn(|k| if measured[k] { vector[k] } else { f64::NAN });
+        Some(JudgedError { length, residual, promised })
     }
 }
 
@@ -189,7 +200,7 @@ impl PredictedUncertainty<'_> {
         let all = predicted.into_iter().zip(errors).zip(rows).map(|((predicted, error), &row)| {
             let own = session.noise_of(session.observation(row), noise);
             let errors = Measured::of(|quantity| {
-                let length = error.length(quantity)?;
+                error.length(quantity)?;
                 let of_robot = observed.covariance(&predicted, row, quantity);
                 // As many components as there are numbers.
                 let mut of_noise = Matrix3::zeros();
@@ -199,7 +210,7 @@ impl PredictedUncertainty<'_> {
                 let covariance = of_robot + of_noise;
                 let bound = predicted.quantiles[quantity].bound(&covariance);
                 let promised = Some(Promise { variance: covariance.trace(), bound });
-                Some(JudgedError { length, promised })
+                JudgedError::of(error, quantity, promised)
             });
             let inside_sampled_range = inside(robot, self.coverage, data.readings(row as usize));
             JudgedRow { errors, inside_sampled_range, corners: None }

@@ -83,7 +83,7 @@ pub(crate) struct Plan {
     /// .src (KUKA) or .ls (FANUC)
     #[arg(long, value_name = "FILE")]
     pub(crate) program: Option<PathBuf>,
-    /// Write a page of the plan (HTML): the robot in every configuration, the device, errors by number, how each joint is sampled
+    /// Write a page of the plan (HTML): the targets of all configurations, some arms, the device, errors by number, how each joint is sampled
     #[arg(long, value_name = "FILE")]
     pub(crate) report: Option<PathBuf>,
     #[command(flatten)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
+use poecal_results::record::Record;
 
 /// Place of a calibration's report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +34,9 @@ pub(crate) struct Report {
     /// File to write, a new one or a report of poecal [default: report.html beside the calibration]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+    /// What it states, beside and in place of what the calibration's record states, like serial=4711 (repeatable)
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
+    pub(crate) record: Vec<(String, String)>,
     /// Write over any file that exists
     #[arg(long)]
     pub(crate) force: bool,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use poecal_results::record::Record;
 
 use super::ReportPlace;
 use super::shared::{JUDGED, Meaning, RESULTS};
@@ -47,6 +48,12 @@ pub(crate) struct Track {
     /// Write over a file that exists
     #[arg(long, help_heading = RESULTS)]
     pub(crate) force: bool,
+    /// File for the page of the visit: then and now, on one page of A4 to sign
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["plan", "recalibrate"], help_heading = RESULTS)]
+    pub(crate) report: Option<PathBuf>,
+    /// What the page states of this visit, like operator=Mia (repeatable): the keys of `poecal calibrate`
+    #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair, conflicts_with_all = ["plan", "recalibrate"], help_heading = RESULTS)]
+    pub(crate) record: Vec<(String, String)>,
     /// File to which the check is appended as a line, or `none` [default: history.jsonl beside the calibration]
     #[arg(long, value_name = "FILE|none", help_heading = RESULTS)]
     pub(crate) history: Option<ReportPlace>,

@@ -259,6 +259,7 @@ const EXPORT_FORMAT: Words<ExportForm> = &[
     open(ExportFormat::Usd, "USD physics, as Isaac Sim reads it"),
     open(ExportFormat::Csv, "Origins of the joints, a row each"),
     open(ExportFormat::Offsets, "The joint offsets, base and tool that come nearest, JSON"),
+    open(ExportFormat::Tf, "What was located, camera or tool and board or device: ROS 2, URDF, quaternions"),
     open(ExportFormat::C, "Arrays of C for kinematics on a controller, with what joints do"),
     closed("kuka", "KUKA's absolute accuracy is a file on the robot's own memory"),
     closed("fanuc", "FANUC's geometry is closed, and mastering needs counts of encoders"),

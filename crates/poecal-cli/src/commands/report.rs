@@ -3,6 +3,7 @@
 use poecal_numerics::error::Result;
 use poecal_results::calibration_file::CalibrationFile;
 use poecal_results::output::{self, Existing, FilePlace};
+use poecal_results::record::Record;
 use poecal_results::residuals::Residuals;
 
 use super::calibrate::page;
@@ -16,7 +17,9 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let path = arguments.residuals.clone().unwrap_or_else(|| beside("residuals.csv"));
     let existing = if arguments.force { Existing::Replaced } else { Existing::Own };
     let place = FilePlace::reserve(&out, existing, &[&arguments.calibration, &path], &mut console.warner())?;
-    let file = CalibrationFile::read(&arguments.calibration)?;
+    let stated = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let mut file = CalibrationFile::read(&arguments.calibration)?;
+    file.record = file.record.overridden(&stated);
     let residuals = Residuals::read(&path)?;
     let page =
         page(&file, &residuals, &arguments.calibration, console).map_err(|error| error.in_file(&path))?;

@@ -1,14 +1,16 @@
 //! `poecal track`: whether a robot is as it was calibrated.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use poecal_import as measurements;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
 use poecal_results::output::{Existing, FilePlace};
+use poecal_results::record::Record;
 use poecal_results::track::{Repaired, State, recalibrate, track as judged};
-use poecal_results::validation::ValidationInputs;
+use poecal_results::validation::{ValidationInputs, now};
 use poecal_storage::named_files::refuse_repeats;
 
 use super::kept::Kept;
@@ -16,11 +18,13 @@ use super::typed::command;
 use super::visits::{Stated, Visited};
 use crate::args::Track;
 use crate::console::Console;
+use crate::style::{labelled, shown};
 use crate::{DONE, WORSE};
 
 pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
-    let place = reserve(arguments, console)?;
+    let (place, page) = reserve(arguments, console)?;
+    let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let stated = Stated {
         calibration: &arguments.calibration,
         reference: &arguments.reference,
@@ -61,30 +65,35 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
         joins: read.joins.clone(),
         command: Some(command(typed)),
     };
-    let told = report::Track::new(&found, &file.robot.name, inputs);
+    let told = report::Track::new(&found, &file.robot.name, inputs).with_record(record);
+    if let Some(page) = page {
+        page.write(report::visit_page(&told, &file, now().as_deref()))?;
+    }
     history.append(|history, time| history.append(&told, time), console)?;
     if arguments.json {
         console.data(&report::json(&told)?)?;
     } else {
-        console.say(&told.text())?;
+        let written = arguments.report.as_deref().map(|path| labelled("report", &shown(path)));
+        console.say(&(told.text() + &written.unwrap_or_default()))?;
     }
     console.warnings(&found.notes);
     Ok(if found.state == State::Changed { WORSE } else { DONE })
 }
 
-/// The place of what is written, which only a plan and a calibration of one joint have.
-fn reserve(arguments: &Track, console: &Console) -> Result<Option<FilePlace>> {
+/// The places of what is written: of a plan or a calibration of one joint, and of the page of a visit.
+fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, Option<FilePlace>)> {
     if arguments.out.is_some() && arguments.plan.is_none() && arguments.recalibrate.is_none() {
         return ErrorKind::Option
             .refuse("--out: found a file to write, expected it with --plan or --recalibrate alone");
     }
-    match &arguments.out {
-        None => Ok(None),
-        Some(out) => {
-            let existing = Existing::forced(arguments.force);
-            FilePlace::reserve(out, existing, &arguments.inputs(), &mut console.warner()).map(Some)
-        }
-    }
+    let reserve = |path: &PathBuf| {
+        let existing = Existing::forced(arguments.force);
+        FilePlace::reserve(path, existing, &arguments.inputs(), &mut console.warner())
+    };
+    Ok((
+        arguments.out.as_ref().map(reserve).transpose()?,
+        arguments.report.as_ref().map(reserve).transpose()?,
+    ))
 }
 
 /// Writes a calibration of which one joint was calibrated anew, and says so.

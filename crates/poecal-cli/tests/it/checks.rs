@@ -53,6 +53,14 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     let number = |line: &str, at: usize| line.split(',').nth(at).unwrap().parse::<f64>().unwrap();
     let all: Vec<(f64, f64)> =
         rows.lines().skip(1).map(|line| (number(line, error), number(line, bound))).collect();
+    // Its components, with their signs, are those of the error.
+    let components = ["x[mm]", "y[mm]", "z[mm]"].map(column);
+    let is_signed = |line: &str| components.iter().any(|&at| number(line, at) < 0.0);
+    assert!(rows.lines().skip(1).any(is_signed));
+    for (line, (error, _)) in rows.lines().skip(1).zip(&all) {
+        let length = components.iter().map(|&at| number(line, at).powi(2)).sum::<f64>().sqrt();
+        assert!((length - error).abs() < 1e-12, "{line}");
+    }
     let inside = all.iter().filter(|(error, bound)| error <= bound).count() as f64 / all.len() as f64;
     let rms = (all.iter().map(|(error, _)| error * error).sum::<f64>() / all.len() as f64).sqrt();
     let own = &found["verdict"]["position_mm"];

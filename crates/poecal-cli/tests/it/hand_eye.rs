@@ -5,6 +5,7 @@ use std::fs;
 use poecal_arm::lie::{Pose, rotation};
 
 use crate::folder::Folder;
+use crate::session::calibration;
 
 /// Poses of the flange and of the target, from numbers without noise but for one thousandth of a degree.
 fn session(count: usize) -> Vec<(Pose, Pose)> {
@@ -132,6 +133,40 @@ fn every_form_of_poses_gives_the_same_camera() {
         let found = camera(&folder.done(&format!("hand-eye {name}.csv --camera in-hand --json"))).0;
         assert!(first.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{name}: {first:?} {found:?}");
     }
+}
+
+/// Of exact poses a calibration that holds the arm locates the camera where hand-eye does, and exports it in the same forms.
+#[test]
+fn a_calibration_exports_the_transform_that_hand_eye_finds() {
+    let folder = Folder::new();
+    folder.write("robot.urdf", crate::session::ROBOT);
+    folder.done("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
+    folder.done("hand-eye cell/measurements.csv --model robot.urdf --camera beside --out eye --frames base_link,tool,device,measured");
+    folder.done("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
+    folder.done("export poecal-out/calibration.json --format tf --out tf.txt");
+    let (own, theirs) = (folder.read("tf.txt"), folder.read("eye/transforms.txt"));
+    let heads = |text: &str| -> Vec<String> {
+        let mut all: Vec<_> = text.lines().filter(|line| line.starts_with('#')).map(str::to_owned).collect();
+        all.sort();
+        all
+    };
+    assert_eq!(heads(&own).len(), 14, "{own}");
+    let matrices = |text: &str, of: &str| -> Vec<f64> {
+        let (_, rest) = text.split_once(&format!("# {of}: 4 x 4 matrix, metres\n")).unwrap();
+        let matrix: Vec<Vec<f64>> = serde_json::from_str(rest.split_once("\n#").unwrap().0).unwrap();
+        matrix.concat()
+    };
+    let base = calibration(&folder, "poecal-out").robot;
+    let of = format!("{} from device", base.base_link);
+    let apart = matrices(&own, &of)
+        .iter()
+        .zip(matrices(&theirs, "base_link from device"))
+        .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    println!("{apart:e} m");
+    // Rounding of fits of 30 poses.
+    assert!(apart < 1e-12, "{apart:e}");
+    let run = folder.run("export robot.urdf --format tf --out no.txt");
+    assert!(run.code == 2 && run.err.contains("expected a calibration.json"), "{}", run.err);
 }
 
 #[test]

@@ -68,9 +68,13 @@ fn replaced_rows_leave_the_others_in_their_places() {
     let set = |row: &str| row.split(',').nth(1).map(str::to_owned);
     assert!(before.iter().zip(&after).all(|(a, b)| set(a) == set(b)));
     let page = folder.read("plan.html");
-    for words in ["The robot in every configuration", "How each joint is sampled", "From above"] {
+    for words in ["The robot and its targets", "How each joint is sampled", "From above"] {
         assert!(page.contains(words), "{words}");
     }
+    // Two pictures of eight arms at most, of three joints each, and the targets of all 20 configurations.
+    let arms = page.matches("stroke-opacity=\"0.4\"").count();
+    assert!(arms > 0 && arms <= 2 * 8 * 5, "{arms}");
+    assert!(page.contains("the target in all 20 configurations"));
     let run = folder.run("plan column.toml --keep joints.csv --replace 99 --out no.csv");
     assert!(run.code == 2 && run.err.contains("found row 99 to replace, expected one of the"), "{}", run.err);
 }

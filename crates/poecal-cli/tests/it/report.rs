@@ -51,6 +51,17 @@ fn the_report_made_again_is_the_same() {
 }
 
 #[test]
+fn a_report_states_the_session() {
+    let folder = session(Kind::POINT);
+    folder.done("calibrate robot.urdf measurements.csv --record serial=4711 --record operator=Walburga");
+    folder.done("report poecal-out/calibration.json --record operator=Quirin -o page.html");
+    let page = folder.read("page.html");
+    assert!(page.contains("4711") && page.contains(">Quirin<") && !page.contains(">Walburga<"));
+    let run = folder.run("report poecal-out/calibration.json --record colour=red -o other.html");
+    assert!(run.code == 2 && !folder.path("other.html").exists(), "{}", run.err);
+}
+
+#[test]
 fn the_file_names_what_it_was_made_of_and_how() {
     let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv --threads 1 --out a --held-out=0.2 --report none");

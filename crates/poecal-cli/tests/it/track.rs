@@ -25,6 +25,51 @@ fn the_same_rows_are_unchanged_and_a_line_of_the_history() {
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 2);
 }
 
+/// The page of a visit states both sessions, what was found and what to do; one that was signed is not written over.
+#[test]
+fn a_visit_is_a_page_to_sign() {
+    let folder = cell();
+    folder.done("calibrate cell/nominal.urdf cell/measurements.csv --out then --corrections off --record serial=4711 --record operator=Ann --record date=2026-05-28");
+    let rows = folder.read("cell/measurements.csv");
+    let shifted = rows.lines().map(|line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Some(third) = cells.get_mut(2)
+            && let Ok(value) = third.parse::<f64>()
+        {
+            *third = (value - 0.05).to_string();
+        }
+        cells.join(",")
+    });
+    folder.write("visit.csv", shifted.collect::<Vec<_>>().join("\n") + "\n");
+    let words = "track then/calibration.json visit.csv --repeatability 0.05mm --report visit.html --record operator=<Mia>";
+    let run = folder.run(words);
+    assert!(run.code == 1 && run.out.ends_with("report        visit.html\n"), "{}{}", run.out, run.err);
+    let page = folder.read("visit.html");
+    for words in [
+        "4711",
+        "Ann",
+        "&lt;Mia&gt;",
+        "2026-05-28",
+        "changed: joint3: zero by +0.050",
+        "<code>poecal track --recalibrate joint3 --out FILE</code>",
+        "do not use",
+        "Checked by: name, date, signature",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("<script"));
+    assert!(folder.read("then/history.jsonl").contains("\"record\":{\"operator\":\"<Mia>\"}"));
+    let run = folder.run(words);
+    assert!(run.code == 2 && run.err.contains("visit.html") && run.err.contains("--force"), "{}", run.err);
+    assert_eq!(folder.read("visit.html"), page);
+    let run = folder.run(&format!("{words} --force"));
+    assert_eq!((run.code, folder.read("visit.html") == page), (1, true), "{}", run.err);
+    let run = folder.run("track then/calibration.json --plan 8 --report plan.html");
+    assert!(run.code == 2 && !folder.path("plan.html").exists(), "{}", run.err);
+    let run = folder.run("track then/calibration.json visit.csv --report visit.csv --force");
+    assert!(run.code == 2 && run.err.contains("an input is never replaced"), "{}", run.err);
+}
+
 #[test]
 fn witnesses_are_planned_and_written() {
     let folder = cell();

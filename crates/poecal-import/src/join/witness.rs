@@ -6,10 +6,24 @@ use crate::write::{decimal, reading_header, reading_units};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
+use poecal_numerics::named_unit::NamedUnit;
+use poecal_numerics::unit::Unit;
 use poecal_storage::csv_text;
 
-/// Rows of some measurements without what was measured, as a file to fill in: their configurations, in order, with `id`, target and instrument where
-/// they have names, and empty columns for the numbers.
+/// Decimals of angles and lengths as they are typed into a controller, in degrees and millimetres: those of planned configurations.
+const DECIMALS: f64 = 1e4;
+
+/// A reading as it is typed into a controller; a factor as it is.
+fn typed(reading: f64, unit: NamedUnit) -> f64 {
+    if unit == NamedUnit::from(Unit::One) {
+        reading
+    } else {
+        unit.to_si((unit.from_si(reading) * DECIMALS).round() / DECIMALS)
+    }
+}
+
+/// Rows of some measurements without what was measured, as a file to fill in: their configurations, in order and to four decimals, with `id`, target and
+/// instrument where they have names, and empty columns for the numbers.
 ///
 /// # Errors
 /// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if a reading has a name that no column can have.
@@ -39,7 +53,7 @@ pub fn to_measure_again(
             let seen = &data.observations[row as usize];
             let _ = write!(out, "{}", number + 1);
             for (&reading, &unit) in data.readings(row as usize).iter().zip(&units) {
-                let _ = write!(out, ",{}", decimal(reading, unit, None));
+                let _ = write!(out, ",{}", decimal(typed(reading, unit), unit, None));
             }
             let names = [(&data.targets, seen.target), (&data.stations, seen.station)];
             for ((names, at), _) in names.into_iter().zip(named).filter(|(_, named)| *named) {
@@ -50,4 +64,18 @@ pub fn to_measure_again(
         }
     }
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_model::simulate::{Kind, Simulation, elbow};
+
+    #[test]
+    fn readings_have_four_decimals() {
+        let made = Simulation { count: 6, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
+        let data = made.data.as_if_at(&[0], &[0.123_456_789; 6], 6).unwrap();
+        let text = to_measure_again(&data, &[vec![0]], &made.nominal, false).unwrap();
+        assert_eq!(text.lines().last(), Some("1,7.0736,7.0736,7.0736,7.0736,7.0736,7.0736,,,"), "{text}");
+    }
 }

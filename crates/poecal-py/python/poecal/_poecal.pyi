@@ -836,10 +836,10 @@ class Residuals:
         """Instrument of each row; None where there is only one."""
     @property
     def position_mm(self) -> _Array:
-        """Residual of position by component, shape (m, 3), millimetres; NaN where no position was measured."""
+        """Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN where no position was measured."""
     @property
     def rotation_deg(self) -> _Array:
-        """Residual of rotation by component, shape (m, 3), degrees; NaN where no orientation was measured."""
+        """Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN where no orientation was measured."""
     @property
     def position_nominal_mm(self) -> _Array:
         """Error of position of the nominal model, shape (m,), millimetres; NaN where no position was measured."""
@@ -871,7 +871,7 @@ class Residuals:
     def quantities(self) -> dict[str, str]:
         """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
     def components(self, quantity: str) -> _Array:
-        """Residual of any quantity by component.
+        """Residual of any quantity of the delivered model by component.
 
         Parameters
         ----------
@@ -1139,7 +1139,7 @@ class Calibration:
         ----------
         format
             "urdf" (the one that was calibrated, with other numbers), "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka",
-            "pal", "lerobot", "mjcf", "sdf", "usd", "csv" or "offsets".
+            "pal", "lerobot", "mjcf", "sdf", "usd", "csv", "offsets", "tf" or "c".
         model
             "calibrated", geometry alone, or "corrected", whose terms of the joints a form of geometry leaves out, with a warning.
         hash
@@ -1165,13 +1165,15 @@ class Calibration:
         str
             The text.
         """
-    def report(self, path: _Path, *, force: bool = False) -> None:
+    def report(self, path: _Path, *, record: Mapping[str, str] | None = None, force: bool = False) -> None:
         """Writes the report, one HTML file.
 
         Parameters
         ----------
         path
             The file.
+        record
+            What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
         force
             Whether to write over a file that is no report of poecal.
         """
@@ -1659,7 +1661,7 @@ class Plan:
             Whether to write over a file that exists.
         """
     def write_report(self, path: _Path, *, force: bool = False) -> None:
-        """Writes a page of the plan: the robot in every configuration, the device, errors by number, how each joint is sampled.
+        """Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, how each joint is sampled.
 
         Parameters
         ----------
@@ -2496,6 +2498,9 @@ def track(
     device: Literal["anew", "known"] = "anew",
     tool: Literal["same", "anew"] = "same",
     repeatability_mm: _Number | None = None,
+    report: _Path | None = None,
+    record: Mapping[str, str] | None = None,
+    force: bool = False,
 ) -> Visit:
     """Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
 
@@ -2514,6 +2519,12 @@ def track(
         "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
     repeatability_mm
         Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+    report
+        File for the page of the visit: then and now, on one page of A4 to sign.
+    record
+        What the page states of this visit, as {"operator": "Mia"}.
+    force
+        Whether to write over a file that exists.
 
     Returns
     -------

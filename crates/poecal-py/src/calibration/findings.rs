@@ -1,5 +1,7 @@
 //! Results of `check`, `compare`, `identify`, `offsets` and `track`.
 
+use std::path::{Path, PathBuf};
+
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_fit::analysis::{self, PlannedSession};
 use poecal_fit::forensics;
@@ -9,8 +11,10 @@ use poecal_report as report;
 use poecal_report::Detail;
 use poecal_results::compare as compared;
 use poecal_results::offsets::ModelOffsets;
+use poecal_results::output::{Existing, FilePlace};
+use poecal_results::record::Record;
 use poecal_results::track::{Earlier, TrackOptions, track as tracked};
-use poecal_results::validation::ValidationInputs;
+use poecal_results::validation::{ValidationInputs, now};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -20,6 +24,7 @@ use crate::calibration::Calibration;
 use crate::errors::{python_words, raise};
 use crate::measurements::Measurements;
 use crate::paths;
+use crate::places::reserved_file;
 use crate::robot::Robot;
 use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma, sigmas};
 
@@ -286,13 +291,21 @@ pub(crate) fn compare(
 ///     "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
 /// repeatability_mm
 ///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+/// report
+///     File for the page of the visit: then and now, on one page of A4 to sign.
+/// record
+///     What the page states of this visit, as {"operator": "Mia"}.
+/// force
+///     Whether to write over a file that exists.
 ///
 /// Returns
 /// -------
 /// Visit
 ///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
 #[pyfunction]
-#[pyo3(signature = (calibration, measurements, earlier=None, *, device="anew", tool="same", repeatability_mm=None))]
+#[pyo3(signature = (calibration, measurements, earlier=None, *, device="anew", tool="same", repeatability_mm=None, report=None, record=None,
+                    force=false))]
+#[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn track(
     py: Python<'_>,
     calibration: &Calibration,
@@ -301,14 +314,34 @@ pub(crate) fn track(
     #[pyo3(from_py_with = arg::device)] device: &str,
     #[pyo3(from_py_with = arg::tool)] tool: &str,
     #[pyo3(from_py_with = arg::repeatability_mm)] repeatability_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::report)] report: Option<PathBuf>,
+    #[pyo3(from_py_with = arg::record)] record: Option<Record>,
+    #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<Findings> {
     let file = calibration.file();
     let options = visit_options(device, tool, repeatability_mm)?;
+    let page = report.map(|path| visit_place(py, &path, force, (calibration, measurements))).transpose()?;
     let earlier = earlier.map(|it| Earlier { data: it.data(), is_own: true });
     let data = measurements.data();
     let found = py.detach(|| tracked(file, data, earlier, &options)).map_err(raise)?;
-    let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default());
+    let told = report::Track::new(&found, &file.robot.name, ValidationInputs::default())
+        .with_record(record.unwrap_or_default());
+    if let Some(page) = page {
+        py.detach(|| page.write(report::visit_page(&told, file, now().as_deref()))).map_err(raise)?;
+    }
     Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.warned(&found.notes))
+}
+
+/// The place of the page of a visit, which is none of its inputs.
+fn visit_place(
+    py: Python<'_>,
+    path: &Path,
+    force: bool,
+    (calibration, measurements): (&Calibration, &Measurements),
+) -> PyResult<FilePlace> {
+    let names = measurements.source.names.iter().map(Path::new);
+    let inputs: Vec<&Path> = calibration.source().into_iter().chain(names).collect();
+    reserved_file(py, path, Existing::forced(force), &inputs)
 }
 
 /// What is known of a visit, by the words of `track` and `recalibrate`.

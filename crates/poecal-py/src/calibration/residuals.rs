@@ -147,13 +147,13 @@ impl Residuals {
         self.each(|rows, row| rows.stations.get(row.station).and_then(|name| named(name)))
     }
 
-    /// Residual of position by component, shape (m, 3), millimetres; NaN where no position was measured.
+    /// Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN where no position was measured.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.components_of(py, Quantity::Position)
     }
 
-    /// Residual of rotation by component, shape (m, 3), degrees; NaN where no orientation was measured.
+    /// Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN where no orientation was measured.
     #[getter]
     fn rotation_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.components_of(py, Quantity::Rotation)
@@ -224,7 +224,7 @@ impl Residuals {
         Ok(units)
     }
 
-    /// Residual of any quantity by component.
+    /// Residual of any quantity of the delivered model by component.
     ///
     /// Parameters
     /// ----------

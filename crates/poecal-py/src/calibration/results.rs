@@ -85,7 +85,7 @@ impl Calibration {
     /// ----------
     /// format
     ///     "urdf" (the one that was calibrated, with other numbers), "toml", "poe", "dh", "mdh", "hayati", "origins", "ur", "xarm", "franka",
-    ///     "pal", "lerobot", "mjcf", "sdf", "usd", "csv" or "offsets".
+    ///     "pal", "lerobot", "mjcf", "sdf", "usd", "csv", "offsets", "tf" or "c".
     /// model
     ///     "calibrated", geometry alone, or "corrected", whose terms of the joints a form of geometry leaves out, with a warning.
     /// hash
@@ -139,16 +139,22 @@ impl Calibration {
     /// ----------
     /// path
     ///     The file.
+    /// record
+    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
     /// force
     ///     Whether to write over a file that is no report of poecal.
-    #[pyo3(signature = (path, *, force=false))]
+    #[pyo3(signature = (path, *, record=None, force=false))]
     fn report(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
+        #[pyo3(from_py_with = arg::record)] record: Option<Record>,
         #[pyo3(from_py_with = arg::force)] force: bool,
     ) -> PyResult<()> {
-        let (file, residuals) = (self.file(), self.rows()?);
+        let residuals = self.rows()?;
+        let mut file = self.file().clone();
+        file.record = file.record.overridden(&record.unwrap_or_default());
+        let file = &file;
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
         let page = || {

@@ -138,7 +138,7 @@ impl Plan {
         self.put(py, &path, force, vec![text.into()])
     }
 
-    /// Writes a page of the plan: the robot in every configuration, the device, errors by number, how each joint is sampled.
+    /// Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, how each joint is sampled.
     ///
     /// Parameters
     /// ----------

@@ -3,8 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::advice::told_words;
-use super::errors::capital;
-use super::html::{HtmlTable, count, decimal, figure, figure_or, folded, plots, quoted, section};
+use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, folded, plots, quoted, section};
 use crate::plot::{HeatCell, HeatMap};
 use crate::summary::uncertainty;
 use crate::table::number;

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::html::{HtmlTable, decimal, figure, list, plots, quoted, scaled, section};
-use crate::plot::{Axis, Line, LinePlot, Scale};
+use crate::plot::{Axis, Band, Line, LinePlot, Scale};
 use crate::summary::has_terms;
 use poecal_calibrate::TermGroup;
 use poecal_model::robot::JointKind;
@@ -22,7 +22,8 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
             }
             (effects(found))
             (plots(&errors(file, found), "Error of each joint that explains most of the residuals in a part of its range: by the \
-                calibrated model, by the corrected one, and what the joint's own terms say, with one standard deviation to each side."))
+                calibrated model, by the corrected one, and what the joint's own terms say, less their mean, which is no error: its offset. The band is one \
+                standard deviation to each side."))
             @if !found.confused.is_empty() {
                 h3 { "Not told apart" }
                 (list(&found.confused.iter().enumerate().map(|(k, words)| quoted(words, format_args!("corrected.confused.{k}"))).collect::<Vec<_>>()))
@@ -61,6 +62,13 @@ fn effects(found: &CorrectedEntry) -> Markup {
     }
 }
 
+/// What a joint's terms say in the mean of its rows.
+fn mean_of_terms(found: &JointErrorsEntry) -> f64 {
+    let rows: usize = found.parts.iter().map(|part| part.rows).sum();
+    let sum: f64 = found.parts.iter().map(|part| part.rows as f64 * part.terms).sum();
+    sum / rows.max(1) as f64
+}
+
 /// Each joint's error over its range.
 fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
     let plot = |it: &JointErrorsEntry| {
@@ -74,12 +82,15 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
         };
         let line = |name: &str, style: usize, points| Line { name: name.to_owned(), style, points };
         let part = |k: usize| &it.parts[k];
+        let mean = mean_of_terms(it);
+        let terms = points(&|k| part(k).terms - mean);
+        let ends = terms.iter().zip(&it.parts);
+        let band = ends.map(|(&[at, value], part)| [at, value - part.sigma, value + part.sigma]);
+        let band = Band { style: 1, points: band.collect() };
         let lines = vec![
-            line("calibrated", 0, points(&|k| part(k).calibrated)),
-            line("corrected", 2, points(&|k| part(k).corrected)),
-            line("its terms", 1, points(&|k| part(k).terms)),
-            line("its terms ±", 3, points(&|k| part(k).terms - part(k).sigma)),
-            line("its terms ±", 3, points(&|k| part(k).terms + part(k).sigma)),
+            line("calibrated", 3, points(&|k| part(k).calibrated)),
+            line("corrected", 0, points(&|k| part(k).corrected)),
+            line("its terms ±", 1, terms),
         ];
         let plot = LinePlot {
             title: it.joint.clone(),
@@ -90,7 +101,7 @@ fn errors(file: &CalibrationFile, found: &CorrectedEntry) -> Vec<Markup> {
             lines,
             mark: None,
         };
-        PreEscaped(plot.svg())
+        PreEscaped(plot.banded(&band))
     };
     found.joint_errors.iter().filter(|it| it.parts.len() > 1).map(plot).collect()
 }

@@ -3,6 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::html::{decimal, figure, quoted};
+use crate::summary::delivered;
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Device;
 use poecal_results::calibration_file::{CalibrationFile, StationEntry};
@@ -69,7 +70,7 @@ pub(crate) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
     };
     html! {
         @if !arrows.is_empty() {
-            " Arrows go from the place of a target by the calibrated model " (arrows.join(", or ")) "."
+            " Arrows go from the place of a target by the " (delivered(file)) " model " (arrows.join(", or ")) "."
         }
         @if has_dots {
             " Dots are at the places of targets " @if !arrows.is_empty() { "whose residual is no shift in the picture" } @else { "that were measured" }

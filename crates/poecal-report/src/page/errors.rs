@@ -3,11 +3,11 @@
 use maud::{Markup, Render, html};
 
 use super::devices::devices;
-use super::html::{HtmlTable, count, facts, figure, figure_or, path, plots, section as titled};
+use super::html::{HtmlTable, capital, count, facts, figure, figure_or, path, plots, section as titled};
 use super::lead::{kinds_words, sign, spaced};
 use super::{corners, figures};
 use crate::found::found_words;
-use crate::summary::{ModelRow, has_terms, leading};
+use crate::summary::{ModelRow, cross_validated, delivered, has_terms, leading};
 use crate::table::{STATISTICS, further_words, models};
 use poecal_calibrate::{Improvements, ModelAccuracy, NoiseSource, SetAccuracy};
 use poecal_model::measurement::{Device, Quantity};
@@ -24,12 +24,6 @@ pub(crate) fn error_words(quantity: Quantity, of: &str) -> String {
     };
     let of = if of.is_empty() { String::new() } else { format!(" {of}") };
     capital(&format!("{} error{of}{unit}", quantity.name()))
-}
-
-/// Words with a capital letter.
-pub(crate) fn capital(words: &str) -> String {
-    let (first, rest) = words.split_at(words.len().min(1));
-    format!("{}{rest}", first.to_uppercase())
 }
 
 /// Errors of the rows that were held out, or if there are none of those fitted, by each model, and what was measured.
@@ -63,18 +57,13 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                         "judge."
                     }
                 }
-                @if let (None, Some(found)) = (held_out, &file.cross_validation) {
-                    @if let Some((quantity, key, rms)) = found.random.rms.leading_key() {
-                        p.note {
-                            "Cross-validation: " (figure(rms, format_args!("cross_validation.random.{key}"))) " " (sign(quantity.unit()))
-                            " (RMS) on rows that were not fitted."
-                        }
-                    }
+                @if let (None, Some(found)) = (held_out, cross_validated(file)) {
+                    p.note { "Cross-validation: " (figure(found.rms, found.key)) " " (sign(found.quantity.unit())) " (RMS) on rows that were not fitted." }
                 }
                 p.note {
-                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the joint axes are corrected too. "
-                    @if has_terms(file) { b { "Corrected" } ": with them what the joints do beyond geometry. " }
-                    "The gain of the calibration is the difference."
+                    b { "Before" } ": your model, with only tool and device located. " b { "After" } ": the " (delivered(file)) " model, with corrected joint axes"
+                    @if has_terms(file) { " and what the joints do beyond geometry; " b { "calibrated" } " is its geometry alone, which a URDF can hold" }
+                    ". The gain of the calibration is the difference."
                 }
                 (facts(&the_facts(file, residuals)))
             }

@@ -2,13 +2,14 @@
 
 use maud::{Markup, PreEscaped};
 
+use super::html::capital;
 use super::lead::Lead;
 use crate::plot::{Axis, Line, LinePlot, RangePlot, RangeRow, Scale};
-use crate::summary::has_terms;
+use crate::summary::delivered;
 use poecal_model::robot::JointKind;
 use poecal_numerics::threads;
 use poecal_results::calibration_file::CalibrationFile;
-use poecal_results::residuals::Residuals;
+use poecal_results::residuals::{ResidualRow, Residuals};
 
 /// Points of a distribution.
 const STEPS: usize = 20;
@@ -18,21 +19,15 @@ pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
     let lead = Lead::of(residuals);
     let held_out = file.accuracy.held_out.is_some();
     // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
-    let lines = [(1, "registered"), (2, "calibrated")].into_iter().map(|(model, name)| {
+    let line = |name: &str, style: usize, error: &dyn Fn(&ResidualRow) -> Option<f64>| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-        let errors = rows.filter_map(|row| lead.models(row)?.get(model).copied()).collect();
-        // The same colours as the residuals of the calibrated model everywhere else.
-        Line { name: name.to_owned(), style: [1, 3, 0][model], points: distribution(errors) }
-    });
-    let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
-    // A corrected model without terms is the calibrated one.
-    let corrected: Vec<f64> =
-        rows.filter(|_| has_terms(file)).filter_map(|row| lead.corrected(row)).collect();
-    let corrected = (!corrected.is_empty()).then(|| Line {
-        name: "corrected".to_owned(),
-        style: 2,
-        points: distribution(corrected),
-    });
+        Line { name: name.to_owned(), style, points: distribution(rows.filter_map(error).collect()) }
+    };
+    // The same colour as the residuals everywhere else.
+    let lines = vec![
+        line("registered", 3, &|row| lead.registered(row)),
+        line(delivered(file), 0, &|row| lead.error(row)),
+    ];
     let name = lead.name();
     let plot = LinePlot {
         title: format!("Distribution of the {name} error"),
@@ -41,7 +36,7 @@ pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
         ),
         x: Axis::new(&format!("{name} error, {} (logarithmic)", lead.unit()), Scale::Log),
         y: Axis::new("share of the rows below, %", Scale::Linear).including(&[0.0, 100.0]),
-        lines: lines.chain(corrected).collect(),
+        lines,
         mark: None,
     };
     PreEscaped(plot.svg())
@@ -50,8 +45,8 @@ pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
 /// Largest error over that below which 95 % lie, from which on a linear axis would leave all others in a corner.
 const FAR_OFF: f64 = 4.0;
 
-/// Errors of the calibrated model on fitted rows and on those held out.
-pub(crate) fn sets(residuals: &Residuals) -> Markup {
+/// Errors of the delivered model on fitted rows and on those held out.
+pub(crate) fn sets(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let lead = Lead::of(residuals);
     let errors = |held_out: bool| -> Vec<f64> {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
@@ -69,7 +64,7 @@ pub(crate) fn sets(residuals: &Residuals) -> Markup {
         sets.map(|(name, style, errors)| Line { name: name.to_owned(), style, points: distribution(errors) });
     let name = lead.name();
     let plot = LinePlot {
-        title: "Calibrated model: fitted against held-out rows".to_owned(),
+        title: format!("{} model: fitted against held-out rows", capital(delivered(file))),
         description: format!(
             "The share of fitted and of held-out rows whose {name} error is below a value; the table below has the figures."
         ),

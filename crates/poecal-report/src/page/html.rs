@@ -33,11 +33,14 @@ pub(crate) fn count(value: usize, key: impl Render) -> Markup {
 
 /// Text from `calibration.json`, as it stands there; words between backticks are code.
 pub(crate) fn quoted(text: &str, key: impl Render) -> Markup {
+    html! { span data-key=(key) { (coded(text)) } }
+}
+
+/// Text in which words between backticks are code.
+pub(crate) fn coded(text: &str) -> Markup {
     html! {
-        span data-key=(key) {
-            @for (k, piece) in text.split('`').enumerate() {
-                @if k % 2 == 1 { code { (piece) } } @else { (piece) }
-            }
+        @for (k, piece) in text.split('`').enumerate() {
+            @if k % 2 == 1 { code { (piece) } } @else { (piece) }
         }
     }
 }
@@ -47,6 +50,12 @@ pub(crate) fn path(text: &str, key: impl Render) -> Markup {
     let mut folders: Vec<&str> = text.split_inclusive(['/', '\\']).collect();
     let name = folders.pop().unwrap_or_default();
     html! { span data-key=(key) { @for folder in folders { (folder) wbr; } (name) } }
+}
+
+/// Words with a capital letter.
+pub(crate) fn capital(words: &str) -> String {
+    let (first, rest) = words.split_at(words.len().min(1));
+    format!("{}{rest}", first.to_uppercase())
 }
 
 /// A value with decimals and a true minus; what rounds to zero has none.

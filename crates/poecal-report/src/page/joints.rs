@@ -29,7 +29,7 @@ pub(crate) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
         section.view #view aria-label="The robot in 3D" {
             div #still.still { (plots(&still(file), "The calibrated robot in the middle of the sampled range.")) }
             div #arm.arm {}
-            p.note {
+            p.note.of-scene {
                 "The " (if draws_instruments(file) { "robot" } else { "arm" })
                 @if shapes.shapes.is_empty() { " as links from axis to axis" } @else { " with the shapes of its URDF" }
                 ": nominal in grey, calibrated in colour."

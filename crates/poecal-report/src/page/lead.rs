@@ -25,20 +25,14 @@ impl Lead {
         leading(&row.errors, self.unit)
     }
 
-    /// The errors of the three models in a row, if it measured something in this unit.
-    pub(crate) fn models(&self, row: &ResidualRow) -> Option<[f64; 3]> {
-        self.found(row).map(|(_, errors)| errors.models)
-    }
-
-    /// The error of the calibrated model in a row.
+    /// The error of the delivered model in a row.
     pub(crate) fn error(&self, row: &ResidualRow) -> Option<f64> {
-        self.found(row).map(|(_, errors)| errors.calibrated())
+        self.found(row).map(|(_, errors)| errors.delivered())
     }
 
-    /// The error of the corrected model in a row, if it is another than the calibrated one's.
-    pub(crate) fn corrected(&self, row: &ResidualRow) -> Option<f64> {
-        let (_, errors) = self.found(row)?;
-        errors.corrected.filter(|it| *it != errors.calibrated())
+    /// The error of the model with tool and device located alone.
+    pub(crate) fn registered(&self, row: &ResidualRow) -> Option<f64> {
+        self.found(row).map(|(_, errors)| errors.models[1])
     }
 
     /// What it is an error of: `position`.

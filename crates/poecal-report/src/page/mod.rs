@@ -6,7 +6,6 @@
 
 mod advice;
 mod answer;
-mod attested;
 mod certificate;
 mod compensation;
 mod corners;
@@ -22,8 +21,10 @@ mod joins;
 mod joints;
 mod lead;
 mod method;
+mod paper;
 mod pictures;
 mod plan;
+mod ranges;
 mod repairs;
 mod rows;
 mod shapes;
@@ -31,8 +32,8 @@ mod sides;
 mod trust;
 mod validation;
 
-pub use attested::{Attest, certificate_page};
 pub use fleet::fleet_page;
+pub use paper::{Attest, certificate_page, visit_page};
 pub use plan::plan_page;
 pub use validation::validation_page;
 
@@ -97,7 +98,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
     let body = html! {
         a.skip href="#main" { "Skip to the verdict" }
         main #main {
-            (attested::first_page(file))
+            (paper::first_page(file))
             (answer::screen(file, shapes))
             (errors::section(file, residuals))
             (repairs::sections(file))

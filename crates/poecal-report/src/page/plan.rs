@@ -17,10 +17,10 @@ use poecal_results::record::Record;
 
 /// Points of the rim of a device's cone.
 const RIM: usize = 24;
-/// Configurations of one part that a picture draws at most.
-const DRAWN: usize = 120;
+/// Arms that a picture draws at most; of all other configurations the target alone.
+const ARMS: usize = 8;
 
-/// The page of a plan, complete in itself and without a script: the robot in every configuration, what the device sees, errors by number, and
+/// The page of a plan, complete in itself and without a script: the robot in some configurations and the targets of all, what the device sees, errors by number, and
 /// how each joint is sampled.
 #[must_use]
 pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Plan) -> Page {
@@ -40,7 +40,7 @@ pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Pla
                     (facts(&told.facts().iter().map(|(name, words)| (*name, html! { (words) })).collect::<Vec<_>>()))
                 }
             }
-            (section("arms", "The robot in every configuration", &arms(robot, options, found)))
+            (section("arms", "The robot and its targets", &arms(robot, options, found)))
             (section("number", "How many configurations", &curve(found, told)))
             (section("joints", "How each joint is sampled", &joints(robot, found)))
             (section("rows", "The list", &rows(robot, found)))
@@ -50,30 +50,77 @@ pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Pla
 }
 
 fn arms(robot: &Robot, options: &PlanOptions, found: &Found) -> Markup {
-    let caption = "Lines between the frames of the joints, and the targets at their ends. Only configurations are checked, never the way between them.";
-    plots(&pictures(|view| drawn(view, robot, options, found)), caption)
+    let rows = found.rows.iter().filter(|row| !row.returns);
+    let skeletons: Vec<(RowPart, Skeleton)> =
+        rows.map(|row| (row.part, skeleton(robot, &row.readings))).collect();
+    let chosen = apart(&skeletons);
+    let caption = format!(
+        "Dots: the target in all {} configurations. Lines: the robot in {} of them that are far apart, between the frames of its joints. Only \
+         configurations are checked, never the way between them.",
+        skeletons.len(),
+        chosen.len()
+    );
+    plots(&pictures(|view| drawn(view, options, (&skeletons, &chosen))), caption)
 }
 
-fn drawn(view: &View, robot: &Robot, options: &PlanOptions, found: &Found) -> Vec<Arms> {
+/// Lines of a robot in one configuration.
+type Skeleton = Vec<[Vector3<f64>; 2]>;
+
+/// A few configurations whose targets are far apart: each the one that is farthest from all before.
+fn apart(skeletons: &[(RowPart, Skeleton)]) -> Vec<usize> {
+    let ends: Vec<(usize, Vector3<f64>)> =
+        skeletons.iter().enumerate().filter_map(|(k, (_, lines))| Some((k, lines.last()?[1]))).collect();
+    let mut chosen: Vec<(usize, Vector3<f64>)> = ends.first().copied().into_iter().collect();
+    while chosen.len() < ARMS.min(ends.len()) {
+        let far = |at: &Vector3<f64>| {
+            chosen.iter().map(|(_, other)| (at - other).norm()).fold(f64::INFINITY, f64::min)
+        };
+        let next = ends.iter().max_by(|a, b| far(&a.1).total_cmp(&far(&b.1))).copied();
+        // Where all others are at the places of those before, no other is farther.
+        match next.filter(|(_, at)| far(at) > 0.0) {
+            Some(next) => chosen.push(next),
+            None => break,
+        }
+    }
+    chosen.into_iter().map(|(k, _)| k).collect()
+}
+
+fn drawn(
+    view: &View,
+    options: &PlanOptions,
+    (skeletons, chosen): (&[(RowPart, Skeleton)], &[usize]),
+) -> Vec<Arms> {
     let flat = |at: &Vector3<f64>| view.flat(at);
     let lines = |[a, b]: &[Vector3<f64>; 2]| [flat(a), flat(b)];
     let of = |part: RowPart, name: &str, style: usize| {
-        let own = found.rows.iter().filter(|row| row.part == part && !row.returns).take(DRAWN);
-        let skeletons: Vec<_> = own.map(|row| skeleton(robot, &row.readings)).collect();
-        let ends = skeletons.iter().filter_map(|it| it.last()).map(|line| flat(&line[1])).collect();
-        let lines = skeletons.iter().flatten().map(lines).collect();
-        Arms { name: name.to_owned(), style, lines, points: ends }
+        let own = || skeletons.iter().enumerate().filter(|(_, it)| it.0 == part);
+        let ends = own().filter_map(|(_, it)| it.1.last()).map(|line| flat(&line[1])).collect();
+        let arms = own().filter(|(k, _)| chosen.contains(k));
+        let lines = arms.flat_map(|(_, it)| &it.1).map(lines).collect();
+        Arms { name: name.to_owned(), style, lines, is_thin: true, points: ends }
     };
     let mut arms = vec![of(RowPart::Judge, "to judge by", 1), of(RowPart::Fit, "to fit", 0)];
-    arms.retain(|it| !it.lines.is_empty());
+    arms.retain(|it| !it.points.is_empty());
     if let Some(sight) = &options.conditions.sight {
         let place = vec![flat(&sight.place)];
-        arms.push(Arms { name: "device".to_owned(), style: 2, lines: cone(sight, &flat), points: place });
+        arms.push(Arms {
+            name: "device".to_owned(),
+            style: 2,
+            lines: cone(sight, &flat),
+            is_thin: true,
+            points: place,
+        });
     }
     let boxes: Vec<[[f64; 2]; 2]> =
         options.conditions.keep_out.iter().flat_map(|corners| outline(view, corners)).collect();
     if !boxes.is_empty() {
-        arms.push(Arms { name: "keep out".to_owned(), style: 3, lines: boxes, points: Vec::new() });
+        arms.push(Arms {
+            name: "keep out".to_owned(),
+            style: 3,
+            lines: boxes,
+            is_thin: true,
+            points: Vec::new(),
+        });
     }
     arms
 }

@@ -4,10 +4,11 @@ use maud::{Markup, Render, html};
 
 use super::data::{MOST_ROWS, drawn, keep_first, place};
 use super::devices::devices;
-use super::errors::{capital, error_table, error_words};
-use super::html::{HtmlTable, chart, count, decimal, figure, figure_or, folded, section};
+use super::errors::{error_table, error_words};
+use super::html::{HtmlTable, capital, chart, count, decimal, figure, figure_or, folded, section};
 use super::lead::{Lead, component_words, sign, spaced};
 use super::{figures, readings_of, short};
+use crate::summary::delivered;
 use crate::table::{further_words, number};
 use poecal_calibrate::Statistic;
 use poecal_model::measurement::{Device, Quantity};
@@ -29,7 +30,7 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let (shown, all) = (drawn(residuals).len(), residuals.rows().len());
     let lead = Lead::of(residuals).name();
     let content = html! {
-        p { "Residual of each measurement: measured minus predicted by the calibrated model" (axes_words(file, residuals)) "." }
+        p { "Residual of each measurement: measured minus predicted by the " (delivered(file)) " model" (axes_words(file, residuals)) "." }
         @if shown < all {
             p.note {
                 "Charts draw " (shown) " of " (all) " rows: the suspected ones, those of the largest errors, and others at equal distances, "
@@ -45,12 +46,12 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             "Residuals over each joint's value, with a smoothed curve and one standard deviation to each side of it. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
              gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
         ))
-        (folded("Errors by parts of each joint's values", &joint_table(residuals)))
+        (folded("Errors by parts of each joint's values", &joint_table(file, residuals)))
         div.pair {
             (chart("histogram", "How the errors are spread", &format!("Errors of {lead} in fitted and held-out rows, each as shares of its own rows.")))
             figure {
                 h3 { "Fitted against held-out rows" }
-                div.plots { (figures::sets(residuals)) }
+                div.plots { (figures::sets(file, residuals)) }
                 figcaption { "Fitted rows are always predicted a little better than others; only held-out rows measure the error of predictions." }
             }
         }
@@ -75,7 +76,7 @@ pub(crate) fn for_the_metrologist(residuals: &Residuals) -> Markup {
             (chart(
                 "leverage",
                 "Leverage",
-                "Fitted rows. To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
+                "Fitted rows, in the fit of the joint axes. To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
                  A row with both decides much of the result, unless it is suspected and has almost no weight.",
             ))
         }
@@ -155,10 +156,11 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
 }
 
 /// Errors by equal parts of what was sampled of each joint.
-fn joint_table(residuals: &Residuals) -> HtmlTable {
+fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
     let lead = Lead::of(residuals);
     let of = format!(
-        "of the calibrated model, {} (RMS), and number of rows by parts of each reading",
+        "of the {} model, {} (RMS), and number of rows by parts of each reading",
+        delivered(file),
         lead.unit()
     );
     let caption = capital(&format!("{} error {of}", lead.name()));
@@ -238,7 +240,7 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             p {
                 (count(robust.suspected_fit, "robust.suspected_fit")) " fitted and "
                 (count(robust.suspected_held_out, "robust.suspected_held_out"))
-                " held-out rows have residuals too large for noise. " (fit) " " b { "Studentised" }
+                " held-out rows have residuals too large for noise, in the fit of the joint axes. " (fit) " " b { "Studentised" }
                 " is the length of the residual in units of its own standard deviation, " b { "weight" }
                 " is that of the row in the fit (or what it would be). Check whether a reflector was knocked, or two were confused."
             }

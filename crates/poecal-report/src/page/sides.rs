@@ -55,6 +55,6 @@ pub(crate) fn still(file: &CalibrationFile) -> Vec<Markup> {
     pictures(|view| {
         let ends = lines.iter().map(|line| view.flat(&line[1])).collect();
         let lines = lines.iter().map(|[a, b]| [view.flat(a), view.flat(b)]).collect();
-        vec![Arms { name: "calibrated".to_owned(), style: 0, lines, points: ends }]
+        vec![Arms { name: "calibrated".to_owned(), style: 0, lines, is_thin: false, points: ends }]
     })
 }

@@ -3,36 +3,28 @@
 use maud::{Markup, html};
 
 use super::figures;
-use super::html::{
-    HtmlTable, count, decimal, figure, figure_or, folded, list, plots, quoted, scaled, section,
-};
+use super::html::{HtmlTable, count, figure, figure_or, folded, list, plots, quoted, scaled, section};
 use super::lead::{sign, spaced};
+use super::ranges::{self, unit_of};
 use crate::shade;
-use crate::summary::{delivered, uncertainty};
+use crate::summary::{cross_validated, delivered, has_terms, uncertainty};
 use poecal_calibrate::NoiseSource;
 use poecal_fit::analysis::Direction;
 use poecal_fit::uncertainty::Attribution;
 use poecal_model::measurement::Quantity;
-use poecal_model::robot::JointKind;
 use poecal_results::calibration_file::{
-    CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, RangeEntry, UncertaintyEntry,
+    CalibrationFile, CorrelatedEntry, CrossValidationEntry, LeftOutEntry, UncertaintyEntry,
 };
 
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     let content = html! {
         @if let Some((found, key)) = uncertainty(file) { (expected(file, found, key)) }
-        @if let Some(found) = &file.cross_validation { (cross_validation(found)) }
+        (cross_validation(file))
         @if !file.coverage.is_empty() { (coverage(file)) }
-        @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (parts(file, found, key)) }
+        @if let Some((found, key)) = uncertainty(file).filter(|(it, _)| !it.parts.is_empty()) { (ranges::parts(file, found, key)) }
         (determined(file))
     };
     section("trust", "How far to trust it", &content)
-}
-
-/// The factor and unit by which a joint's values are shown.
-fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str) {
-    let slides = file.joints.iter().any(|it| it.name == joint && it.kind == JointKind::Prismatic);
-    if slides { (1e3, " mm") } else { (1f64.to_degrees(), "°") }
 }
 
 fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Markup {
@@ -88,7 +80,26 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
     }
 }
 
-fn cross_validation(found: &CrossValidationEntry) -> Markup {
+/// Cross-validation of the delivered model, and of geometry alone by its blocks.
+fn cross_validation(file: &CalibrationFile) -> Markup {
+    let corrected = cross_validated(file).filter(|_| has_terms(file));
+    html! {
+        @if corrected.is_some() || file.cross_validation.is_some() { h3 { "Cross-validation" } }
+        @if let Some(found) = &corrected {
+            p {
+                "The corrected model predicts fitted rows in parts of the range that were left out of its fits to " (figure(found.rms, &found.key)) " "
+                (sign(found.quantity.unit())) " (RMS)."
+            }
+        }
+        @if let Some(found) = &file.cross_validation {
+            @if has_terms(file) {
+                details { summary { "Cross-validation of the calibrated model, geometry alone" } (blocks(found)) }
+            } @else { (blocks(found)) }
+        }
+    }
+}
+
+fn blocks(found: &CrossValidationEntry) -> Markup {
     let blocks = found.blocked.iter().enumerate();
     let worst = blocks.max_by(|(_, a), (_, b)| a.rms.lead().total_cmp(&b.rms.lead()));
     let measured: Vec<(Quantity, String)> =
@@ -113,7 +124,6 @@ fn cross_validation(found: &CrossValidationEntry) -> Markup {
         add(entry, &format!("cross_validation.blocked.{k}"));
     }
     html! {
-        h3 { "Cross-validation" }
         p {
             "Fitted rows, predicted by fits of the others: "
             @for (k, (quantity, own)) in measured.iter().enumerate() {
@@ -161,46 +171,6 @@ fn coverage(file: &CalibrationFile) -> Markup {
         (plots(&figures::coverage(file), "Bars: sampled by the fitted rows. Thin lines: the limits of the model."))
         (folded("The ranges as numbers", &table))
         @if is_of_a_turn { p { "Share: of one turn where the limits span more." } }
-    }
-}
-
-/// The map of expected errors: a row a joint, a cell a part of its range.
-fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
-    let worst = found.parts.iter().map(|part| part.sigma_position_mm).fold(0.0, f64::max);
-    let of = |joint: &str| {
-        let joint = joint.to_owned();
-        found.parts.iter().enumerate().filter(move |(_, part)| part.joint == joint)
-    };
-    let most = file.joints.iter().map(|joint| of(&joint.name).count()).max();
-    let names: Vec<String> = (1..=most.unwrap_or(0)).map(|part| format!("part {part}")).collect();
-    let head: Vec<&str> = std::iter::once("joint").chain(names.iter().map(String::as_str)).collect();
-    let mut table = HtmlTable::new("Expected errors by parts of each joint's range, mm (RMS)", 1, &head);
-    for joint in &file.joints {
-        let unit = unit_of(file, &joint.name);
-        table.marked(&html! {
-            tr {
-                th scope="row" { (joint.name) }
-                @for (k, part) in of(&joint.name) { (map_cell((k, key), part, worst, unit)) }
-            }
-        });
-    }
-    html! {
-        h3 { "Expected error over the joint ranges" }
-        p {
-            "Expected errors of position, mm (RMS), by parts of each joint's range, with the other joints anywhere in theirs. The colour grows \
-             with the error, from none at zero to the full one at the largest of the table."
-        }
-        div.map { (table) }
-    }
-}
-
-fn map_cell((k, key): (usize, &str), part: &RangeEntry, worst: f64, (factor, unit): (f64, &str)) -> Markup {
-    let [from, to] = [part.from, part.to].map(|end| decimal(end * factor, 0));
-    html! {
-        td.heat style=(shade::style(part.sigma_position_mm, worst)) {
-            (figure(part.sigma_position_mm, format_args!("{key}.parts.{k}.sigma_position_mm")))
-            small { (from) " to " (to) (unit) }
-        }
     }
 }
 

@@ -3,8 +3,8 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::certificate::{self, limits, stated};
-use super::errors::{capital, error_words, models_table};
-use super::html::{HtmlTable, count, facts, figure, list, plots, quoted, section};
+use super::errors::{error_words, models_table};
+use super::html::{HtmlTable, capital, count, facts, figure, list, plots, quoted, section};
 use super::lead::{sign, spaced};
 use super::{head, joins, method};
 use crate::judgement::{confirmed_words, judged_models, refitted_parts};

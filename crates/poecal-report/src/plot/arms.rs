@@ -11,8 +11,9 @@ const HIGHEST: f64 = 420.0;
 pub struct Arms {
     pub name: String,
     pub style: usize,
-    /// Lines that are drawn thin.
     pub lines: Vec<[[f64; 2]; 2]>,
+    /// Whether lines are drawn so that others show through.
+    pub is_thin: bool,
     /// Points that are marked.
     pub points: Vec<[f64; 2]>,
 }
@@ -66,8 +67,10 @@ impl ArmPlot {
             let place = |[a, b]: [f64; 2]| Some([area.x(x.place(a)?.share), area.y(y.place(b)?.share)]);
             canvas.begin_series(arm.style);
             for [from, to] in &arm.lines {
-                if let (Some(from), Some(to)) = (place(*from), place(*to)) {
-                    canvas.thin_line(from, to);
+                match (place(*from), place(*to)) {
+                    (Some(from), Some(to)) if !arm.is_thin => canvas.path(0, &[from, to]),
+                    (Some(from), Some(to)) => canvas.thin_line(from, to),
+                    _ => {}
                 }
             }
             for point in arm.points.iter().filter_map(|point| place(*point)) {

@@ -18,6 +18,14 @@ pub struct Line {
     pub points: Vec<[f64; 2]>,
 }
 
+/// An area between two values at each place, behind the lines.
+pub struct Band {
+    /// Colour of the line that it belongs to.
+    pub style: usize,
+    /// Place, and the lower and upper value there.
+    pub points: Vec<[f64; 3]>,
+}
+
 /// Lines over two axes.
 pub struct LinePlot {
     pub title: String,
@@ -31,19 +39,25 @@ pub struct LinePlot {
 impl LinePlot {
     /// The plot as SVG.
     pub fn svg(&self) -> String {
-        self.drawn(true)
+        self.drawn(true, None)
     }
 
     /// The same with the points of the first line alone, not joined.
     pub fn scattered(&self) -> String {
-        self.drawn(false)
+        self.drawn(false, None)
     }
 
-    fn drawn(&self, joins_first: bool) -> String {
+    /// The same with a band behind the lines.
+    pub fn banded(&self, band: &Band) -> String {
+        self.drawn(true, Some(band))
+    }
+
+    fn drawn(&self, joins_first: bool, band: Option<&Band>) -> String {
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let marked = self.mark.iter().map(|mark| mark.at);
         let x = self.x.ruler(points().map(|point| point[0]).chain(marked));
-        let y = self.y.ruler(points().map(|point| point[1]));
+        let ends = band.iter().flat_map(|band| &band.points).flat_map(|point| [point[1], point[2]]);
+        let y = self.y.ruler(points().map(|point| point[1]).chain(ends));
         let mut canvas = Canvas::new();
         // Lines of one name are one in pieces. A single one needs no legend: the title says what it is.
         let mut legend: Vec<(usize, &str)> =
@@ -58,6 +72,7 @@ impl LinePlot {
         let area = Area { left: 56.0, top, right: WIDTH - 20.0, bottom: top + HEIGHT };
         frame::vertical_axis(&mut canvas, &area, &y);
         let mut frame = Frame::new(canvas, area, (x, &self.x.title), self.mark.as_ref());
+        band.into_iter().for_each(|band| shade(&mut frame, &y, band));
         for (k, line) in self.lines.iter().enumerate() {
             // Lines that coincide stay visible: the later ones have smaller markers.
             let radius = if line.points.len() > MANY { 2.4 } else { (5.2 - 0.8 * k as f64).max(2.4) };
@@ -65,6 +80,20 @@ impl LinePlot {
         }
         frame.finish(points().next().is_some(), &self.title, &self.description)
     }
+}
+
+/// Draws a band; values that are no numbers are left out.
+fn shade(frame: &mut Frame, y: &Ruler, band: &Band) {
+    let Frame { canvas, area, x, .. } = frame;
+    let edge = |k: usize, point: &[f64; 3]| {
+        Some([area.x(x.place(point[0])?.share), area.y(y.place(point[k])?.share)])
+    };
+    let lower = band.points.iter().filter_map(|point| edge(1, point));
+    let upper = band.points.iter().rev().filter_map(|point| edge(2, point));
+    let around: Vec<[f64; 2]> = lower.chain(upper).collect();
+    canvas.begin_series(band.style);
+    canvas.band(&around);
+    canvas.end_series();
 }
 
 /// Draws a line, with markers of this radius, and joined or not; where a point is not a number, it is broken.
@@ -132,6 +161,24 @@ mod tests {
                 assert!(!svg.contains("NaN") && !svg.contains("\"inf"), "{svg}");
             }
         }
+    }
+
+    #[test]
+    fn a_band_lies_behind_the_lines_and_within_the_axis() {
+        let line = Line { name: "line".to_owned(), style: 1, points: vec![[0.0, 0.0], [1.0, 0.1]] };
+        let plot = LinePlot {
+            title: "A".to_owned(),
+            description: "a line in a band".to_owned(),
+            x: Axis::new("x", Scale::Linear),
+            y: Axis::new("y", Scale::Linear),
+            lines: vec![line],
+            mark: None,
+        };
+        let svg = plot.banded(&Band { style: 1, points: vec![[0.0, -9.0, 9.0], [1.0, f64::NAN, 9.0]] });
+        let (band, line) = (svg.find("fill-opacity").unwrap(), svg.find("<polyline").unwrap());
+        assert!(band < line && !svg.contains("NaN"), "{svg}");
+        // The axis reaches the ends of the band.
+        assert!(svg.contains(">10<") && svg.contains(">−10<"), "{svg}");
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
 pub use heat::{HeatCell, HeatMap};
 pub use joined::{Entry, JoinPlot, List};
-pub use line::{Line, LinePlot};
+pub use line::{Band, Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
 pub use strips::{CELLS, Strip, StripPlot};
 

@@ -158,6 +158,12 @@ impl Canvas {
         ));
     }
 
+    /// The area between two lines, which others show through: along the lower one, and back along the upper one.
+    pub(crate) fn band(&mut self, around: &[[f64; 2]]) {
+        let points = joined(around);
+        self.put(format_args!(r#"<polygon points="{points}" stroke="none" fill-opacity="0.2"/>"#));
+    }
+
     /// A filled box from one corner to the other.
     pub(crate) fn bar(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2]) {
         let (left, width, height) = (left.min(right), (right - left).abs().max(1.0), bottom - top);

@@ -2,8 +2,7 @@
 
 use super::super::found::found_words;
 use super::super::table::{
-    STATISTICS, corner_words, further_words, leading_words, line, lines, number, number_or_dash,
-    pictures_words, row,
+    STATISTICS, corner_words, further_words, line, lines, number, number_or_dash, pictures_words, row,
 };
 use super::look::reasons;
 use super::{Expectation, expected};
@@ -68,6 +67,25 @@ pub(crate) fn judged_on(file: &CalibrationFile) -> &'static str {
     }
 }
 
+/// An error of the delivered model on rows that were left out of its fits.
+pub(crate) struct CrossValidated {
+    pub(crate) quantity: Quantity,
+    /// Millimetres or degrees (RMS).
+    pub(crate) rms: f64,
+    /// Its key in `calibration.json`.
+    pub(crate) key: String,
+}
+
+/// What cross-validation says of the delivered model; of a corrected one, where parts of the range were left out.
+pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> {
+    if let Some(found) = file.corrected.as_ref().filter(|_| has_terms(file)) {
+        let (quantity, key) = (Quantity::Position, "corrected.left_out_position_mm".to_owned());
+        return found.left_out_position_mm.map(|rms| CrossValidated { quantity, rms, key });
+    }
+    let (quantity, key, rms) = file.cross_validation.as_ref()?.random.rms.leading_key()?;
+    Some(CrossValidated { quantity, rms, key: format!("cross_validation.random.{key}") })
+}
+
 /// Why the error to expect is larger than the one measured, where it is.
 pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
     let (_, rows) = leading(file);
@@ -127,8 +145,9 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
     }
     lines(out, "found", found_words(file));
     if !held_out {
-        let validated = file.cross_validation.as_ref().map(|it| leading_words(&it.random.rms));
-        let validated = validated.map_or_else(String::new, |rms| format!("; cross-validation {rms} (RMS)"));
+        let validated = cross_validated(file).map_or_else(String::new, |it| {
+            format!("; cross-validation {} {} (RMS)", number(it.rms), it.quantity.unit().symbol())
+        });
         line(out, "", &format!("no row was held out{validated}"));
     }
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};
-use poecal_calibrate::{Calibration, CalibrationOptions, calibrate};
+use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Sizes, calibrate};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
-use poecal_model::measurement::{Dataset, Measurement, Set};
+use poecal_model::measurement::{Dataset, Measurement, Quantity, Set};
 use poecal_model::robot::{Joint, Robot};
 use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_report::calibration_page;
@@ -26,7 +26,11 @@ impl Session {
     }
 
     fn of(robot: &Robot, data: Dataset) -> Self {
-        let calibration = calibrate(robot, &data, &CalibrationOptions::default()).unwrap();
+        Session::with(robot, data, &CalibrationOptions::default())
+    }
+
+    fn with(robot: &Robot, data: Dataset, options: &CalibrationOptions) -> Self {
+        let calibration = calibrate(robot, &data, options).unwrap();
         let inputs = Inputs { model: "robot.urdf".into(), ..Inputs::default() };
         let text = CalibrationFile::new(&calibration, &data, inputs).to_text().unwrap();
         let file = CalibrationFile::parse(&text, "calibration.json").unwrap();
@@ -130,6 +134,39 @@ fn every_figure_is_that_of_the_calibration_file() {
     let session = Session::of(&elbow(), data);
     check_figures("elbow, nothing held out", &session);
     assert!(session.page().contains("since none was held out"));
+}
+
+/// Charts and tables are of one model: the one that is delivered.
+#[test]
+fn the_page_shows_the_delivered_model() {
+    let data = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap().data;
+    let corrections = Corrections::Sizes(Sizes::COMMON);
+    let options = CalibrationOptions { corrections, ..CalibrationOptions::default() };
+    let corrected = Session::with(&elbow(), data.clone(), &options);
+    let geometry = CalibrationOptions { corrections: Corrections::Off, ..options };
+    let calibrated = Session::with(&elbow(), data, &geometry);
+    for (session, name, other) in
+        [(&corrected, "corrected", "calibrated"), (&calibrated, "calibrated", "corrected")]
+    {
+        let page = session.page();
+        for words in [
+            "measured minus predicted by the {} model",
+            "by the {} model to its measured place",
+            "error of the {} model, mm",
+        ] {
+            let (own, not) = (words.replace("{}", name), words.replace("{}", other));
+            assert!(page.contains(&own) && !page.contains(&not), "{name}: {own}");
+        }
+        let (_, data) = page.split_once("id=\"report-data\">").unwrap();
+        let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+        let drawn = data["rows"]["error_mm"].as_array().unwrap();
+        for (row, drawn) in session.residuals().rows().iter().zip(drawn) {
+            let error = row.errors.get(Quantity::Position).unwrap().delivered();
+            // Six digits are drawn.
+            assert!((drawn.as_f64().unwrap() - error).abs() <= 1e-5 * error, "{name}");
+        }
+    }
+    assert!(corrected.page().contains("Cross-validation of the calibrated model, geometry alone"));
 }
 
 /// The script draws all arms, and every instrument and target on its body.

@@ -13,6 +13,7 @@ mod pal;
 mod screws;
 mod sdf;
 mod tables;
+mod transforms;
 mod usd;
 mod written;
 
@@ -43,7 +44,7 @@ macro_rules! formats {
 
         impl ExportFormat {
             /// All of them.
-            pub const ALL: [ExportFormat; 18] = [$(ExportFormat::$name),+];
+            pub const ALL: [ExportFormat; 19] = [$(ExportFormat::$name),+];
 
             /// Its word, as the program and the package name it.
             #[must_use]
@@ -91,6 +92,8 @@ formats! {
     Csv = "csv",
     /// The joint offsets, base and tool that come nearest, JSON.
     Offsets = "offsets",
+    /// What was located, as transforms: ROS 2, URDF, quaternions and so on.
+    Tf = "tf",
     /// Arrays of C with the nominal and the actual arm, for kinematics on a controller.
     C = "c",
 }
@@ -120,6 +123,7 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     let plain = geometry(&model.robot, format, &mut notes);
     let robot = plain.as_ref();
     let written = match format {
+        ExportFormat::Tf => return transforms::write(model),
         ExportFormat::C => {
             let mut exported = numbers::write(model).map_err(|error| error.in_file(&model.path))?;
             exported.notes.splice(0..0, counted);

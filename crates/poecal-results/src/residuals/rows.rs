@@ -15,8 +15,8 @@ pub(crate) const MODELS: usize = 3;
 /// Last column, if there are several instruments.
 pub(crate) const INSTRUMENT: &str = "instrument";
 
-/// Errors of one quantity in one row by the nominal, registered and calibrated model, and the calibrated model's residual by component, of
-/// vectors in the device's axes. Millimetres or degrees.
+/// Errors of one quantity in one row by the nominal, registered and calibrated model, and the delivered model's residual by component, of
+/// vectors in the device's axes. Millimetres or degrees. The corrected model is delivered if there is one, else the calibrated one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelErrors {
     /// Of the nominal, registered and calibrated model.
@@ -49,7 +49,13 @@ impl ModelErrors {
         self.models[2]
     }
 
-    /// The calibrated model's residual by component, NaN of a component that was not measured.
+    /// The error of the model that is delivered: the corrected one, if there is one.
+    #[must_use]
+    pub fn delivered(&self) -> f64 {
+        self.corrected.unwrap_or(self.models[2])
+    }
+
+    /// The delivered model's residual by component, NaN of a component that was not measured.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
         self.residual.get(..self.components).unwrap_or_default()
@@ -62,7 +68,7 @@ impl ModelErrors {
 }
 
 /// Names of the columns of a quantity: errors of the three models, and of the corrected one where there is one, then the residual of the
-/// calibrated model by component.
+/// delivered model by component.
 pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = String> {
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
     let components = quantity.component_names().iter().map(move |component| format!("{component}[{unit}]"));
@@ -76,7 +82,7 @@ pub struct CornerErrors {
     pub models_px: [f64; MODELS],
     /// By the corrected model, if there is one.
     pub corrected_px: Option<f64>,
-    /// By the calibrated model at the board, square to the ray, millimetres.
+    /// By the delivered model at the board, square to the ray, millimetres.
     pub at_board_mm: f64,
 }
 

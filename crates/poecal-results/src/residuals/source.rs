@@ -59,9 +59,10 @@ impl<'a> RowSource<'a> {
                 target: observation.target,
                 station: observation.station,
                 errors: Measured::of(|quantity| {
-                    let corrected = corrected.as_ref().and_then(|all| all[at].length(quantity));
-                    let corrected = corrected.map(|value| quantity.unit().shown(value));
-                    Some(errors_of(errors, quantity)?.with_corrected(corrected))
+                    let corrected = corrected.as_ref().map(|all| &all[at]);
+                    let length = corrected.and_then(|it| it.length(quantity));
+                    let length = length.map(|value| quantity.unit().shown(value));
+                    Some(errors_of(errors, corrected, quantity)?.with_corrected(length))
                 }),
                 corners: self.corners(row as u32, errors, corrected.as_ref().map(|all| &all[at])),
                 judged: robustness.rows.get(row).map(|found| RowDiagnostics {
@@ -90,7 +91,7 @@ impl<'a> RowSource<'a> {
         self.data.pictures.of_row(row)?;
         let of = |error: &RowError| corner_error(self.data, row, error);
         let px = |error: &RowError| of(error).map_or(f64::NAN, |it| it.rms_px);
-        let at_board_mm = of(errors[2]).map_or(f64::NAN, |it| it.rms_mm);
+        let at_board_mm = of(corrected.unwrap_or(errors[2])).map_or(f64::NAN, |it| it.rms_mm);
         Some(CornerErrors { models_px: errors.map(px), corrected_px: corrected.map(px), at_board_mm })
     }
 }
@@ -101,12 +102,17 @@ fn stations(data: &Dataset) -> Vec<String> {
     if data.station_count() > 1 { names.collect() } else { Vec::new() }
 }
 
-/// Errors of one quantity of the three models, in the unit in which people read it, if it was measured.
-fn errors_of(errors: [&RowError; 3], quantity: Quantity) -> Option<ModelErrors> {
+/// Errors of one quantity of the three models, with the residual of the delivered one, in the unit in which people read it, if it was measured.
+fn errors_of(
+    errors: [&RowError; 3],
+    corrected: Option<&RowError>,
+    quantity: Quantity,
+) -> Option<ModelErrors> {
     let shown = |value: f64| quantity.unit().shown(value);
     errors[2].length(quantity)?;
     let length = |error: &RowError| error.length(quantity).map_or(f64::NAN, shown);
-    let (measured, mut residual) = (errors[2].measured(quantity), errors[2].vector(quantity).map(shown));
+    let delivered = corrected.unwrap_or(errors[2]);
+    let (measured, mut residual) = (delivered.measured(quantity), delivered.vector(quantity).map(shown));
     residual.iter_mut().zip(measured).filter(|(_, is)| !is).for_each(|(value, _)| *value = f64::NAN);
     let components = residual.as_slice().get(..quantity.components()).unwrap_or_default();
     Some(ModelErrors::new(errors.map(length), components))

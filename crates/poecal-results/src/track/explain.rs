@@ -42,6 +42,17 @@ pub enum Kind {
     TwoZeros,
 }
 
+/// An unknown of an explanation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Its value, radians, metres or a share.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Whether it is an angle.
+    pub turns: bool,
+}
+
 /// A motion that may explain changes, with its derivatives in standard deviations.
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {
@@ -158,6 +169,14 @@ impl Evidence {
         let step = step.iter().copied().zip(sigma).collect();
         let covariance = &steps * steps.transpose();
         Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
+    }
+
+    /// The unknowns of some columns, each with its standard deviation at level 1; `None` where they are not all seen.
+    pub(crate) fn steps(&self, columns: &DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
+        let (own, steps) = self.beside(columns);
+        let step = &steps * own.tr_mul(&self.residual);
+        let all = step.iter().zip(steps.row_iter()).map(|(value, row)| (*value, row.norm()));
+        (own.ncols() == columns.ncols()).then(|| all.collect())
     }
 
     /// Standard deviation at level 1 of the only unknown of some columns; infinite where it is not seen.

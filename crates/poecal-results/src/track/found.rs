@@ -1,23 +1,13 @@
 //! What a visit shows.
 
-use super::explain::{Hypothesis, Kind, Tried, Verdict};
+use super::explain::{Hypothesis, Kind, Size, Tried, Verdict};
 use super::model::Model;
-use super::options::{JudgedBy, MOST_RAD, State};
+use super::options::{JudgedBy, MOST_RAD, State, TrackOptions};
 use super::sight::JointSight;
 use super::visit::Of;
+use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
-
-/// An unknown of an explanation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Size {
-    /// Its value, radians, metres or a share.
-    pub value: f64,
-    /// Its standard deviation.
-    pub sigma: f64,
-    /// Whether it is an angle.
-    pub turns: bool,
-}
 
 /// What explains the changes.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +27,8 @@ pub struct Explanation {
 /// What a visit shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracked {
+    /// What was known of the visit.
+    pub options: TrackOptions,
     /// Whether the robot is as it was.
     pub state: State,
     /// By what the rows were judged.
@@ -51,6 +43,8 @@ pub struct Tracked {
     pub alternatives: Vec<Explanation>,
     /// What of each joint's zero would be found, and what cannot be seen.
     pub joints: Vec<JointSight>,
+    /// Which part of each joint's range the rows sample.
+    pub ranges: Vec<JointCoverage>,
     /// Root mean square change of measured places with what is free fitted, metres: noise of both visits is in it.
     pub change_m: f64,
     /// The same of what the explanation leaves.

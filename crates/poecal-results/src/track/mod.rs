@@ -20,8 +20,8 @@ mod visit;
 mod witness;
 mod words;
 
-pub use explain::Kind;
-pub use found::{Explanation, Size, Tracked};
+pub use explain::{Kind, Size};
+pub use found::{Explanation, Tracked};
 pub use judged::Earlier;
 pub use options::{JudgedBy, State, TrackOptions};
 pub use repair::{Repaired, recalibrate};

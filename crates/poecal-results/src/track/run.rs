@@ -1,15 +1,18 @@
 //! A visit judged: the steps in order.
 
-use super::explain::{Evidence, Level, Tests, Tried, Verdict, explain, leave_unseen_out};
+use super::explain::{Evidence, Hypothesis, Level, Tests, Tried, Verdict, explain, leave_unseen_out};
 use super::found::{Explanation, Tracked, explanation};
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
 use super::model::Model;
 use super::options::{State, TrackOptions};
 use super::pairs::Changes;
+use super::sight::JointSight;
 use super::visit::Visit;
 use super::{sight, words};
 use crate::calibration_file::CalibrationFile;
+use poecal_fit::analysis::{JointCoverage, coverage};
+use poecal_fit::state::{Packed, Session};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_numerics::error::Result;
 
@@ -50,35 +53,27 @@ pub fn track(
     options: &TrackOptions,
 ) -> Result<Tracked> {
     let judged = Judged::of(file, data, earlier, options)?;
-    let Judged { model, visit, data, changes, level, judged_by, repeated, mut notes, .. } = judged;
-    let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, &visit, options));
-    let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
-    leave_unseen_out(&mut hypotheses, &evidence, level);
+    let Judged { model, visit, data, changes, level, .. } = &judged;
+    let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, visit, options));
+    let mut hypotheses = hypotheses(&changes.jacobian, visit, options);
+    leave_unseen_out(&mut hypotheses, &evidence, *level);
     let tests = Tests::new(&hypotheses);
-    let verdict = explain(&evidence, &hypotheses, &tests, level);
+    let verdict = explain(&evidence, &hypotheses, &tests, *level);
+    let mut notes = judged.notes.clone();
     if verdict.is_wider {
         notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
     }
-    if repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
+    if judged.repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
         notes.push(words::copied());
     }
-    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, &model, &data);
+    let named = |it: &Tried| explanation(it, &hypotheses[it.at], &verdict, model, data);
     let mut explanation = verdict.best.as_ref().map(named);
     let mut alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
     let is_far = explanation.as_ref().is_some_and(Explanation::is_far);
-    let joints = sight::joints(
-        &changes,
-        &visit,
-        &model,
-        (&hypotheses, &tests),
-        (verdict.variance, verdict.freedom),
-        options,
-    );
-    let (change_m, noise_m) = in_metres(&changes, &verdict, verdict.left);
+    let (change_m, noise_m) = in_metres(changes, &verdict, verdict.left);
     let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
-    let (left_m, _) =
-        in_metres(&changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
-    let usual_m = usual_m(&changes, level, &model);
+    let (left_m, _) = in_metres(changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    let usual_m = usual_m(changes, *level, model);
     // Of a zero far off, what is not linear is left.
     let is_nearly = is_far && left_m < NEARLY * change_m;
     let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
@@ -87,21 +82,49 @@ pub fn track(
         notes.push(words::unexplained(change_m, usual_m, visit.device_is_known));
     }
     notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
+    let joints = sights(&judged, (&hypotheses, &tests), &verdict, options);
+    // Beside a shift too far to be linear, others are not known.
+    let shifts = (!is_unexplained && !is_far).then(|| {
+        let best = verdict.best.as_ref().map(|it| &hypotheses[it.at]);
+        sight::shifts(&evidence, &hypotheses, best, verdict.variance)
+    });
     Ok(Tracked {
+        options: *options,
         state: if is_unexplained || explanation.is_some() { State::Changed } else { State::Unchanged },
-        judged_by,
+        judged_by: judged.judged_by,
         rows: data.len(),
-        repeated,
+        repeated: judged.repeated,
         explanation,
         alternatives,
-        joints,
+        joints: sight::with_shifts(joints, shifts.unwrap_or_default()),
+        ranges: ranges(model, data),
         change_m,
         left_m,
         noise_m,
         freedom: verdict.freedom,
-        error_m: error_m(&visit),
+        error_m: error_m(visit),
         notes,
     })
+}
+
+/// What of each joint's zero would be found.
+fn sights(
+    judged: &Judged,
+    tests: (&[Hypothesis], &Tests),
+    verdict: &Verdict,
+    options: &TrackOptions,
+) -> Vec<JointSight> {
+    let level = (verdict.variance, verdict.freedom);
+    sight::joints(&judged.changes, &judged.visit, &judged.model, tests, level, options)
+}
+
+/// Which part of each joint's range the rows sample.
+fn ranges(model: &Model, data: &Dataset) -> Vec<JointCoverage> {
+    let packed = Packed::of(&model.robot, data);
+    let mut all = coverage(&Session::new(&model.robot, data, &packed, false), &data.all_rows());
+    let gives = |name: &str| model.robot.joints.iter().any(|it| it.name == name && it.give_of.is_some());
+    all.retain(|it| !gives(&it.joint));
+    all
 }
 
 /// Standard deviation of a coordinate, metres, that noise and errors of the model explain.

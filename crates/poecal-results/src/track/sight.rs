@@ -1,6 +1,8 @@
 //! How large a shift of each joint's zero would be found, and why one would not.
 
-use super::explain::{Evidence, Hypothesis, Kind, Tests};
+use nalgebra::DMatrix;
+
+use super::explain::{Evidence, Hypothesis, Kind, Size, Tests};
 use super::hypotheses::free;
 use super::model::Model;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};
@@ -37,6 +39,9 @@ pub struct JointSight {
     pub smallest: f64,
     /// Why it is not seen at all.
     pub unseen: Option<Unseen>,
+    /// Shift of its zero as found beside the explanation; `None` where it is not seen beside that, nothing explains the changes, or nothing was
+    /// measured.
+    pub shift: Option<Size>,
 }
 
 /// Smallest shift over its standard deviation that is found with 95 %, where noise must not exceed `quantile` (a square) by as many degrees
@@ -86,7 +91,50 @@ pub(crate) fn joints(
             }
             () => Some(Unseen::NoMotion),
         };
-        Some(JointSight { joint: joint.name.clone(), slides, sigma: own, smallest: factor * own, unseen })
+        Some(JointSight {
+            joint: joint.name.clone(),
+            slides,
+            sigma: own,
+            smallest: factor * own,
+            unseen,
+            shift: None,
+        })
     };
     zeros.filter_map(sight).collect()
+}
+
+/// The shift of each joint's zero, in the order of [`joints`], beside the explanation of the changes; of a joint that the explanation names, the
+/// explanation's. `variance` is that of a number.
+pub(crate) fn shifts(
+    evidence: &Evidence,
+    hypotheses: &[Hypothesis],
+    best: Option<&Hypothesis>,
+    variance: f64,
+) -> Vec<Option<Size>> {
+    let is_of_zeros = best.is_some_and(|it| matches!(it.kind, Kind::Zero | Kind::TwoZeros));
+    let shift = |zero: &Hypothesis| {
+        let named =
+            best.filter(|_| is_of_zeros).and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
+        let beside = best.map_or_else(|| DMatrix::zeros(zero.columns.nrows(), 0), |it| it.columns.clone());
+        let at = named.unwrap_or(beside.ncols());
+        let columns = if named.is_some() { beside } else { joined(&beside, &zero.columns) };
+        let &(value, sigma) = evidence.steps(&columns)?.get(at)?;
+        Some(Size { value, sigma: variance.sqrt() * sigma, turns: zero.turns.first() == Some(&true) })
+    };
+    hypotheses.iter().filter(|it| it.kind == Kind::Zero).map(shift).collect()
+}
+
+/// Columns side by side.
+fn joined(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut all = one.clone().resize_horizontally(one.ncols() + other.ncols(), 0.0);
+    all.columns_mut(one.ncols(), other.ncols()).copy_from(other);
+    all
+}
+
+/// The same with what was found of each; of a joint that is not seen nothing.
+pub(crate) fn with_shifts(mut joints: Vec<JointSight>, shifts: Vec<Option<Size>>) -> Vec<JointSight> {
+    for (joint, shift) in joints.iter_mut().zip(shifts) {
+        joint.shift = shift.filter(|_| joint.unseen.is_none());
+    }
+    joints
 }

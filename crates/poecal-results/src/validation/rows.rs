@@ -3,7 +3,7 @@
 use super::shown;
 use poecal_calibrate::JudgedRow;
 use poecal_model::measurement::{Dataset, Quantity};
-use poecal_model::robot::Robot;
+use poecal_model::robot::{ReadingKind, Robot};
 use poecal_storage::csv_text::cell;
 use poecal_storage::numbers::push_number;
 
@@ -28,6 +28,32 @@ impl JudgedRows<'_> {
         Quantity::ALL.into_iter().filter(|quantity| self.data.has(*quantity)).collect()
     }
 
+    /// The line of column names.
+    fn head(&self, quantities: &[Quantity], kinds: &[ReadingKind]) -> String {
+        let mut out = FIRST.to_owned();
+        for quantity in quantities {
+            let (name, unit) = (quantity.name(), quantity.unit().symbol());
+            for what in ["error", "expected", "bound95"] {
+                out.push_str(&format!(",{name}_{what}[{unit}]"));
+            }
+            for component in quantity.component_names() {
+                out.push_str(&format!(",{component}[{unit}]"));
+            }
+        }
+        if !self.data.pictures.is_empty() {
+            out.push_str(",corners[px],corners[mm]");
+        }
+        for (name, kind) in self.data.reading_names().iter().zip(kinds) {
+            out.push(',');
+            out.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
+        }
+        if self.data.station_count() > 1 {
+            out.push_str(",instrument");
+        }
+        out.push('\n');
+        out
+    }
+
     /// The text of the file.
     #[must_use]
     pub fn text(&self) -> String {
@@ -35,25 +61,8 @@ impl JudgedRows<'_> {
         let names = self.data.reading_names();
         let kinds: Vec<_> = names.iter().map(|name| self.robot.reading_kind(name)).collect();
         let has_stations = self.data.station_count() > 1;
-        let mut out = FIRST.to_owned();
-        for quantity in &quantities {
-            let (name, unit) = (quantity.name(), quantity.unit().symbol());
-            for what in ["error", "expected", "bound95"] {
-                out.push_str(&format!(",{name}_{what}[{unit}]"));
-            }
-        }
         let has_pictures = !self.data.pictures.is_empty();
-        if has_pictures {
-            out.push_str(",corners[px],corners[mm]");
-        }
-        for (name, kind) in names.iter().zip(&kinds) {
-            out.push(',');
-            out.push_str(&cell(&format!("{name}[{}]", kind.symbol())));
-        }
-        if has_stations {
-            out.push_str(",instrument");
-        }
-        out.push('\n');
+        let mut out = self.head(&quantities, &kinds);
         for (k, (row, observation)) in self.rows.iter().zip(&self.data.observations).enumerate() {
             let file = self.data.files.get(observation.source.file as usize);
             let file = file.map(|path| path.display().to_string()).unwrap_or_default();
@@ -63,8 +72,13 @@ impl JudgedRows<'_> {
             let (file, id, target) = (cell(&file), cell(id), cell(target.unwrap_or_default()));
             out.push_str(&format!("{file},{},{id},{target},{inside}", observation.source.line));
             for quantity in &quantities {
-                let numbers = row.errors.get(*quantity).map_or([None; 3], |found| shown(*quantity, found));
-                for number in numbers {
+                let found = row.errors.get(*quantity);
+                let numbers = found.map_or([None; 3], |found| shown(*quantity, found));
+                let components = (0..quantity.components()).map(|k| {
+                    let value = quantity.unit().shown(*found.as_ref()?.residual.get(k)?);
+                    Some(value).filter(|value| !value.is_nan())
+                });
+                for number in numbers.into_iter().chain(components) {
                     out.push(',');
                     number.into_iter().for_each(|number| push_number(&mut out, number));
                 }

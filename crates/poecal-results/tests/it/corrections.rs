@@ -11,6 +11,7 @@ use poecal_model::measurement::{Dataset, Measurement, Quantity};
 use poecal_model::robot::{Extent, Gives, GravityDirection, JointTerm, Robot, Term, TermKind};
 use poecal_model::simulate::{Kind, Simulation, elbow, random};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
+use poecal_results::residuals::Residuals;
 use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
@@ -109,6 +110,26 @@ fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
         let apart = seen - predicted.translation - error.position_m();
         // Rounding of products of some 18 motions of a metre.
         assert!(apart.norm() < 1e-13, "{row}: {:e}", apart.norm());
+    }
+}
+
+/// The components of a row are those of the model that is delivered: their length is its error, and not that of geometry alone.
+#[test]
+fn residuals_are_those_of_the_delivered_model() {
+    let (robot, data) = measured(60);
+    let options = CalibrationOptions { move_tip: true, ..CalibrationOptions::default() };
+    let corrected = calibrate(&robot, &data, &options).unwrap();
+    let options = CalibrationOptions { corrections: Corrections::Off, ..options };
+    let geometry = calibrate(&robot, &data, &options).unwrap();
+    for calibration in [&corrected, &geometry] {
+        for row in Residuals::of(&data, calibration).rows() {
+            let errors = row.errors.get(Quantity::Position).unwrap();
+            let length = errors.residual().iter().map(|it| it * it).sum::<f64>().sqrt();
+            // Sums of three squares in another order.
+            assert!((length - errors.delivered()).abs() < 1e-12 * length);
+            let is_corrected = calibration.correction.is_some();
+            assert_eq!(is_corrected, errors.delivered() != errors.calibrated());
+        }
     }
 }
 

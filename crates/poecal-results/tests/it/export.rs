@@ -342,8 +342,9 @@ fn corrected_robots_are_geometry_and_a_file_beside() {
         coefficient: 1e-3,
     });
     for format in ExportFormat::ALL {
-        let needs_calibration =
-            [ExportFormat::Pal, ExportFormat::Lerobot, ExportFormat::Offsets].contains(&format);
+        let of_calibrations =
+            [ExportFormat::Pal, ExportFormat::Lerobot, ExportFormat::Offsets, ExportFormat::Tf];
+        let needs_calibration = of_calibrations.contains(&format);
         if needs_calibration || format == ExportFormat::Franka {
             continue;
         }

@@ -190,6 +190,35 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
     assert!(share(false_alarms, unchanged) <= 0.015 + 3.0 * (0.015 / unchanged as f64).sqrt());
 }
 
+/// Of a joint that moved the shift is found, and of the others none beside it.
+#[test]
+fn the_shift_of_each_joint_is_stated_beside_the_explanation() {
+    const BY: f64 = 3e-3;
+    // A fraction of visits in which one of five shifts is farther off: 3e-6 each.
+    const SIGMAS: f64 = 4.5;
+    let cell = Cell::new(&elbow(), 5);
+    let options = cell.options(true);
+    let chosen = witnesses(&cell.file, &cell.first, None, 12, None, &options).unwrap();
+    let mut generator = ChaCha8Rng::seed_from_u64(1);
+    let earlier = Earlier { data: &cell.first, is_own: true };
+    for (actual, planted) in [(cell.actual.clone(), None), (cell.with_zero(2, BY), Some(2))] {
+        let data = cell.visit(&actual, &chosen, Some(&cell.device_from_base), &mut generator);
+        let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
+        assert_eq!(found.state == State::Changed, planted.is_some());
+        for (joint, sight) in found.joints.iter().enumerate() {
+            assert_eq!(sight.shift.is_some(), sight.unseen.is_none(), "{}", sight.joint);
+            let Some(shift) = sight.shift else { continue };
+            let expected = if planted == Some(joint) { BY } else { 0.0 };
+            println!("{}: {:.6} ± {:.6} of {expected} rad", sight.joint, shift.value, shift.sigma);
+            assert!((shift.value - expected).abs() < SIGMAS * shift.sigma, "{}", sight.joint);
+            assert!(shift.sigma < 0.1 * BY, "{} is known to {} rad", sight.joint, shift.sigma);
+        }
+        // Readings of the visit, in the units of the joints.
+        let first = data.readings(0)[0];
+        assert!(found.ranges[0].sampled_min <= first && first <= found.ranges[0].sampled_max);
+    }
+}
+
 #[test]
 fn the_first_joint_is_not_seen_from_a_device_that_was_set_up_anew() {
     let cell = Cell::new(&elbow(), 3);

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::head;
+use super::{self as paper, LISTED};
 use crate::acceptance::plain;
 use crate::summary::{delivered, expected, judged_on, leading, why_larger};
 use crate::table::number;
@@ -12,14 +12,11 @@ use poecal_calibrate::{Acceptance, DeviceFrameKnowledge, Level};
 use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::JointKind;
-use poecal_numerics::text::visible_markup;
 use poecal_numerics::unit::Unit;
 use poecal_results::calibration_file::{CalibrationFile, JointEntry};
 use poecal_results::output::Page;
 use poecal_results::record::Record;
 
-/// Files that are listed at most, and limits.
-const LISTED: usize = 4;
 /// Joints whose ranges are listed at most.
 const MOST_JOINTS: usize = 12;
 /// Coverage factor of the expanded uncertainty.
@@ -41,32 +38,6 @@ const STATED: [(&str, &str); 14] = [
     ("operator", "Measured by"),
     ("valid_until", "Valid until"),
 ];
-/// The form of the page: A4 with a margin, all in one.
-const STYLE: &str = "
-.attested { font-size: .82rem; line-height: 1.3; }
-.attested .title { font-size: 1.75rem; }
-.attested h2, .attested h3 { font-size: 1rem; margin: .7rem 0 .25rem; }
-.attested .top { display: flex; justify-content: space-between; gap: 1rem; align-items: flex-start; }
-.attested .top img { max-width: 10rem; max-height: 4rem; }
-.attested dl { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.4rem; margin: 0; }
-.attested dl div { display: grid; grid-template-columns: 8rem 1fr; border-bottom: 1px solid #d9dde3; padding: .12rem 0; min-height: 1.5em; }
-.attested dt { color: #52606d; }
-.attested dd { margin: 0; overflow-wrap: anywhere; }
-.attested .result { display: grid; grid-template-columns: 1fr 1fr; gap: .3rem 1.4rem; margin: .2rem 0; }
-.attested .result b { display: block; font-size: 1.35rem; font-variant-numeric: tabular-nums; }
-.attested table { width: 100%; }
-.attested p { margin: .2rem 0; max-width: none; }
-.attested code { font-size: .7rem; overflow-wrap: anywhere; }
-.attested .hands { display: grid; grid-template-columns: 1fr 1fr; gap: 1.5rem; margin-top: .5rem; }
-.attested .hands span { display: block; border-bottom: 1px solid #52606d; min-height: 4rem; color: #52606d; font-size: .72rem; }
-";
-/// Where it is a page of its own.
-const ALONE: &str = "
-:root { color-scheme: light; }
-@page { size: A4; margin: 14mm 15mm; }
-main { max-width: 48rem; }
-@media print { main { padding: 0; max-width: none; } }
-";
 /// Where it is the first page of a report's print.
 const BEFORE: &str = "
 .attested { display: none; }
@@ -86,13 +57,8 @@ pub struct Attest {
 #[must_use]
 pub fn certificate_page(file: &CalibrationFile, record: &Record, attest: &Attest) -> Page {
     let title = format!("Calibration certificate of {}", file.robot.name);
-    // The page is the whole document: no heads and feet beside it.
-    let head = head(&title, &Record::default(), &file.poecal_version);
-    let body = html! {
-        style { (PreEscaped(ALONE)) }
-        main #main { (sheet(file, record, attest, &html! { h1 { "Calibration certificate" } })) }
-    };
-    vec![visible_markup(head).into(), visible_markup(body).into(), "\n</body>\n</html>\n".into()]
+    let sheet = sheet(file, record, attest, &html! { h1 { "Calibration certificate" } });
+    paper::page(&title, &file.poecal_version, &sheet)
 }
 
 /// The certificate as the first page of a report's print.
@@ -104,18 +70,15 @@ pub(crate) fn first_page(file: &CalibrationFile) -> Markup {
 }
 
 fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Markup) -> Markup {
-    let entries = record.entries();
-    let text = |key: &str| entries.iter().find(|it| it.0 == key).map(|it| it.2.to_owned());
     let robot = |key: &str| (key == "robot").then(|| file.robot.name.clone());
-    let stated = STATED.map(|(key, label)| (label, text(key).or_else(|| robot(key)).unwrap_or_default()));
     html! {
-        style { (PreEscaped(STYLE)) }
+        style { (PreEscaped(paper::STYLE)) }
         section.attested aria-label="Certificate" {
             div.top {
                 (title)
                 @if let Some((kind, bytes)) = &attest.logo { img src=(data_uri(kind, bytes)) alt="Logo"; }
             }
-            dl { @for (label, text) in &stated { div { dt { (label) } dd { (text) } } } }
+            (paper::stated(record, &STATED, robot))
             h2 { "Result" }
             (result(file))
             @if let Some(found) = &file.acceptance { (limits(found)) }
@@ -126,11 +89,10 @@ fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Marku
             h2 { "Method" }
             p { (method(file)) }
             h2 { "Files, SHA-256" }
-            (files(file, attest))
-            @if let Some(note) = text("note") { p { (note) } }
-            div.hands {
-                @for hand in ["Calibrated by: name, date, signature", "Approved by: name, date, signature"] { span { (hand) } }
-            }
+            @if let Some(hash) = &attest.sha256 { p { "calibration.json " code { (hash) } } }
+            (paper::files(std::iter::once(&file.inputs.model).chain(&file.inputs.measurements), &file.inputs.sha256))
+            @if let Some(note) = &record.note { p { (note) } }
+            (paper::hands("Calibrated by"))
         }
     }
 }
@@ -236,18 +198,6 @@ fn method(file: &CalibrationFile) -> String {
          are any; limits are decided with 95 % confidence. Made by poecal {}.",
         file.accuracy.training.count, file.poecal_version
     )
-}
-
-fn files(file: &CalibrationFile, attest: &Attest) -> Markup {
-    let inputs = &file.inputs;
-    let names = std::iter::once(&inputs.model).chain(&inputs.measurements);
-    let hashed: Vec<(&String, &String)> =
-        names.filter_map(|name| Some((name, inputs.sha256.get(name)?))).collect();
-    html! {
-        @if let Some(hash) = &attest.sha256 { p { "calibration.json " code { (hash) } } }
-        @for (name, hash) in hashed.iter().take(LISTED) { p { (name.rsplit(['/', '\\']).next().unwrap_or(name)) " " code { (hash) } } }
-        @if hashed.len() > LISTED { p { "and " (hashed.len() - LISTED) " more in calibration.json" } }
-    }
 }
 
 /// Bytes as the address of a picture.
