@@ -40,13 +40,25 @@ pub use listed::Listed;
 /// The targets of a program and its motions.
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none.
+/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks in more others than
+/// [`Limit::Nesting`](poecal_storage::limits::Limit::Nesting).
 pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    scan::refuse_nested(text, rules(language))?;
     match language {
         Language::UrScript => urscript::parse(text, given, axes),
         Language::Krl => krl::parse(text, given, axes),
         Language::Rapid => Ok(rapid::parse(text, given, axes)),
         Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
+    }
+}
+
+/// How a language is written.
+fn rules(language: Language) -> &'static scan::Rules {
+    match language {
+        Language::UrScript => &urscript::RULES,
+        Language::Krl => &krl::RULES,
+        Language::Rapid => &rapid::RULES,
+        Language::Fanuc => &fanuc::RULES,
     }
 }
 

@@ -10,14 +10,13 @@ use super::LedgerRow;
 use crate::output::{Existing, FilePlace};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::limits::Limit;
 
 /// Usual name of the file.
 pub const LEDGER: &str = "fleet.jsonl";
 /// Name and version of its lines.
 const SCHEMA: &str = "poecal-fleet-1";
 const FAMILY: &str = "poecal-fleet-";
-/// Most bytes that are read.
-const MOST: u64 = 1 << 32;
 
 /// What was done, line by line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -132,7 +131,11 @@ fn bytes(path: &Path) -> Result<Option<Vec<u8>>> {
         Ok(_) => {}
     }
     let mut text = Vec::new();
-    disk.open(path).and_then(|file| file.take(MOST).read_to_end(&mut text)).map_err(failed)?;
+    let most = Limit::Table.most();
+    disk.open(path).and_then(|file| file.take(most + 1).read_to_end(&mut text)).map_err(failed)?;
+    if text.len() as u64 > most {
+        return Err(refused(path, Limit::Table.exceeded("a ledger")));
+    }
     Ok(Some(text))
 }
 
