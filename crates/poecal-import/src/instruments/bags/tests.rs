@@ -437,7 +437,7 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
     let (robot, folder) = (elbow(), Folder::new("limits"));
     let path = folder.write("a.mcap", bag(&session(&robot)));
     for (limit, most, part) in [
-        (Limit::Bag, 1000, "found a bag that states"),
+        (Limit::Bag, 1000, "it is larger than 1,000 bytes"),
         (Limit::Topics, 1, "found more than 1 topics in a bag"),
         (Limit::Poses, 10, "found more than 10 poses in the messages of a bag"),
     ] {
@@ -448,6 +448,13 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
             "{error}"
         );
     }
+    // The parts of a bag count together.
+    let whole = bag(&session(&robot));
+    let parts = folder.0.join("parts");
+    (0..2).for_each(|at| drop(folder.write(&format!("parts/b_{at}.mcap"), &whole)));
+    let limits = limits::here().with(Limit::Bag, whole.len() as u64);
+    let error = limits::on(limits, || read_all(&[&parts], &ReadOptions::default())).unwrap_err();
+    assert!(error.contains("found a bag that states") && error.contains("--limit bag=N"), "{error}");
     // A chunk beyond it is left out as one that is damaged is.
     let limits = limits::here().with(Limit::Chunk, 100);
     let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();

@@ -122,7 +122,7 @@ impl Sheet {
         self.rows = self.rows.saturating_add(self.empty_rows).saturating_add(self.repeated);
         self.empty_rows = 0;
         self.widest = self.widest.max(self.columns);
-        self.written = self.written.saturating_add(self.columns);
+        self.written = self.written.saturating_add(std::mem::take(&mut self.columns));
     }
 
     fn cells(&self) -> u64 {

@@ -142,6 +142,6 @@ mod tests {
         texts.add((0, 0), text(), &mut left).unwrap();
         assert!(texts.add((0, 1), text(), &mut left).is_err());
         texts.range(&mut left);
-        assert_eq!(left.cells, 5);
+        assert_eq!(left.cells, 4);
     }
 }

@@ -309,6 +309,7 @@ impl<'p> Cut<'p> {
 mod tests {
     use super::*;
     use poecal_storage::limits::{self, Limit};
+    use poecal_testing::old_workbook::container;
 
     fn record(kind: u16, data: &[u8]) -> Vec<u8> {
         [&kind.to_le_bytes(), &u16::try_from(data.len()).unwrap().to_le_bytes(), data].concat()
@@ -344,36 +345,6 @@ mod tests {
         };
         let start = u32::try_from(globals(0).len()).unwrap();
         [globals(start), begin, cells.concat(), record(kind::END, &[])].concat()
-    }
-
-    /// A container of sectors of 512 bytes: the table of sectors, the directory, and the stream.
-    fn container(stream: &[u8]) -> Vec<u8> {
-        let count = stream.len().max(4096).div_ceil(512) as u32;
-        let mut head = vec![0; 512];
-        head[..8].copy_from_slice(super::super::container::MAGIC);
-        head[30] = 9;
-        for (at, value) in [(48, 1), (60, u32::MAX - 1), (68, u32::MAX - 1), (76, 0)] {
-            head[at..at + 4].copy_from_slice(&u32::to_le_bytes(value));
-        }
-        (1..109).for_each(|at| head[76 + 4 * at..80 + 4 * at].fill(0xFF));
-        let mut table: Vec<u32> = vec![u32::MAX - 2, u32::MAX - 1];
-        table.extend((1..count).map(|at| at + 2).chain([u32::MAX - 1]));
-        table.resize(128, u32::MAX);
-        let entry = |name: &str, start: u32, size: u32| {
-            let mut entry: Vec<u8> = name.encode_utf16().flat_map(u16::to_le_bytes).collect();
-            entry.resize(ENTRY, 0);
-            entry[116..120].copy_from_slice(&start.to_le_bytes());
-            entry[120..124].copy_from_slice(&size.to_le_bytes());
-            entry
-        };
-        const ENTRY: usize = 128;
-        let size = u32::try_from(stream.len().max(4096)).unwrap();
-        let mut directory = [entry("Root Entry", u32::MAX - 1, 0), entry("Workbook", 2, size)].concat();
-        directory.resize(512, 0);
-        let mut whole = [head, table.into_iter().flat_map(u32::to_le_bytes).collect(), directory].concat();
-        whole.extend(stream);
-        whole.resize(512 * (3 + count as usize), 0);
-        whole
     }
 
     fn example() -> Vec<Vec<u8>> {
