@@ -32,6 +32,7 @@ use axes::Axes;
 use parsed::{Meant, Parsed};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
+use poecal_storage::limits::Limit;
 
 pub use given::Given;
 pub use language::Language;
@@ -41,8 +42,9 @@ pub use listed::Listed;
 ///
 /// # Errors
 /// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks in more others than
-/// [`Limit::Nesting`](poecal_storage::limits::Limit::Nesting).
+/// [`Limit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`Limit::Program`].
 pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    Limit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
     scan::refuse_nested(text, rules(language))?;
     match language {
         Language::UrScript => urscript::parse(text, given, axes),

@@ -18,6 +18,10 @@ pub enum Limit {
     Program,
     /// Bytes of settings and other small texts.
     Settings,
+    /// Bytes of the ledger of a line of robots.
+    Ledger,
+    /// Bytes of the history of a calibration's checks.
+    History,
     /// Bytes of a table.
     Table,
     /// Rows of a table.
@@ -53,7 +57,7 @@ pub enum Limit {
 }
 
 /// The number of limits.
-const COUNT: usize = 19;
+const COUNT: usize = 21;
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
@@ -108,6 +112,22 @@ pub const LIMITS: [LimitRow; COUNT] = [
         BYTES,
         "settings, a station, a mapping, a lens or a board, a model in TOML, or the joint readings of one picture",
         "take out what it does not need",
+    ),
+    row(
+        Limit::Ledger,
+        "ledger",
+        (256 * MIB, ANY),
+        BYTES,
+        "the ledger of `poecal fleet`",
+        "begin a new one, and name both by --ledger",
+    ),
+    row(
+        Limit::History,
+        "history",
+        (16 * MIB, ANY),
+        BYTES,
+        "the history of checks of a calibration",
+        "move it away: a new one begins",
     ),
     row(Limit::Table, "table", (4096 * MIB, ANY), BYTES, "a table (CSV)", "split the file"),
     row(Limit::Rows, "rows", (1_000_000, 100_000_000), "rows", "measurements of one file", "split the file"),
@@ -187,7 +207,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
     row(
         Limit::Poses,
         "poses",
-        (8_000_000, 1 << 31),
+        (3_000_000, 1 << 31),
         "poses",
         "joint readings and poses in the messages of a bag",
         "record the topics that are needed alone, or split the bag",

@@ -20,7 +20,6 @@ use poecal_programs::axes::Axes;
 use poecal_programs::parsed::Meant;
 use poecal_programs::{Given, Language, parse};
 use poecal_results::programs::read_program;
-use poecal_storage::limits::Limit;
 
 pub use place::PoseCompensation;
 pub use summary::ProgramSummary;
@@ -65,7 +64,7 @@ impl ProgramOptions {
 /// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`] if the text is no program, [`ErrorKind::File`] if it is larger than [`Limit::Program`], and as
+/// as [`parse`] and
 /// [`Compensation::new`](super::Compensation::new).
 pub fn compensate_program(
     text: &[u8],
@@ -73,7 +72,6 @@ pub fn compensate_program(
     factors: &[f64],
     options: &ProgramOptions,
 ) -> Result<(Vec<u8>, ProgramSummary)> {
-    Limit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
     let counting = options.controller.as_ref().filter(|it| !it.is_plain());
     let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;

@@ -4,6 +4,7 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -74,10 +75,10 @@ impl History {
         }
         let mut text = Vec::new();
         disk.open(path)
-            .and_then(|file| file.take(Limit::Text.most() + 1).read_to_end(&mut text))
+            .and_then(|file| file.take(Limit::History.most() + 1).read_to_end(&mut text))
             .map_err(failed)?;
-        if text.len() as u64 > Limit::Text.most() {
-            return Err(refused(path, Limit::Text.exceeded("a history")));
+        if text.len() as u64 > Limit::History.most() {
+            return Err(refused(path, Limit::History.exceeded("a history")));
         }
         let is_torn = text.last().is_some_and(|last| *last != b'\n');
         let lines = text.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
@@ -86,7 +87,7 @@ impl History {
         };
         let lines: Vec<Value> = lines.filter(is_check).collect();
         // A run that was killed while it wrote the first line leaves the beginning of one.
-        let begins_one = text.first() == Some(&b'{') && serde_json::from_slice::<Value>(&text).is_err();
+        let begins_one = text.first() == Some(&b'{') && serde_json::from_slice::<IgnoredAny>(&text).is_err();
         if lines.is_empty() && !text.is_empty() && !(is_torn && begins_one && !text.contains(&b'\n')) {
             let message =
                 "found a file without a check, expected the history of checks or nothing".to_owned();
