@@ -54,9 +54,8 @@ use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit as Erro
 use poecal_results::model::ModelFormat;
 use poecal_results::predictions::PredictionFrame;
 use poecal_results::record::Record;
-use poecal_storage::limits::{self, Limit};
 
-use crate::quantity::{seconds, sigma_m, threads};
+use crate::quantity::{Allowed, limit_of_change, limit_of_files, seconds, threads};
 pub(crate) use shared::{ChainArgs, OutFile};
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
 use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
@@ -80,8 +79,8 @@ pub(crate) struct Arguments {
     #[arg(long, global = true, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
     /// What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names)
-    #[arg(long, global = true, value_name = "NAME=N", value_parser = limits::parse)]
-    pub(crate) limit: Vec<(Limit, u64)>,
+    #[arg(long, global = true, value_name = "NAME=N", value_parser = limit_of_files)]
+    pub(crate) limit: Vec<Allowed>,
     /// Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once]
     #[arg(long, global = true, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) wait: Option<Duration>,
@@ -183,9 +182,10 @@ pub(crate) struct Compare {
     pub(crate) first: PathBuf,
     /// The second calibration of the same robot (calibration.json)
     pub(crate) second: PathBuf,
-    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
-    pub(crate) limit: Option<f64>,
+    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together].
+    /// NAME=N is what a file may take, as for all commands
+    #[arg(long, value_name = "LENGTH", value_parser = limit_of_change, allow_hyphen_values = true)]
+    limit: Vec<Allowed>,
     /// Print each joint with its test against noise, and the errors of both
     #[arg(long)]
     pub(crate) verbose: bool,
@@ -194,6 +194,16 @@ pub(crate) struct Compare {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) place: OutFile,
+}
+
+impl Compare {
+    /// How far the tip may have moved, metres, as stated last.
+    pub(crate) fn limit_m(&self) -> Option<f64> {
+        self.limit
+            .iter()
+            .rev()
+            .find_map(|it| if let Allowed::Change(limit_m) = it { Some(*limit_m) } else { None })
+    }
 }
 
 /// Arguments of `poecal validate`.

@@ -34,6 +34,7 @@ use poecal_numerics::error::{Error, ErrorKind};
 use poecal_numerics::text::visible;
 use poecal_storage::held;
 use poecal_storage::limits::{self, Limits};
+use quantity::Allowed;
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
@@ -181,7 +182,10 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// The limits of this thread with those that were typed.
 fn stated_limits(arguments: &Arguments) -> Limits {
-    arguments.limit.iter().fold(limits::here(), |all, (limit, most)| all.with(*limit, *most))
+    arguments.limit.iter().fold(limits::here(), |all, it| match it {
+        Allowed::File(limit, most) => all.with(*limit, *most),
+        Allowed::Change(_) => all,
+    })
 }
 
 /// Runs a command; gives the exit code.

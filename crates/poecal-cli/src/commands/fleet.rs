@@ -285,7 +285,8 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
     words.extend(["--out".into(), results.clone().into_os_string()]);
-    words.extend(["--force", "--quiet", "--threads", "1"].map(OsString::from));
+    // A process of a fleet that was killed may still be at work on this robot.
+    words.extend(["--force", "--quiet", "--threads", "1", "--wait", "120s"].map(OsString::from));
     words.extend(limits::stated().into_iter().map(|it| format!("--limit={it}").into()));
     if let Some(settings) = &station.settings {
         words.extend(["--settings".into(), settings.clone().into_os_string()]);

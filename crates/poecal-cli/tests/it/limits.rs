@@ -71,6 +71,12 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
         let run = folder.run(&format!("check robot.urdf points.csv --limit {typed}"));
         assert!(run.code == 2 && run.err.contains(part), "{}", run.err);
     }
+    // `compare` has a limit of the change too.
+    folder.run("calibrate robot.urdf points.csv --out out");
+    let compare = "compare out/calibration.json out/calibration.json";
+    assert_eq!(folder.run(&format!("{compare} --limit 0.5mm --limit text=1GiB")).code, 0);
+    let run = folder.run(&format!("{compare} --limit 0.5mm --limit text=500"));
+    assert!(run.code == 2 && run.err.contains("--limit text=N"), "{}", run.err);
     // Settings come from elsewhere.
     folder.write("poecal.toml", "poecal_settings = 1\nmodel = \"robot.urdf\"\nmeasurements = [\"points.csv\"]\nlimit = [\"rows=3\"]\n");
     let run = folder.run("check --settings poecal.toml");
