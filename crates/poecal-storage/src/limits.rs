@@ -104,7 +104,7 @@ pub const LIMITS: [LimitRow; COUNT] = [
         "a model, a calibration, or a file of an instrument",
         "split the file",
     ),
-    row(Limit::Program, "program", (16 * MIB, ANY), BYTES, "a robot program", "cut it into several"),
+    row(Limit::Program, "program", (4 * MIB, ANY), BYTES, "a robot program", "cut it into several"),
     row(
         Limit::Settings,
         "settings",
