@@ -1,6 +1,6 @@
 //! `poecal fleet`: a folder of robots, worked off by processes of one thread each.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -16,6 +16,7 @@ use poecal_results::output::{Existing, FilePlace};
 use poecal_results::settings::{SettingValue, Settings};
 use poecal_results::validation::now;
 use poecal_storage::named_files::actual;
+use poecal_storage::{held, limits};
 
 use crate::args::{Fleet, FleetCommand, FleetPrior, FleetReport};
 use crate::console::Console;
@@ -38,11 +39,19 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
         }
         None => station.ledger.clone(),
     };
+    let _held = held::hold(&place, "the ledger", held::patience(), &mut console.warner())?;
     let mut ledger = Ledger::open(&place)?;
     let mut seen: BTreeMap<PathBuf, String> = BTreeMap::new();
+    let mut told = BTreeSet::new();
     let mut again = arguments.again;
     loop {
-        let all = newest(&station)?;
+        let (all, left) = newest(&station)?;
+        for other in left {
+            let sentence = other.to_string();
+            if told.insert(other) {
+                console.warning(sentence);
+            }
+        }
         let mut own: Vec<Found> =
             all.into_iter().filter(|it| arguments.shard.is_none_or(|shard| it.is_of_shard(shard))).collect();
         own.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.cmp(b)));
@@ -54,24 +63,41 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
             });
         }
         let failed = work_off(&station, &own, &mut ledger, again, console)?;
+        if arguments.watch.is_none() && failed.now + failed.passed == 0 && failed.before > 0 {
+            let what = if failed.before == 1 { "robot failed" } else { "robots failed" };
+            console.say(&format!(
+                "nothing new; {} {what} before, with the same files: {} says why, and --again calibrates all again\n",
+                failed.before,
+                place.display()
+            ))?;
+        }
         again = false;
         let Some(time) = arguments.watch else {
-            return Ok(if failed > 0 { WORSE } else { DONE });
+            return Ok(if failed.now + failed.before > 0 { WORSE } else { DONE });
         };
         thread::sleep(time);
     }
 }
 
-/// Calibrates what the ledger does not have. Returns how many of these robots failed, now or before.
+/// How many robots passed and failed.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    passed: usize,
+    now: usize,
+    before: usize,
+}
+
+/// Calibrates what the ledger does not have.
 fn work_off(
     station: &Station,
     all: &[Found],
     ledger: &mut Ledger,
     again: bool,
     console: &Console,
-) -> Result<usize> {
+) -> Result<Counts> {
     let shared = Shared::read(station)?;
-    let (open, mut failed) = find_open(station, all, ledger, again, &shared);
+    let mut failed = 0;
+    let (open, failed_before) = find_open(station, all, ledger, again, &shared);
     let before = find_changed(&open, ledger, again);
     let (skipped, total) = (all.len() - open.len(), open.len());
     let workers = rayon_threads().min(total.max(1));
@@ -115,7 +141,7 @@ fn work_off(
     if total > 0 {
         console.say(&format!("{passed} of {total} robots passed; {skipped} were done before\n"))?;
     }
-    Ok(failed)
+    Ok(Counts { passed, now: failed, before: failed_before })
 }
 
 /// Finds the robots that the ledger does not have, with their rows, and counts those before that failed.
@@ -259,7 +285,9 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
     words.extend(["--out".into(), results.clone().into_os_string()]);
-    words.extend(["--force", "--quiet", "--threads", "1"].map(OsString::from));
+    // A process of a fleet that was killed may still be at work on this robot.
+    words.extend(["--force", "--quiet", "--threads", "1", "--wait", "120s"].map(OsString::from));
+    words.extend(limits::stated().into_iter().map(|it| format!("--limit={it}").into()));
     if let Some(settings) = &station.settings {
         words.extend(["--settings".into(), settings.clone().into_os_string()]);
     }

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod acceptance;
+#[cfg(any(unix, windows))]
+mod at_once;
 mod bad_input;
 mod board;
 mod certificate;
@@ -29,6 +31,7 @@ mod identify;
 mod init;
 mod joining;
 mod joining_faults;
+mod limits;
 mod lost_beams;
 mod mistaken_files;
 mod offsets;

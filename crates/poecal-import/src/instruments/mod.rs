@@ -42,9 +42,10 @@ use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::ErrorKind;
 #[cfg(feature = "workbooks")]
 use poecal_storage::hashes::Hashing;
+use poecal_storage::limits::Limit;
+use poecal_storage::source;
 #[cfg(feature = "workbooks")]
 use poecal_storage::source::Input;
-use poecal_storage::source::{self, LARGEST_TABLE};
 
 /// What a file of measurements is in messages.
 pub(crate) const MEASURED: &str = "a measurement file (CSV)";
@@ -168,7 +169,7 @@ impl Opening<'_> {
         if configurations::is_folder(path) {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
-        let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        let (input, head) = source::open_any(path, expected, Limit::Table)?;
         source::refuse_named(path, expected)?;
         #[cfg(feature = "workbooks")]
         if workbook::is_one(&head) {
@@ -188,9 +189,12 @@ impl Opening<'_> {
     ) -> poecal_numerics::error::Result<Opened<'p>> {
         let mut bytes = Vec::new();
         let mut input = Hashing::new(input);
-        let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
+        let read = input.by_ref().take(Limit::Workbook.most() + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable(path, &error, expected))?;
-        let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
+        if bytes.len() as u64 > Limit::Workbook.most() {
+            return Err(ErrorKind::File.error(Limit::Workbook.exceeded("a workbook")).in_file(path));
+        }
+        let made = workbook::table(&bytes, self).map_err(|it| it.error(path))?;
         Ok(Opened::Made(Box::new(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK })))
     }
 

@@ -14,7 +14,7 @@ use self::parsed::{CameraInfo, Message, Observation};
 pub(crate) use self::refused::are_messages;
 use super::read::Reader;
 use super::table::Table;
-use crate::pictures::lens_checks::{check, distortion};
+use crate::pictures::lens_checks::{check, distortion, size_of_pictures};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
@@ -286,7 +286,10 @@ fn lens(info: &CameraInfo, path: &Path) -> Result<Lens> {
         let message = format!("found a skew of {skew} in `K`, expected 0");
         return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
     }
-    let size_px = size_px.iter().all(|it| *it >= 1.0).then(|| size_px.map(|it| it as u32));
+    // Messages of a camera that is not calibrated have zeros.
+    let is_stated = size_px.iter().any(|it| *it != 0.0);
+    let size_px = is_stated.then(|| size_of_pictures(*size_px)).transpose();
+    let size_px = size_px.map_err(|error| error.in_file(path))?;
     let distortion = distortion(model, d, path)?;
     Ok(Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px })
 }

@@ -1,8 +1,9 @@
 //! Tables of cameras (CSV).
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::pictures::lens_checks::EXPECTED;
+use crate::pictures::lens_checks::{EXPECTED, size_of_pictures};
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
@@ -82,8 +83,9 @@ impl CameraColumns {
         let size = self.size.map(|column| column.map(|at| cell(reader, row, at, "size")).transpose());
         let [width, height] = size;
         let size_px = match (width?.flatten(), height?.flatten()) {
-            (Some(width), Some(height)) if width >= 1.0 && height >= 1.0 => {
-                Some([width as u32, height as u32])
+            (Some(width), Some(height)) => {
+                let found = size_of_pictures([width, height]);
+                Some(found.map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?)
             }
             _ => None,
         };
@@ -103,8 +105,12 @@ impl CameraColumns {
 /// Refuses two cameras of one name.
 fn refuse_twice(table: &Table<'_>, is_named: bool, cameras: &[CameraRow]) -> Result<()> {
     let path = table.header.path;
-    for (at, (camera, own, line)) in cameras.iter().enumerate() {
-        if let Some((_, other, first)) = cameras.iter().take(at).find(|it| it.0.name == camera.name) {
+    let mut firsts: BTreeMap<&str, &CameraRow> = BTreeMap::new();
+    for row in cameras {
+        let (camera, own, line) = row;
+        let first = *firsts.entry(&camera.name).or_insert(row);
+        if !std::ptr::eq(first, row) {
+            let (_, other, first) = first;
             if !is_named && own == other {
                 return Err(header_without_names(table));
             }

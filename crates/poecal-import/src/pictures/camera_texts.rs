@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::intrinsics::of_intrinsics;
-use crate::pictures::lens_checks::{EXPECTED, distortion};
+use crate::pictures::lens_checks::{EXPECTED, distortion, size_of_pictures};
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::yaml::{Leaf, leaves};
@@ -44,7 +44,8 @@ fn read_chain(leaves: &[Leaf], path: &Path) -> Result<Vec<Camera>> {
         let kind = word_at(leaves, &under, &["distortion_model"]).unwrap_or_else(|| "none".to_owned());
         let distortion = distortion(&kind, &bent, path)?;
         let size = list(leaves, &under, &["resolution"], path)?;
-        let size_px = if let [width, height] = size[..] { Some([width as u32, height as u32]) } else { None };
+        let size_px = <[f64; 2]>::try_from(size).ok().map(size_of_pictures).transpose();
+        let size_px = size_px.map_err(|error| error.in_file(path))?;
         cameras
             .push(Camera::new(name, Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px }));
     }
@@ -94,16 +95,17 @@ fn read_single(leaves: &[Leaf], path: &Path) -> Result<Camera> {
         word_at(leaves, &none, &["fisheye_model", "fisheye"]).is_some_and(|it| it == "1" || it == "true");
     let kind = word_at(leaves, &none, &["distortion_model"]);
     let kind = kind.unwrap_or_else(|| if is_fisheye { "fisheye".to_owned() } else { String::new() });
-    let number = |names: &[&str]| word_at(leaves, &none, names).and_then(|it| it.parse::<u32>().ok());
+    let number = |names: &[&str]| word_at(leaves, &none, names).and_then(|it| it.parse::<f64>().ok());
     let (width, height) = (
         number(&["image_width", "image_Width", "width"]),
         number(&["image_height", "image_Height", "height"]),
     );
+    let size_px = width.zip(height).map(|(width, height)| size_of_pictures([width, height])).transpose();
     let lens = Lens {
         focal_px: [fx, fy],
         centre_px: [cx, cy],
         distortion: distortion(&kind, &bent, path)?,
-        size_px: width.zip(height).map(|(width, height)| [width, height]),
+        size_px: size_px.map_err(|error| error.in_file(path))?,
     };
     Ok(Camera::new(word_at(leaves, &none, &["camera_name"]).unwrap_or_default(), lens))
 }

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use roxmltree::Document;
-
 use super::camera_tables::read_table;
 use super::camera_texts::read_yaml;
 use super::unknown_camera::{UNKNOWN, unknown};
-use crate::pictures::lens_checks::{EXPECTED, check};
+use crate::pictures::lens_checks::{EXPECTED, check, size_of_pictures};
 use crate::stored_pictures::stored_cameras;
 use poecal_model::camera::{Camera, Distortion, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::is_file;
-use poecal_storage::text_of;
+use poecal_storage::limits::Limit;
+use poecal_storage::source_text::read_up_to;
+use poecal_storage::xml::parsed;
 
 /// Reads the cameras of a file; of one that has a camera in several versions, those of the version that is named, as in `FILE#VERSION`.
 ///
@@ -26,11 +26,11 @@ pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
     let extension = path.extension().map(|it| it.to_ascii_lowercase());
     let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
     let cameras = if is(&["yaml", "yml"]) {
-        read_yaml(&text_of(path, "a camera (YAML)")?, path)?
+        read_yaml(&read_up_to(path, "a camera (YAML)", Limit::Settings)?, path)?
     } else if is(&["json"]) {
         stored_cameras(path)?
     } else if is(&["xml"]) {
-        read_visp(&text_of(path, "a camera (XML)")?, path)?
+        read_visp(&read_up_to(path, "a camera (XML)", Limit::Settings)?, path)?
     } else {
         read_table(path, version)?
     };
@@ -51,14 +51,7 @@ pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
 
 /// ViSP: `u = u0 + px x (1 + kud r²)`.
 fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
-    let document = Document::parse(text).map_err(|error| {
-        let place = error.pos();
-        Error::new(ErrorKind::Syntax, format!("found broken XML ({error}), expected {EXPECTED}")).at(
-            path,
-            place.row as usize,
-            place.col as usize,
-        )
-    })?;
+    let document = parsed(text, path, EXPECTED)?;
     let mut cameras: Vec<Camera> = Vec::new();
     for node in document.descendants().filter(|node| node.has_tag_name("camera")) {
         let text = |of: roxmltree::Node<'_, '_>, name: &str| {
@@ -84,8 +77,11 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
         let mut k = [0.0; 8];
         k[0] = number(model, "kud").unwrap_or(0.0);
         let size = ["image_width", "image_height"].map(|name| number(node, name));
-        let size_px =
-            if let [Some(width), Some(height)] = size { Some([width as u32, height as u32]) } else { None };
+        let size_px = if let [Some(width), Some(height)] = size {
+            Some(size_of_pictures([width, height]).map_err(|error| error.in_file(path))?)
+        } else {
+            None
+        };
         let lens =
             Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
         let name = text(node, "name").unwrap_or_default();

@@ -19,6 +19,7 @@ use poecal_model::robot::ThirdAxis;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
+use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
@@ -139,7 +140,7 @@ impl ColumnMap {
     /// [`ErrorKind::File`] if it cannot be read, else as [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        ColumnMap::parse(&source_text::read(path, "a column mapping (TOML)")?, path)
+        ColumnMap::parse(&source_text::read_up_to(path, "a column mapping (TOML)", Limit::Settings)?, path)
     }
 
     /// A mapping from its TOML text; messages call it `path`.

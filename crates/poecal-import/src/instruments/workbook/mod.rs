@@ -1,18 +1,26 @@
 //! Workbooks of spreadsheets (.xlsx, .xlsm, .xlsb, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
+//!
+//! The sizes of an archive are bounded before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read here
+//! (`old.rs`, from their container, `container.rs`), since no other reader bounds them.
+
+mod archive;
+mod cells;
+mod container;
+mod old;
 
 use std::io::Cursor;
 
-use calamine::{Data, Range, Reader as _, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Range, Reader as _, open_workbook_auto_from_rs};
 
+use self::archive::Parts;
+use self::cells::{Book, Left};
+use self::old::Sheet as OldSheet;
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
 use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
 
-/// Largest workbook, bytes, and largest size of its parts unpacked.
-pub(crate) const LARGEST: u64 = 256 << 20;
-const LARGEST_UNPACKED: u64 = 1 << 30;
 /// Rows in which the header is sought.
 const FIRST: usize = 60;
 /// Fewest columns of a table, and fewest rows of numbers.
@@ -33,32 +41,54 @@ struct Found {
     columns: usize,
 }
 
+/// A workbook whose sheets are read one by one.
+enum Workbook<'b> {
+    Archive(Box<Book<'b>>, Left),
+    Old(Vec<OldSheet>),
+}
+
+impl<'b> Workbook<'b> {
+    fn open(bytes: &'b [u8]) -> Result<Self, String> {
+        if bytes.starts_with(container::MAGIC) {
+            return old::sheets(bytes).map(Workbook::Old);
+        }
+        let parts = Parts::of(bytes)?;
+        let book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| {
+            "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
+             save the table as `CSV UTF-8`"
+        })?;
+        parts.refuse_sheets(book.sheet_names().len())?;
+        Ok(Workbook::Archive(Box::new(book), Left::of_workbook()))
+    }
+
+    fn names(&self) -> Vec<String> {
+        match self {
+            Workbook::Archive(book, _) => book.sheet_names(),
+            Workbook::Old(sheets) => sheets.iter().map(|it| it.0.clone()).collect(),
+        }
+    }
+
+    /// The cells of a sheet, once.
+    fn range(&mut self, name: &str) -> Result<Range<Data>, String> {
+        match self {
+            Workbook::Archive(book, left) => cells::range(book, name, left),
+            Workbook::Old(sheets) => {
+                let own = sheets.iter_mut().find(|it| it.0 == name);
+                Ok(own.map(|it| std::mem::take(&mut it.1)).unwrap_or_default())
+            }
+        }
+    }
+}
+
 /// The table of a workbook.
-pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refused> {
-    if bytes.len() as u64 > LARGEST {
-        return Refused::whole(format!(
-            "found a workbook of more than {} MiB, expected less: write its table as CSV",
-            LARGEST >> 20
-        ));
-    }
-    if unpacked(&bytes).is_some_and(|it| it > LARGEST_UNPACKED) {
-        return Refused::whole(format!(
-            "found an archive of more than {} MiB unpacked, expected a workbook of less: write its table as CSV",
-            LARGEST_UNPACKED >> 20
-        ));
-    }
-    let Ok(mut book) = open_workbook_auto_from_rs(Cursor::new(bytes)) else {
-        return Refused::whole(
-            "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: save the table as \
-             `CSV UTF-8`",
-        );
-    };
-    let names = book.sheet_names();
+pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused> {
+    let mut book = Workbook::open(bytes).or_else(Refused::whole)?;
+    let names = book.names();
     if let Some(wanted) = &opening.options.sheet {
         let Some(name) = names.iter().find(|it| *it == wanted) else {
             return Refused::whole(format!("found no sheet `{wanted}`, expected one of {}", quoted(&names)));
         };
-        let range = range(&mut book, name)?;
+        let range = book.range(name).or_else(Refused::whole)?;
         return match found(&range) {
             Some(table) => made(&range, &table, name),
             None => Refused::whole(format!(
@@ -68,7 +98,7 @@ pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
     }
     let mut tables = Vec::new();
     for name in &names {
-        let range = range(&mut book, name)?;
+        let range = book.range(name).or_else(Refused::whole)?;
         if let Some(table) = found(&range) {
             tables.push((name.clone(), range, table));
         }
@@ -91,14 +121,6 @@ pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
             ))
         }
     }
-}
-
-fn range(book: &mut Sheets<Cursor<Vec<u8>>>, name: &str) -> Result<Range<Data>, Refused> {
-    book.worksheet_range(name).or_else(|error| {
-        Refused::whole(format!(
-            "the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again"
-        ))
-    })
 }
 
 /// A number of a cell.
@@ -243,24 +265,4 @@ fn is_ambiguous(text: &str) -> bool {
     let Some((before, behind)) = text.trim().split_once(',') else { return false };
     let before = before.trim_start_matches(['-', '+']);
     behind.len() == 3 && (1..=3).contains(&before.len()) && before != "0"
-}
-
-/// The size of all parts of an archive, unpacked, as its list says.
-fn unpacked(bytes: &[u8]) -> Option<u64> {
-    let number = |at: usize, size: usize| -> Option<u64> {
-        let own = bytes.get(at..at + size)?;
-        Some(own.iter().rev().fold(0, |sum, it| sum << 8 | u64::from(*it)))
-    };
-    let end = bytes.windows(4).rposition(|it| it == b"PK\x05\x06")?;
-    let (count, mut at) = (number(end + 10, 2)?, usize::try_from(number(end + 16, 4)?).ok()?);
-    let mut sum: u64 = 0;
-    for _ in 0..count {
-        if bytes.get(at..at + 4)? != b"PK\x01\x02" {
-            return None;
-        }
-        sum = sum.saturating_add(number(at + 24, 4)?);
-        let lengths = number(at + 28, 2)? + number(at + 30, 2)? + number(at + 32, 2)?;
-        at += 46 + usize::try_from(lengths).ok()?;
-    }
-    Some(sum)
 }
