@@ -12,7 +12,7 @@ use crate::doubts::one_zero::one_zero;
 use crate::doubts::signs::Signs;
 use crate::events::Events;
 use crate::pictures::image_map::image_maps;
-use crate::pictures::optics_doubts::optics_doubt;
+use crate::pictures::optics_doubts::{OpticsDoubt, optics_doubt};
 use crate::pictures::view_doubts::view_doubts;
 use crate::robust::RobustFit;
 use crate::run::Run;
@@ -58,11 +58,14 @@ impl<'a> Found<'a> {
             figures.trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
         figures.explain_suspicions(&fit.run.robot);
-        let warnings = fit.warnings(&figures, &signs, &events);
+        let optics = optics_doubt(&fit);
+        let against_good = optics.as_ref().and_then(|it| it.against_good.clone());
+        let warnings = fit.warnings(&figures, &signs, (&events, optics));
         let images = image_maps(&fit, &figures);
         let stations = stations(&fit.session(), &fit.estimate, fit.noise());
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
         let judged = events.against.into_iter().fold(judged, Judged::against);
+        let judged = against_good.into_iter().fold(judged, Judged::against_good);
         let verdict = verdict(&judged, correction.as_ref(), &accuracy, &trust);
         let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
         let calibration = Calibration {
@@ -109,7 +112,12 @@ impl CalibratedFit<'_> {
     }
 
     /// Warnings, a sentence each.
-    fn warnings(&self, figures: &Figures, signs: &Signs, events: &Events) -> Vec<String> {
+    fn warnings(
+        &self,
+        figures: &Figures,
+        signs: &Signs,
+        (events, optics): (&Events, Option<OpticsDoubt>),
+    ) -> Vec<String> {
         let Figures { accuracy, robustness, correction, .. } = figures;
         let mut warnings = signs.warnings();
         warnings.extend(rounded(&self.session(), accuracy.training.calibrated.leading_m()));
@@ -118,7 +126,7 @@ impl CalibratedFit<'_> {
         }
         warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
         warnings.extend(one_zero(self));
-        warnings.extend(optics_doubt(self));
+        warnings.extend(optics.map(|it| it.statement));
         warnings.extend(view_doubts(self));
         warnings.extend(events.early.clone());
         warnings

@@ -20,6 +20,7 @@ mod lens;
 mod lens_tests;
 mod moved;
 mod noise;
+mod other_lens;
 mod other_poses;
 mod readings;
 mod result;
@@ -27,6 +28,7 @@ mod simulated;
 #[cfg(test)]
 mod tests;
 mod tip;
+mod tip_errors;
 mod touches;
 mod turns;
 mod types;

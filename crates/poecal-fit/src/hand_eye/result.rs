@@ -92,7 +92,12 @@ pub fn hand_eye(
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)
+    let mut result = finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    if let Some(doubt) = &target.lens_doubt {
+        result.findings.push(Finding::new(FindingKind::Lens, doubt.clone(), Vec::new()));
+        result.weaken(doubt.clone());
+    }
+    Ok(result)
 }
 
 /// The target's list with those of several poses that the rows agree with.

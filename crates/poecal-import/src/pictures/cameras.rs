@@ -14,30 +14,39 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::is_file;
 use poecal_storage::text_of;
 
+/// Cameras of a file, and what was understood of it, a sentence each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CameraFile {
+    /// The cameras.
+    pub cameras: Vec<Camera>,
+    /// Regions of the sensor that were taken into account, and keys that were not read.
+    pub said: Vec<String>,
+}
+
 /// Reads the cameras of a file; of one that has a camera in several versions, those of the version that is named, as in `FILE#VERSION`.
 ///
 /// # Errors
 /// A file that cannot be read, or has no camera, a camera twice, or numbers that are none of a lens.
-pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
+pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     if let Some(size) = typed.strip_prefix(UNKNOWN) {
-        return Ok(vec![unknown(size, typed)?]);
+        return Ok(CameraFile { cameras: vec![unknown(size, typed)?], said: Vec::new() });
     }
     let (path, version) = camera_file(typed).unwrap_or((Path::new(typed), None));
     let extension = path.extension().map(|it| it.to_ascii_lowercase());
     let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
-    let cameras = if is(&["yaml", "yml"]) {
+    let (cameras, said) = if is(&["yaml", "yml"]) {
         read_yaml(&text_of(path, "a camera (YAML)")?, path)?
     } else if is(&["json"]) {
-        stored_cameras(path)?
+        (stored_cameras(path)?, Vec::new())
     } else if is(&["xml"]) {
-        read_visp(&text_of(path, "a camera (XML)")?, path)?
+        (read_visp(&text_of(path, "a camera (XML)")?, path)?, Vec::new())
     } else {
         read_table(path, version)?
     };
     for Camera { name, lens, .. } in &cameras {
         check(name, lens).map_err(|error| error.in_file(path))?;
     }
-    Ok(cameras)
+    Ok(CameraFile { cameras, said })
 }
 
 /// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.
@@ -48,6 +57,9 @@ pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
         _ => (Path::new(typed), None),
     })
 }
+
+/// Models of ViSP that are read: without distortion, and with one coefficient.
+const VISP_MODELS: [&str; 2] = ["perspectiveProjWithoutDistortion", "perspectiveProjWithDistortion"];
 
 /// ViSP: `u = u0 + px x (1 + kud r²)`.
 fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
@@ -69,6 +81,21 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
             text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
         };
         let model = node.children().filter(|child| child.has_tag_name("model"));
+        let model: Vec<_> = model.collect();
+        let kinds = model.iter().map(|model| text(*model, "type").unwrap_or_default());
+        let is_bent_otherwise = |kind: &String| !kind.is_empty() && !VISP_MODELS.contains(&kind.as_str());
+        if let Some(kind) = kinds.filter(is_bent_otherwise).next()
+            && !model.iter().any(|model| text(*model, "type").is_some_and(|it| it == VISP_MODELS[1]))
+        {
+            let message = format!("found the model `{kind}`, expected {}", VISP_MODELS.join(" or "));
+            let place = document.text_pos_at(node.range().start);
+            return Err(Error::new(ErrorKind::Measurement, message).at(
+                path,
+                place.row as usize,
+                place.col as usize,
+            ));
+        }
+        let model = model.into_iter();
         // The model with distortion, where both are there.
         let Some(model) = model.max_by_key(|model| number(*model, "kud").is_some()) else { continue };
         let parts = ["px", "py", "u0", "v0"].map(|name| number(model, name));

@@ -1,0 +1,72 @@
+//! Keys of files of cameras and boards that are not read: those that scale or shift are refused, others are named unless they are harmless.
+
+use std::path::Path;
+
+use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_storage::yaml::Leaf;
+
+/// Parts of names of keys that say how pictures were made of the sensor's, or how numbers are scaled.
+const CHANGES: [&str; 14] = [
+    "scale", "offset", "crop", "binning", "decimation", "skew", "flip", "mirror", "rotat", "resiz", "zoom", "shift",
+    "downsampl", "subsampl",
+];
+/// The same as whole names: the second parameter of an omnidirectional lens, and regions.
+const CHANGES_BY_NAME: [&str; 3] = ["xi", "roi", "region"];
+/// Parts of names of keys that change no number of a lens or a board.
+const HARMLESS: [&str; 14] = [
+    "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic", "frames", "flag",
+    "views",
+];
+/// Values of a key that leave everything as it is.
+const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
+
+/// A sentence that names the keys of a file that were not read and are not harmless; `read` says of a lower-case key at the place `at` of the
+/// leaves' keys whether it was read or is known to be harmless there.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] of a key that scales or shifts what was read, with its place.
+pub(crate) fn other_keys(
+    leaves: &[Leaf],
+    at: usize,
+    read: impl Fn(&str) -> bool,
+    path: &Path,
+) -> Result<Option<String>> {
+    let mut others: Vec<String> = Vec::new();
+    for leaf in leaves {
+        let Some(key) = leaf.path.get(at) else { continue };
+        let small = key.to_lowercase();
+        if read(&small) || HARMLESS.iter().any(|part| small.contains(part)) {
+            continue;
+        }
+        if changes(leaf, at) {
+            let message = format!(
+                "found `{}` for `{}`, which this program does not apply, expected numbers of the pictures as they are: state them for these \
+                 pictures, and remove the key",
+                leaf.text,
+                leaf.path.join(".")
+            );
+            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, leaf.line));
+        }
+        let word = format!("`{key}`");
+        if !others.contains(&word) {
+            others.push(word);
+        }
+    }
+    Ok((!others.is_empty()).then(|| format!("{}: did not read {}", path.display(), first_few(&others))))
+}
+
+/// Whether a key scales or shifts by a value that is not neutral.
+fn changes(leaf: &Leaf, at: usize) -> bool {
+    let keys = leaf.path.get(at..).unwrap_or_default();
+    let is_one = |key: &String| {
+        let key = key.to_lowercase();
+        CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str())
+    };
+    let value = leaf.text.trim().to_lowercase();
+    let is_factor = keys.iter().any(|key| !key.to_lowercase().contains("offset") && !key.to_lowercase().contains("shift"));
+    let is_neutral = match value.parse::<f64>() {
+        Ok(number) => number == 0.0 || number == 1.0 && is_factor,
+        Err(_) => NEUTRAL.contains(&value.as_str()),
+    };
+    !is_neutral && keys.iter().any(is_one)
+}
