@@ -24,6 +24,7 @@ mod other_lens;
 mod other_poses;
 mod readings;
 mod result;
+mod scale;
 mod simulated;
 #[cfg(test)]
 mod tests;

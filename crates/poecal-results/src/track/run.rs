@@ -5,8 +5,9 @@ use super::found::{Explanation, Tracked, explanation};
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
 use super::model::Model;
-use super::options::{State, TrackOptions};
+use super::options::{JudgedBy, State, TrackOptions};
 use super::pairs::Changes;
+use super::several::several_zeros;
 use super::visit::Visit;
 use super::{sight, words};
 use crate::calibration_file::CalibrationFile;
@@ -55,9 +56,20 @@ pub fn track(
     let mut hypotheses = hypotheses(&changes.jacobian, &visit, options);
     leave_unseen_out(&mut hypotheses, &evidence, level);
     let tests = Tests::new(&hypotheses);
-    let verdict = explain(&evidence, &hypotheses, &tests, level);
+    let mut verdict = explain(&evidence, &hypotheses, &tests, level);
+    // What was stated of the noise is kept: more than it is a change that is not named yet.
+    let stated = match level {
+        Level::Known(variance) if judged_by == JudgedBy::Repeats => Some(variance),
+        Level::Known(_) | Level::Found(..) => None,
+    };
+    if let Some(variance) = stated.filter(|_| verdict.is_wider)
+        && let Some((several, complete)) = several_zeros(&evidence, &hypotheses, variance)
+    {
+        hypotheses.push(several);
+        verdict = complete;
+    }
     if verdict.is_wider {
-        notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
+        notes.push(words::wider(stated.is_some(), verdict.best.is_some(), verdict.variance.sqrt()));
     }
     if repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
         notes.push(words::copied());
@@ -74,14 +86,15 @@ pub fn track(
         (verdict.variance, verdict.freedom),
         options,
     );
-    let (change_m, noise_m) = in_metres(&changes, &verdict, verdict.left);
+    let (change_m, own_noise_m) = in_metres(&changes, &verdict, verdict.left);
+    let noise_m = stated.map_or(own_noise_m, |variance| changes.largest_sigma() * variance.sqrt());
     let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
     let (left_m, _) =
         in_metres(&changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
     let usual_m = usual_m(&changes, level, &model);
     // Of a zero far off, what is not linear is left.
     let is_nearly = is_far && left_m < NEARLY * change_m;
-    let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
+    let is_unexplained = !is_nearly && own_noise_m > BEYOND * usual_m;
     if is_unexplained {
         (explanation, alternatives) = (None, Vec::new());
         notes.push(words::unexplained(change_m, usual_m, visit.device_is_known));
