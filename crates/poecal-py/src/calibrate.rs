@@ -159,6 +159,7 @@ pub(crate) fn calibrate(
     };
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
+    let options = CalibrationOptions { devices: robot.model.devices_of(&data), ..options };
     let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
     let (found, repaired, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
     let data = kept_rows(measurements, repaired, data);

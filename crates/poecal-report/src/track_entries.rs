@@ -209,7 +209,8 @@ fn words(found: &Explanation) -> String {
         Kind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
         Kind::TwoZeros => format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1)),
         Kind::Zeros => {
-            let all = found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
+            let all =
+                found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
             all.collect::<Vec<_>>().join(", ")
         }
     }

@@ -138,7 +138,9 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64
 fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
     let name = |at: usize| setup.session.robot.joints.get(at).map(|it| it.name.as_str());
     let is_it = |parameter: &Parameter| {
-        parameter.value_term().is_some_and(|it| it.term == Term::OFFSET && name(it.joint) == Some(&joint.name))
+        parameter
+            .value_term()
+            .is_some_and(|it| it.term == Term::OFFSET && name(it.joint) == Some(&joint.name))
     };
     setup.layout.parameters().any(|(parameter, _)| is_it(parameter))
 }
@@ -179,7 +181,8 @@ fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Dir
     add(Cause::BaseFrame, base_motions, &[], base);
     let free = "joint offsets: motions of free axes, targets or the device have the same effect as some of them together: chosen nearest to the \
                 model; hold axes (--fix joints) to find offsets";
-    let beside_axes: Vec<String> = joints.iter().filter(|joint| has_offset(setup, joint)).map(|it| it.name.clone()).collect();
+    let beside_axes: Vec<String> =
+        joints.iter().filter(|joint| has_offset(setup, joint)).map(|it| it.name.clone()).collect();
     add(Cause::JointOffsets, offsets, &beside_axes, free);
     let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
     // Beside held axes or targets an offset is no other unknown.

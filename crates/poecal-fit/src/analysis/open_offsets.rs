@@ -10,11 +10,16 @@ use poecal_model::robot::Term;
 
 /// Share of an unknown (as a cosine) in directions without effect from which on it is not determined.
 const OPEN: f64 = 0.01;
+/// Singular value of exact directions above which knowing something says something of them.
+const EXACT: f64 = 1e-5;
 
 /// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with its place in a step.
 fn own_offsets(setup: &Setup<'_>) -> Vec<(usize, usize)> {
     let is_held = |joint: usize| {
-        !setup.layout.parameters().any(|(it, _)| it.value_term().is_none() && it.model().subject() == Subject::Joint(joint))
+        !setup
+            .layout
+            .parameters()
+            .any(|(it, _)| it.value_term().is_none() && it.model().subject() == Subject::Joint(joint))
     };
     let offset = |(parameter, places): (&Parameter, &[(usize, f64)])| {
         let term = parameter.value_term().filter(|it| it.term == Term::OFFSET && is_held(it.joint))?;
@@ -42,7 +47,8 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
     let mut groups: Vec<(Vec<Block>, Vec<(usize, usize)>)> = Vec::new();
     for &(joint, place) in &open {
         let hidden = hiding(setup, &open, joint);
-        let by = hidden.into_iter().find(|blocks| !is_open(&subspace::without(&space, &units(setup, blocks)).0, place));
+        let known = |blocks: &[Block]| subspace::without_beyond(&space, &units(setup, blocks), EXACT).0;
+        let by = hidden.into_iter().find(|blocks| !is_open(&known(blocks), place));
         let by = by.unwrap_or_default();
         match groups.iter_mut().find(|(known, _)| *known == by) {
             Some((_, joints)) => joints.push((joint, place)),
@@ -54,7 +60,7 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
     for (by, joints) in &groups {
         let unit = |place: usize| (0..n).map(|k| f64::from(u8::from(k == place))).collect::<Vec<f64>>();
         let own: Vec<Vec<f64>> = joints.iter().map(|(_, place)| unit(*place)).collect();
-        let (rest, taken) = subspace::without(&left, &own);
+        let (rest, taken) = subspace::without_beyond(&left, &own, OPEN);
         left = rest;
         found.push(direction(setup, by, joints, taken));
     }
@@ -98,7 +104,8 @@ fn direction(setup: &Setup<'_>, by: &[Block], joints: &[(usize, usize)], directi
         targets: session.data.targets.clone(),
         stations: session.data.stations.clone(),
     };
-    let zeros: Vec<String> = joints.iter().map(|(joint, _)| all.of(Block::Term(*joint, Term::OFFSET))).collect();
+    let zeros: Vec<String> =
+        joints.iter().map(|(joint, _)| all.of(Block::Term(*joint, Term::OFFSET))).collect();
     let hidden: Vec<String> = by.iter().map(|it| all.of(*it)).collect();
     let has = |wanted: &dyn Fn(&Block) -> bool| by.iter().any(wanted);
     let frame = has(&|it| matches!(it, Block::Frame(_))).then_some("the place of the device");
@@ -113,11 +120,16 @@ fn direction(setup: &Setup<'_>, by: &[Block], joints: &[(usize, usize)], directi
         )
     } else {
         format!(
-            "{} and {what} can change together: hold what has not moved ({}), or free fewer zeros",
+            "{} and {what} can change together: hold what has not moved ({}), where the calibration.json that is the model has it, or free fewer zeros",
             zeros.join(" and "),
             held.join(" ")
         )
     };
     let joints = joints.iter().filter_map(|(joint, _)| session.robot.joints.get(*joint));
-    Direction { description, joints: joints.map(|it| it.name.clone()).collect(), cause: Cause::JointOffsets, directions }
+    Direction {
+        description,
+        joints: joints.map(|it| it.name.clone()).collect(),
+        cause: Cause::JointOffsets,
+        directions,
+    }
 }

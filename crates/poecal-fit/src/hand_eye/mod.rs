@@ -30,6 +30,8 @@ mod simulated;
 mod tests;
 mod tip;
 mod tip_errors;
+#[cfg(test)]
+mod tip_tests;
 mod touches;
 mod turns;
 mod types;

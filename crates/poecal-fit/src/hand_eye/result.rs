@@ -92,7 +92,8 @@ pub fn hand_eye(
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    let mut result = finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    let mut result =
+        finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
     if let Some(doubt) = &target.lens_doubt {
         result.findings.push(Finding::new(FindingKind::Lens, doubt.clone(), Vec::new()));
         result.weaken(doubt.clone());

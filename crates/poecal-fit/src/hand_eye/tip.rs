@@ -126,8 +126,8 @@ fn other_reading(touches: &Touches, layout: &Layout, found: &TipFit) -> Option<E
     let others = touches.flange.others.iter().map(|it| (it.advice.as_str(), it.poses.clone()));
     let fits = others.chain([inverted]).filter_map(|(advice, poses)| {
         let fit = layout.robustly(&poses)?;
-        let is_as_sure = counted(&fit.kept) >= counted(&found.kept)
-            && layout.least_tilted(&poses, &fit.kept).1 > UNTILTED;
+        let is_as_sure =
+            counted(&fit.kept) >= counted(&found.kept) && layout.least_tilted(&poses, &fit.kept).1 > UNTILTED;
         is_as_sure.then(|| (fit.rms(&poses, layout), advice))
     });
     let (rms, advice) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -222,12 +222,7 @@ impl Tip {
 }
 
 /// Sets level and reasons; of the direction that tilted least with its tilt, and the largest turn.
-fn judge(
-    tool: &mut Tool,
-    (weak, spread): (Vector3<f64>, f64),
-    turned: f64,
-    name: &dyn Fn(usize) -> String,
-) {
+fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name: &dyn Fn(usize) -> String) {
     let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
     let (mut against, mut reasons) = (Vec::new(), Vec::new());
     if tool.rms_m > USELESS {

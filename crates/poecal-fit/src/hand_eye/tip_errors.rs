@@ -34,7 +34,12 @@ enum Alike {
 
 /// Covariance of the unknowns (tips, then points), m²; `about` is the direction of the flange about which it turned most. `None` where touches do not
 /// determine them.
-pub(crate) fn covariance(poses: &[Pose], layout: &Layout, fit: &TipFit, about: &Vector3<f64>) -> Option<DMatrix<f64>> {
+pub(crate) fn covariance(
+    poses: &[Pose],
+    layout: &Layout,
+    fit: &TipFit,
+    about: &Vector3<f64>,
+) -> Option<DMatrix<f64>> {
     let kept: Vec<usize> = (0..poses.len()).filter(|&row| fit.kept[row]).collect();
     let kept: Vec<usize> = kept.iter().copied().step_by(kept.len().div_ceil(MOST).max(1)).collect();
     let mut kinds = vec![Alike::Never];

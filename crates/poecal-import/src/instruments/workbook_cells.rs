@@ -9,8 +9,7 @@ use crate::table::places::Sheet;
 use crate::table::times::seconds_of;
 
 /// What is to be done about formulas without results.
-const REMEDY: &str =
-    "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
+const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
 /// Refuses formulas of a table that have no result, or 0 in the whole column, as programs write them that do not compute: its rows, and its
 /// columns with their names.

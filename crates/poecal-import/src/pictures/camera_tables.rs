@@ -4,11 +4,11 @@ use std::path::Path;
 
 use super::other_keys::other_keys;
 use crate::pictures::lens_checks::EXPECTED;
+use crate::table::cells::Cell;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;
-use crate::table::cells::Cell;
 use crate::table::{Row, Table};
 use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};

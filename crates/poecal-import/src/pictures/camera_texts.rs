@@ -23,7 +23,9 @@ const OF_KALIBR: [&str; 9] = [
     "timeshift_cam_imu",
 ];
 /// Keys of OpenCV and ROS that are read, or say nothing of the lens: how it was calibrated, and how pictures would be rectified.
-const OF_OPENCV_AND_ROS: [&str; 49] = [
+const OF_OPENCV_AND_ROS: [&str; 51] = [
+    "distortion_model",
+    "distortion",
     "header",
     "width",
     "height",
@@ -89,8 +91,10 @@ pub(crate) fn read_yaml(text: &str, path: &Path) -> Result<(Vec<Camera>, Vec<Str
     }
     let none: [String; 0] = [];
     if let Some(lens) = of_intrinsics(&leaves, path)? {
-        let of_lens: Vec<Leaf> =
-            leaves.into_iter().filter(|leaf| leaf.path.first().is_some_and(|key| key == "intrinsics")).collect();
+        let of_lens: Vec<Leaf> = leaves
+            .into_iter()
+            .filter(|leaf| leaf.path.first().is_some_and(|key| key == "intrinsics"))
+            .collect();
         let said = other_keys(&of_lens, 1, |key| ["fx", "fy", "cx", "cy"].contains(&key), path)?;
         let name = word_at(&of_lens, &none, &["camera_name"]).unwrap_or_default();
         return Ok((vec![Camera::new(name, lens)], said.into_iter().collect()));

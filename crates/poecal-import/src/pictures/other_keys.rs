@@ -7,15 +7,27 @@ use poecal_storage::yaml::Leaf;
 
 /// Parts of names of keys that say how pictures were made of the sensor's, or how numbers are scaled.
 const CHANGES: [&str; 14] = [
-    "scale", "offset", "crop", "binning", "decimation", "skew", "flip", "mirror", "rotat", "resiz", "zoom", "shift",
-    "downsampl", "subsampl",
+    "scale",
+    "offset",
+    "crop",
+    "binning",
+    "decimation",
+    "skew",
+    "flip",
+    "mirror",
+    "rotat",
+    "resiz",
+    "zoom",
+    "shift",
+    "downsampl",
+    "subsampl",
 ];
 /// The same as whole names: the second parameter of an omnidirectional lens, and regions.
 const CHANGES_BY_NAME: [&str; 3] = ["xi", "roi", "region"];
 /// Parts of names of keys that change no number of a lens or a board.
 const HARMLESS: [&str; 14] = [
-    "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic", "frames", "flag",
-    "views",
+    "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic",
+    "frames", "flag", "views",
 ];
 /// Values of a key that leave everything as it is.
 const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
@@ -63,7 +75,9 @@ fn changes(leaf: &Leaf, at: usize) -> bool {
         CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str())
     };
     let value = leaf.text.trim().to_lowercase();
-    let is_factor = keys.iter().any(|key| !key.to_lowercase().contains("offset") && !key.to_lowercase().contains("shift"));
+    let is_factor = keys
+        .iter()
+        .any(|key| !key.to_lowercase().contains("offset") && !key.to_lowercase().contains("shift"));
     let is_neutral = match value.parse::<f64>() {
         Ok(number) => number == 0.0 || number == 1.0 && is_factor,
         Err(_) => NEUTRAL.contains(&value.as_str()),

@@ -32,10 +32,10 @@ pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Gathered]
         if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
             let smaller = size.map(|it| it / f64::from(part));
             said.push(format!(
-                "{}: all corners of the camera `{}` are in the upper left {} × {} pixels of the {} × {} that its lens states, as those of pictures of \
+                "{}: all corners{} are in the upper left {} × {} pixels of the {} × {} that its lens states, as those of pictures of \
                  a {} of the size: if the pictures are so small, divide fx, fy, cx, cy and the size by {part}",
                 path.display(),
-                shown(&camera.name),
+                of(camera),
                 smaller[0],
                 smaller[1],
                 size[0],
@@ -45,6 +45,11 @@ pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Gathered]
         }
     }
     Ok(said)
+}
+
+/// Whose corners or lens it is, of a camera that has a name.
+fn of(camera: &Camera) -> String {
+    if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shown(&camera.name)) }
 }
 
 /// Least and largest pixel of corners along an axis.
@@ -69,7 +74,11 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
     let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;
     let is_exchanged = most[0] <= size[1] + BEYOND && most[1] <= size[0] + BEYOND;
     let advice = if is_like {
-        let times = if times[0] > 1.7 { format!("{:.0} times as large", times[0].max(times[1])) } else { "larger".to_owned() };
+        let times = if times[0] > 1.7 {
+            format!("{:.0} times as large", times[0].max(times[1]))
+        } else {
+            "larger".to_owned()
+        };
         format!(
             "the pictures are about {times} in both directions, so the lens is that of another resolution: state it at that of the pictures (fx, fy, \
              cx, cy and the size grow alike)"
@@ -80,14 +89,14 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
         "the lens is that of cropped pictures, or of another mode of the camera: state the lens of the pictures as they are".to_owned()
     };
     ErrorKind::Measurement.error(format!(
-        "found the corner ({:.1}, {:.1}), and {count} of {} corners, outside the {} × {} pixels of the pictures that the lens of the camera `{}` states; \
+        "found the corner ({:.1}, {:.1}), and {count} of {} corners, outside the {} × {} pixels of the pictures that the lens{} states; \
          they reach to ({:.1}, {:.1}), expected corners in the picture: {advice}",
         first.pixel.x,
         first.pixel.y,
         corners.len(),
         size[0],
         size[1],
-        shown(&camera.name),
+        of(camera),
         most[0],
         most[1]
     ))

@@ -51,7 +51,9 @@ impl Region {
         let Region { offset_px, size_px, binning } = *self;
         let is_part = size_px[0] > 0.0;
         let whole = lens.size_px.map(|it| it.map(f64::from));
-        if let Some(whole) = whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k])) {
+        if let Some(whole) =
+            whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k]))
+        {
             return Err(format!(
                 "found a region `roi` of {} × {} pixels from ({}, {}) on, expected one inside the sensor of {} × {}",
                 size_px[0], size_px[1], offset_px[0], offset_px[1], whole[0], whole[1]
@@ -75,7 +77,8 @@ impl Region {
         if binning != [1.0; 2] {
             done.push(format!("the binning {} × {}", binning[0], binning[1]));
         }
-        let size = seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
+        let size =
+            seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
         let words = format!(
             "took the lens as that of pictures{size}, by {}: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px",
             done.join(" and "),

@@ -61,12 +61,7 @@ const FORMS: [Form; 13] = [
         "ABB's quaternion, q1 real",
     ),
     form(&["q0", "q1", "q2", "q3"], OrientationForm::QuaternionWxyz, None, "quaternion, q0 real"),
-    form(
-        OPENCV,
-        OrientationForm::RotationVector,
-        Some(("m", "rad")),
-        "OpenCV's rvec and tvec",
-    ),
+    form(OPENCV, OrientationForm::RotationVector, Some(("m", "rad")), "OpenCV's rvec and tvec"),
     form(&["a", "b", "c"], ZYX, CONTROLLER, "KUKA's A, B, C"),
     form(&["w", "p", "r"], OrientationForm::ROLL_PITCH_YAW, CONTROLLER, "FANUC's W, P, R"),
     form(&["o", "a", "t"], ZYZ, CONTROLLER, "Kawasaki's O, A, T"),
@@ -297,9 +292,9 @@ fn settle(named: &mut [Named]) {
     }
     // A quaternion that came first, beside the arm's own angles and the place of the camera.
     let quaternion = |it: &Named| it.key.starts_with('q');
-    let letters = named
-        .iter()
-        .any(|it| it.whose == Some(Whose::Arm) && (MAKERS.contains(&it.key.as_str()) || it.key == "b" || it.key == "p"));
+    let letters = named.iter().any(|it| {
+        it.whose == Some(Whose::Arm) && (MAKERS.contains(&it.key.as_str()) || it.key == "b" || it.key == "p")
+    });
     if letters && !has(named, Whose::Target, &["qx", "rvx", "rx", "roll", "m00"]) {
         for it in named.iter_mut().filter(|it| it.whose == Some(Whose::Arm) && quaternion(it)) {
             it.whose = Some(Whose::Target);

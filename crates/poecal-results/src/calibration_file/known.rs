@@ -57,8 +57,12 @@ impl CalibrationFile {
     #[must_use]
     pub fn is_open(&self, term: &str) -> bool {
         let found = &self.identifiability;
-        let Some((joint, _)) = term.rsplit_once('.').filter(|(_, name)| *name == Term::OFFSET.to_string()) else { return false };
-        let hidden = found.unidentifiable.iter().chain(&found.structural).filter(|it| it.cause == Cause::JointOffsets);
+        let Some((joint, _)) = term.rsplit_once('.').filter(|(_, name)| *name == Term::OFFSET.to_string())
+        else {
+            return false;
+        };
+        let hidden =
+            found.unidentifiable.iter().chain(&found.structural).filter(|it| it.cause == Cause::JointOffsets);
         hidden.flat_map(|it| &it.joints).any(|name| name == joint)
     }
 

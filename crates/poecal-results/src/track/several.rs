@@ -27,8 +27,10 @@ pub(crate) fn several_zeros(
             let tried = evidence.tried(hypotheses.len(), &together)?;
             let squares = left.0 - tried.gain;
             let freedom = left.1 - tried.rank as f64;
-            let is_each = tried.step.iter().all(|(value, sigma)| value.abs() > LEAST * sigma * variance.sqrt());
-            (tried.rank == size && is_each && is_noise(squares, freedom, variance)).then_some((together, tried))
+            let is_each =
+                tried.step.iter().all(|(value, sigma)| value.abs() > LEAST * sigma * variance.sqrt());
+            (tried.rank == size && is_each && is_noise(squares, freedom, variance))
+                .then_some((together, tried))
         });
         let best = found.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
         if let Some((together, tried)) = best {

@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::super::cells::Separator;
-use super::super::column_names::{
-    column_name, column_names, number_of_column, some_columns, three_columns,
-};
+use super::super::column_names::{column_name, column_names, number_of_column, some_columns, three_columns};
 use super::super::column_spec::ColumnSpec;
 use super::super::mapping_values::{
     angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis,
