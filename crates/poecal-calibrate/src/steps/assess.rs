@@ -21,6 +21,7 @@ use crate::run::rounding::rounded;
 use crate::{
     Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
 };
+use poecal_arm::TermGroup;
 use poecal_fit::forensics::Diagnosis;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -125,6 +126,10 @@ impl CalibratedFit<'_> {
             warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
         }
         warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
+        let sags = correction
+            .as_ref()
+            .is_some_and(|it| [TermGroup::Sag, TermGroup::Tilt].iter().any(|of| it.sizes[*of] > 0.0));
+        warnings.extend(self.run.robot.placeholder_masses().filter(|_| sags));
         warnings.extend(one_zero(self));
         warnings.extend(optics.map(|it| it.statement));
         warnings.extend(view_doubts(self));

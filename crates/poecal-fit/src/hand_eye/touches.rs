@@ -14,8 +14,10 @@ pub(crate) const FEWEST: usize = 3;
 const LOST: f64 = 0.01;
 /// Rounds of robust weights, and of outliers.
 const ROUNDS: usize = 40;
-/// Share of the least tilt of all touches that is left without outliers, at least.
+/// Share of the least tilt of all touches that is left without outliers, at least, and without any one more of so many or fewer.
 const STILL_TILTED: f64 = 0.5;
+const TILTED_WITHOUT_ONE: f64 = 0.25;
+const MANY: usize = 50;
 
 /// Poses in which a tip touched a point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -155,15 +157,24 @@ impl Layout {
         Some(TipFit { unknowns, kept, sigma_m, freedom })
     }
 
-    /// Whether what is left determines all that all touches do: rows that alone show a direction contradict nothing, and are never left out.
+    /// Whether what is left determines all that all touches do, also without any one of them: rows that alone show a direction contradict nothing,
+    /// and are never left out.
     fn are_enough(&self, poses: &[Pose], kept: &[bool], tilted: f64) -> bool {
         let has = |of: &dyn Fn(&(usize, usize)) -> bool| {
             self.rows.iter().zip(kept).any(|(row, kept)| *kept && of(row))
         };
-        3 * kept.iter().filter(|it| **it).count() > self.unknowns()
-            && (0..self.tips.len()).all(|tip| has(&|row| row.0 == tip))
-            && (0..self.points.len()).all(|point| has(&|row| row.1 == point))
-            && self.least_tilted(poses, kept).1 >= STILL_TILTED * tilted
+        let is_tilted = |kept: &[bool], share: f64| self.least_tilted(poses, kept).1 >= share * tilted;
+        let without = |row: usize| {
+            let others: Vec<bool> = kept.iter().enumerate().map(|(at, kept)| *kept && at != row).collect();
+            is_tilted(&others, TILTED_WITHOUT_ONE)
+        };
+        let count = kept.iter().filter(|it| **it).count();
+        count == kept.len()
+            || 3 * count > self.unknowns()
+                && (0..self.tips.len()).all(|tip| has(&|row| row.0 == tip))
+                && (0..self.points.len()).all(|point| has(&|row| row.1 == point))
+                && is_tilted(kept, STILL_TILTED)
+                && (count > MANY || (0..kept.len()).filter(|row| kept[*row]).all(without))
     }
 
     /// The direction in the flange along which the orientations of some rows tilted least, and the root mean square change of that unit vector.
