@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use roxmltree::Document;
+use roxmltree::{Document, Node};
 
 use super::camera_tables::read_table;
 use super::camera_texts::read_yaml;
@@ -73,56 +73,49 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
     })?;
     let mut cameras: Vec<Camera> = Vec::new();
     for node in document.descendants().filter(|node| node.has_tag_name("camera")) {
-        let text = |of: roxmltree::Node<'_, '_>, name: &str| {
-            let child = of.children().find(|child| child.has_tag_name(name));
-            child.and_then(|child| child.text()).map(|text| text.trim().to_owned())
-        };
-        let number = |of: roxmltree::Node<'_, '_>, name: &str| {
-            text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
-        };
-        let model = node.children().filter(|child| child.has_tag_name("model"));
-        let model: Vec<_> = model.collect();
-        let kinds = model.iter().map(|model| text(*model, "type").unwrap_or_default());
-        let is_bent_otherwise = |kind: &String| !kind.is_empty() && !VISP_MODELS.contains(&kind.as_str());
-        if let Some(kind) = kinds.filter(is_bent_otherwise).next()
-            && !model.iter().any(|model| text(*model, "type").is_some_and(|it| it == VISP_MODELS[1]))
-        {
-            let message = format!("found the model `{kind}`, expected {}", VISP_MODELS.join(" or "));
-            let place = document.text_pos_at(node.range().start);
-            return Err(Error::new(ErrorKind::Measurement, message).at(
-                path,
-                place.row as usize,
-                place.col as usize,
-            ));
-        }
-        let model = model.into_iter();
-        // The model with distortion, where both are there.
-        let Some(model) = model.max_by_key(|model| number(*model, "kud").is_some()) else { continue };
-        let parts = ["px", "py", "u0", "v0"].map(|name| number(model, name));
-        let [Some(px), Some(py), Some(u0), Some(v0)] = parts else {
-            let message = format!("found a `<model>` without px, py, u0 and v0, expected {EXPECTED}");
-            let place = document.text_pos_at(model.range().start);
-            return Err(Error::new(ErrorKind::Measurement, message).at(
-                path,
-                place.row as usize,
-                place.col as usize,
-            ));
-        };
-        let mut k = [0.0; 8];
-        k[0] = number(model, "kud").unwrap_or(0.0);
-        let size = ["image_width", "image_height"].map(|name| number(node, name));
-        let size_px =
-            if let [Some(width), Some(height)] = size { Some([width as u32, height as u32]) } else { None };
-        let lens =
-            Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
-        let name = text(node, "name").unwrap_or_default();
-        if !cameras.iter().any(|it| it.name == name) {
-            cameras.push(Camera::new(name, lens));
-        }
+        let camera = visp_camera(node).map_err(|(at, message)| {
+            let place = document.text_pos_at(at);
+            Error::new(ErrorKind::Measurement, message).at(path, place.row as usize, place.col as usize)
+        })?;
+        cameras.extend(camera.filter(|camera| !cameras.iter().any(|it| it.name == camera.name)));
     }
     if cameras.is_empty() {
         return Err(Error::new(ErrorKind::Measurement, format!("found no `<camera>`, expected {EXPECTED}"))
             .in_file(path));
     }
     Ok(cameras)
+}
+
+/// The camera of an element; `None` without a model. An error has its place in the text.
+fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize, String)> {
+    let text = |of: Node<'_, '_>, name: &str| {
+        let child = of.children().find(|child| child.has_tag_name(name));
+        child.and_then(|child| child.text()).map(|text| text.trim().to_owned())
+    };
+    let number = |of: Node<'_, '_>, name: &str| {
+        text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
+    };
+    let kind = |model: &Node<'_, '_>| text(*model, "type").unwrap_or_default();
+    let is_read =
+        |model: &Node<'_, '_>| kind(model).is_empty() || VISP_MODELS.contains(&kind(model).as_str());
+    let models: Vec<Node<'_, '_>> = node.children().filter(|child| child.has_tag_name("model")).collect();
+    // The model with distortion, where both are there.
+    let chosen = models.iter().copied().filter(is_read).max_by_key(|model| number(*model, "kud").is_some());
+    let Some(model) = chosen else {
+        let Some(other) = models.first() else { return Ok(None) };
+        let message = format!("found the model `{}`, expected {}", kind(other), VISP_MODELS.join(" or "));
+        return Err((other.range().start, message));
+    };
+    let [Some(px), Some(py), Some(u0), Some(v0)] = ["px", "py", "u0", "v0"].map(|name| number(model, name))
+    else {
+        let message = format!("found a `<model>` without px, py, u0 and v0, expected {EXPECTED}");
+        return Err((model.range().start, message));
+    };
+    let mut k = [0.0; 8];
+    k[0] = number(model, "kud").unwrap_or(0.0);
+    let size = ["image_width", "image_height"].map(|name| number(node, name));
+    let size_px =
+        if let [Some(width), Some(height)] = size { Some([width as u32, height as u32]) } else { None };
+    let lens = Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
+    Ok(Some(Camera::new(text(node, "name").unwrap_or_default(), lens)))
 }

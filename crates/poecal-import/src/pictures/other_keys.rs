@@ -6,7 +6,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_storage::yaml::Leaf;
 
 /// Parts of names of keys that say how pictures were made of the sensor's, or how numbers are scaled.
-const CHANGES: [&str; 14] = [
+const CHANGES: [&str; 13] = [
     "scale",
     "offset",
     "crop",
@@ -15,19 +15,20 @@ const CHANGES: [&str; 14] = [
     "skew",
     "flip",
     "mirror",
-    "rotat",
     "resiz",
     "zoom",
     "shift",
     "downsampl",
     "subsampl",
 ];
+/// The same where it has one value: a list of several is where the camera is.
+const TURNS: &str = "rotat";
 /// The same as whole names: the second parameter of an omnidirectional lens, and regions.
 const CHANGES_BY_NAME: [&str; 3] = ["xi", "roi", "region"];
 /// Parts of names of keys that change no number of a lens or a board.
-const HARMLESS: [&str; 14] = [
+const HARMLESS: [&str; 16] = [
     "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic",
-    "frames", "flag", "views",
+    "frames", "flag", "views", "gray", "grey",
 ];
 /// Values of a key that leave everything as it is.
 const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
@@ -82,5 +83,6 @@ fn changes(leaf: &Leaf, at: usize) -> bool {
         Ok(number) => number == 0.0 || number == 1.0 && is_factor,
         Err(_) => NEUTRAL.contains(&value.as_str()),
     };
-    !is_neutral && keys.iter().any(is_one)
+    let is_turn = keys.len() == 1 && keys.iter().any(|key| key.to_lowercase().contains(TURNS));
+    !is_neutral && (is_turn || keys.iter().any(is_one))
 }

@@ -92,6 +92,11 @@ fn keys_that_scale_or_shift_are_refused_and_others_named() {
         let found = cameras(name, &text).unwrap();
         assert!(found.said.iter().all(|it| !it.contains("flip") && !it.contains("time")), "{:?}", found.said);
     }
+    // Where the camera is, is no turn of its pictures.
+    let mounted = "rotation: [0, 0, 0.7, 0.7]\ngrayscale: true\n";
+    let found = cameras("mounted.yaml", &camera_info(mounted)).unwrap();
+    assert_eq!(found.said, ["mounted.yaml: did not read `rotation`"]);
+    assert!(cameras("turned.yaml", &camera_info("rotation: 180\n")).is_err());
     let found = cameras("more.yaml", &camera_info("gain: 3\nexposure: 20\n")).unwrap();
     assert_eq!(found.said, ["more.yaml: did not read `gain`, `exposure`"]);
     let visp = "<root><camera><name>eye</name><image_width>1600</image_width><image_height>1200</image_height><model>\
