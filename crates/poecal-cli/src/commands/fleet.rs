@@ -175,7 +175,7 @@ fn calibrate_next(
     loop {
         let at = next.fetch_add(1, Ordering::Relaxed);
         let Some((found, row)) = open.get(at) else { return };
-        let done = match (&changed[at], &doubles[at]) {
+        let done = match (&changed[at], doubles[at].as_ref().filter(|_| found.fault().is_none())) {
             (Some(sentence), _) => refused(row.clone(), sentence.clone()),
             (None, Some(sentence)) => {
                 LedgerRow { of_another: Some(sentence.clone()), ..refused(row.clone(), sentence.clone()) }

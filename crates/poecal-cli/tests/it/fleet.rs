@@ -125,9 +125,13 @@ fn the_prior_of_a_line_is_written_and_used() {
     folder.run("fleet station.toml");
     let run = folder.run("fleet prior station.toml");
     assert!(run.code == 2 && run.err.contains("expected at least 30"), "{}", run.err);
-    // The same robots with other serial numbers make a line.
+    // The same robots with other serial numbers and files make a line.
     let rows: Vec<String> = folder.read("fleet.jsonl").lines().map(str::to_owned).collect();
-    let many = (0..36).map(|k| rows[k % 3].replace("\"serial\":\"SN", &format!("\"serial\":\"A{k}B")) + "\n");
+    let other = |k: usize| {
+        let row = rows[k % 3].replace("\"serial\":\"SN", &format!("\"serial\":\"A{k}B"));
+        row.replace("\"sha256\":\"", &format!("\"sha256\":\"{k}")) + "\n"
+    };
+    let many = (0..36).map(other);
     folder.write("fleet.jsonl", many.collect::<String>());
     let prior = folder.run("fleet prior station.toml");
     assert_eq!(prior.code, 0, "{}", prior.err);
@@ -223,7 +227,7 @@ fn two_visits(count: usize) -> Folder {
             "simulate robot.urdf --kind point --count 60 --seed {robot} --errors 0.05deg,0.3mm --out made{robot}"
         ));
         let text = folder.read(&format!("made{robot}/measurements.csv"));
-        let mut lines = text.lines();
+        let mut lines = text.lines().skip_while(|it| it.starts_with('#'));
         let header = lines.next().unwrap();
         let rows: Vec<&str> = lines.collect();
         std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
@@ -275,7 +279,7 @@ fn robots_that_were_exchanged_are_named_by_the_ledger_and_others_are_not() {
     for (path, number) in [(first, 0), (second, 1)] {
         std::fs::remove_file(folder.path(path)).unwrap();
         let made = folder.read(&format!("made{number}/measurements.csv"));
-        let rows: Vec<&str> = made.lines().collect();
+        let rows: Vec<&str> = made.lines().skip_while(|it| it.starts_with('#')).collect();
         let text = format!("{}\n{}\n", rows[0], rows[31..].join("\n"));
         folder.write(&format!("inbox/SN{number}/2026-10-01.csv"), text);
     }

@@ -310,7 +310,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         ),
     )
     .unwrap();
-    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,319.5,239.5,640,480\n")
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,319.5,239.5,720,480\n")
         .unwrap();
     let all = |turned: &dyn Fn(usize) -> bool| -> String {
         let lines = rows

@@ -92,13 +92,8 @@ pub fn hand_eye(
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    let mut result =
-        finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
-    if let Some(doubt) = &target.lens_doubt {
-        result.findings.push(Finding::new(FindingKind::Lens, doubt.clone(), Vec::new()));
-        result.weaken(doubt.clone());
-    }
-    Ok(result)
+    let found = finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    Ok(found.with_lens_doubt(target.lens_doubt.as_ref()))
 }
 
 /// The target's list with those of several poses that the rows agree with.
@@ -189,10 +184,9 @@ fn finished(
     let noise = [0, 2, 3, 5].map(|number| fit.noise.sigma(number));
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     let distance = distance.unwrap_or_default();
-    let scale = match verdict::inconsistent(&noise, distance) {
-        Some(_) => scale::explaining(&rows, fit),
-        None => scale::found(&kept, fit),
-    };
+    let scale = scale::of((&rows, &kept), fit, verdict::inconsistent(&noise, distance).is_none());
+    // Where camera and target are follows from lengths that are none.
+    findings.retain(|it| it.kind != FindingKind::Exchanged || !scale.is_some_and(scale::is_gross));
     let mut result = HandEye {
         camera,
         on_flange,

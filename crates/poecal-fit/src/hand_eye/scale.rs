@@ -2,10 +2,11 @@
 
 use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
 use super::fit::{Fit, variance_along};
-use super::verdict::NO_CAMERA;
 use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::f_quantile;
 
+/// Noise of orientations, radians, that no camera has.
+pub(crate) const NO_CAMERA: f64 = 0.1;
 /// Smallest difference of scales that is said.
 const OTHER_SCALE: f64 = 3e-3;
 /// Probability by chance at which scales differ.
@@ -38,8 +39,13 @@ fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
     (left > 1e-9 * size).then_some((along / left, left))
 }
 
-/// How many times as long as the arm's lengths the camera's are, where that is more than chance; of the rows that count.
-pub(crate) fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
+/// How many times as long as the arm's lengths the camera's are, if it is said: of all rows, those that count, and whether they fit together.
+pub(crate) fn of((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
+    if fits { found(kept, fit) } else { explaining(rows, fit) }
+}
+
+/// The same where it is more than chance; of the rows that count.
+fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
     let (share, information) = share(kept, fit)?;
     let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
     let is_evident = share * share * information > f_quantile(CHANCE, 1.0, freedom);
@@ -47,7 +53,7 @@ pub(crate) fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
 }
 
 /// The same of poses that do not fit together, where it is why: lengths that are many times too long or too short.
-pub(crate) fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
+fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
     let mut times = 1.0;
     for _ in 0..ROUNDS {
         let scaled = shortened(rows, times);
@@ -76,9 +82,14 @@ fn shortened(rows: &[Pair], times: f64) -> Vec<Pair> {
     rows.iter().map(of).collect()
 }
 
+/// Whether lengths are so many times as long that no place that follows from them is one.
+pub(crate) fn is_gross(times: f64) -> bool {
+    !(2.0 / 3.0..=1.505).contains(&times)
+}
+
 /// What another scale is, and what to do.
 pub(crate) fn words(times: f64) -> String {
-    let size = if (2.0 / 3.0..=1.505).contains(&times) {
+    let size = if !is_gross(times) {
         let share = 100.0 * (times - 1.0);
         format!("{:.1} % {} than the arm's", share.abs(), if share > 0.0 { "longer" } else { "shorter" })
     } else {

@@ -1,7 +1,7 @@
 //! How far to use the result: by what was promised of the frames, and not by what a tracker would do.
 
 use super::findings::{Finding, FindingKind};
-use super::scale;
+use super::scale::{self, NO_CAMERA};
 use super::types::{HandEye, Level};
 use poecal_model::camera::PictureNumber;
 
@@ -12,8 +12,6 @@ const TURNED: f64 = 0.17;
 /// Share of outliers up to which a result is good, and up to which it is used.
 const FEW: f64 = 0.2;
 const MANY: f64 = 0.4;
-/// Noise of orientations, radians, that no camera has.
-pub(crate) const NO_CAMERA: f64 = 0.1;
 /// The same of places, as a share of the distance.
 const NO_CAMERA_M: f64 = 0.06;
 /// Bound of the camera's position, as a share of the distance at which it sees the target, up to which a result is good: then what it sees is off by

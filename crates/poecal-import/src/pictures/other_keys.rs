@@ -51,7 +51,12 @@ pub(crate) fn other_keys(
         if read(&small) || HARMLESS.iter().any(|part| small.contains(part)) {
             continue;
         }
-        if changes(leaf, at) {
+        if !changes(leaf, at) {
+            let word = format!("`{key}`");
+            if !others.contains(&word) {
+                others.push(word);
+            }
+        } else if !is_neutral(leaf, at) {
             let message = format!(
                 "found `{}` for `{}`, which this program does not apply, expected numbers of the pictures as they are: state them for these \
                  pictures, and remove the key",
@@ -60,29 +65,26 @@ pub(crate) fn other_keys(
             );
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, leaf.line));
         }
-        let word = format!("`{key}`");
-        if !others.contains(&word) {
-            others.push(word);
-        }
     }
     Ok((!others.is_empty()).then(|| format!("{}: did not read {}", path.display(), first_few(&others))))
 }
 
-/// Whether a key scales or shifts by a value that is not neutral.
+/// Whether a key scales or shifts.
 fn changes(leaf: &Leaf, at: usize) -> bool {
-    let keys = leaf.path.get(at..).unwrap_or_default();
+    let keys: Vec<String> = leaf.path.iter().skip(at).map(|key| key.to_lowercase()).collect();
     let is_one = |key: &String| {
-        let key = key.to_lowercase();
         CHANGES.iter().any(|part| key.contains(part)) || CHANGES_BY_NAME.contains(&key.as_str())
     };
+    let is_turn = keys.len() == 1 && keys.iter().any(|key| key.contains(TURNS));
+    is_turn || keys.iter().any(is_one)
+}
+
+/// Whether a key that scales or shifts has a value that leaves everything as it is.
+fn is_neutral(leaf: &Leaf, at: usize) -> bool {
+    let is_shift = |key: &String| ["offset", "shift"].iter().any(|part| key.to_lowercase().contains(part));
     let value = leaf.text.trim().to_lowercase();
-    let is_factor = keys
-        .iter()
-        .any(|key| !key.to_lowercase().contains("offset") && !key.to_lowercase().contains("shift"));
-    let is_neutral = match value.parse::<f64>() {
-        Ok(number) => number == 0.0 || number == 1.0 && is_factor,
+    match value.parse::<f64>() {
+        Ok(number) => number == 0.0 || number == 1.0 && !leaf.path.iter().skip(at).any(is_shift),
         Err(_) => NEUTRAL.contains(&value.as_str()),
-    };
-    let is_turn = keys.len() == 1 && keys.iter().any(|key| key.to_lowercase().contains(TURNS));
-    !is_neutral && (is_turn || keys.iter().any(is_one))
+    }
 }

@@ -37,12 +37,12 @@ fn region_and_binning_of_a_sensor_make_the_lens_of_its_pictures() {
     for same in [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 1, 1], [0, 0, 1600, 1200, 1, 1]] {
         assert_eq!(cameras("whole.yaml", &camera_info(&region(same))).unwrap(), whole, "{same:?}");
     }
-    let found = cameras("part.yaml", &camera_info(&region([100, 40, 1200, 1000, 2, 4]))).unwrap();
+    let found = cameras("part.yaml", &camera_info(&region([100, 40, 1200, 1000, 2, 3]))).unwrap();
     println!("{:?}", found.said);
     let lens = found.cameras[0].lens;
-    assert_eq!((lens.focal_px, lens.centre_px), ([625.0, 310.0], [350.5, 142.5]));
-    assert_eq!((lens.size_px, lens.distortion), (Some([600, 250]), whole.cameras[0].lens.distortion));
-    assert!(found.said[0].contains("by the region `roi` from (100, 40) on and the binning 2 × 4: fx 625.00"));
+    assert_eq!((lens.focal_px, lens.centre_px), ([625.0, 1240.0 / 3.0], [350.5, 190.0]));
+    assert_eq!((lens.size_px, lens.distortion), (Some([600, 333]), whole.cameras[0].lens.distortion));
+    assert!(found.said[0].contains("by the region `roi` from (100, 40) on and the binning 2 × 3: fx 625.00"));
     for (numbers, part) in [
         (
             [500, 0, 1200, 1000, 1, 1],

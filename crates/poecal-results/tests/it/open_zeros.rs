@@ -60,9 +60,10 @@ fn zero(file: &CalibrationFile, joint: &str) -> (f64, Option<f64>) {
 fn no_zero_that_is_hidden_has_a_deviation_and_those_of_others_hold() {
     let sessions = trials(200).at_least(24);
     let five = Robot::new("five", elbow().joints[..5].to_vec(), elbow().home).unwrap();
+    let robots = [elbow(), five, seven_axis()];
     let (mut stated, mut open, mut far) = (0, 0, 0);
     for seed in sessions.seeds() {
-        let robot = [&elbow(), &five, &seven_axis()][seed as usize % 3];
+        let robot = &robots[seed as usize % robots.len()];
         let mut generator = ChaCha8Rng::seed_from_u64(seed + 40);
         let count = robot.joints.len();
         let chosen: Vec<usize> = (0..count).filter(|_| random::uniform(&mut generator) < 0.6).collect();
