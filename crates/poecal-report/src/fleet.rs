@@ -200,13 +200,22 @@ impl Line {
     pub fn text(&self) -> String {
         let mut out = String::new();
         let rate = 100.0 * self.first_passed as f64 / self.first.max(1) as f64;
+        let robots = self.rows.iter().map(|row| &row.serial).collect::<BTreeSet<_>>().len();
+        let visits = if self.rows.len() > robots {
+            format!("; {} measurements in all", self.rows.len())
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             out,
-            "robots      {}, {} of {} passed at their first measurement ({rate:.1} %)",
-            self.rows.len(),
-            self.first_passed,
-            self.first
+            "robots      {robots}, {} of {} passed at their first measurement ({rate:.1} %){visits}",
+            self.first_passed, self.first
         );
+        for row in &self.rows {
+            if let Some(sentence) = &row.of_another {
+                let _ = writeln!(out, "another     {} {}: {sentence}", row.serial, row.date);
+            }
+        }
         if self.is_few {
             let _ = writeln!(out, "spreads     none: fewer than {FEWEST} robots");
         }

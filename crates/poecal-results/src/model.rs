@@ -5,11 +5,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
+use poecal_arm::lie::Pose;
 use poecal_formats::foreign::Form;
 use poecal_formats::proof::Difference;
 use poecal_formats::robot_toml;
 use poecal_formats::urdf::{self, ChainSelection, Converted, UrdfDocument};
 use poecal_import::ReadOptions;
+use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_plan::plan::RobotError;
@@ -61,6 +63,15 @@ pub struct Model {
 }
 
 impl Model {
+    /// `base_from_device` of each station of some measurements, if the model is a calibration that has them all; else none.
+    #[must_use]
+    pub fn devices_of(&self, data: &Dataset) -> Vec<Pose> {
+        match &self.source {
+            ModelSource::Calibration(file) => file.devices_of(data).unwrap_or_default(),
+            ModelSource::Urdf(_) | ModelSource::Toml => Vec::new(),
+        }
+    }
+
     /// As [`CalibrationFile::left_error`], if the model is a calibration.
     #[must_use]
     pub fn left_error(&self) -> Option<RobotError> {

@@ -45,6 +45,12 @@ impl Judged {
         self
     }
 
+    /// The same with this against use outside the sampled range.
+    pub(crate) fn against_good(mut self, reason: String) -> Self {
+        self.everywhere.insert(0, reason);
+        self
+    }
+
     /// The verdict on the calibrated model, with these expected errors.
     pub(crate) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
         let against = [self.no_better.as_ref(), self.too_large.as_ref()];

@@ -46,7 +46,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let out = folder(arguments);
     let places = Places::reserve(arguments, &out, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
-    let options = options(arguments, console)?;
+    let options = CalibrationOptions { devices: model.devices_of(&data), ..options(arguments, console)? };
     let record = record(arguments)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {

@@ -11,7 +11,9 @@ use std::thread;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
-use poecal_results::fleet::{Found, InputRow, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
+use poecal_results::fleet::{
+    Found, InputRow, LEDGER, Ledger, LedgerRow, Station, doubled, exchanged, newest, read_ledgers,
+};
 use poecal_results::output::{Existing, FilePlace};
 use poecal_results::settings::{SettingValue, Settings};
 use poecal_results::validation::now;
@@ -99,6 +101,7 @@ fn work_off(
     let mut failed = 0;
     let (open, failed_before) = find_open(station, all, ledger, again, &shared);
     let before = find_changed(&open, ledger, again);
+    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let (skipped, total) = (all.len() - open.len(), open.len());
     let workers = rayon_threads().min(total.max(1));
     let next = AtomicUsize::new(0);
@@ -108,11 +111,12 @@ fn work_off(
     let mut passed = 0;
     thread::scope(|scope| {
         for _ in 0..workers {
-            let (next, open, before, shared) = (&next, &open, &before, &shared);
+            let (next, open, shared) = (&next, &open, &shared);
+            let before = (&before[..], &doubles[..]);
             let own = send.lock().map(|it| it.clone()).ok();
             scope.spawn(move || {
                 let Some(own) = own else { return };
-                calibrate_next(station, open, before, &shared.prior, (next, &own));
+                calibrate_next((station, &shared.prior), open, before, (next, &own));
             });
         }
         drop(send);
@@ -123,6 +127,7 @@ fn work_off(
             waiting.insert(at, row);
             while let Some(row) = waiting.remove(&place) {
                 place += 1;
+                let row = held_against_the_line(station, row, ledger);
                 failed += usize::from(!row.is_passed());
                 passed += usize::from(row.is_passed());
                 if let Some(reason) = row.reason.as_ref().filter(|_| !row.is_passed()) {
@@ -155,13 +160,18 @@ fn find_open(
     let mut failed = 0;
     let mut open: Vec<(Found, LedgerRow)> = Vec::new();
     for found in all {
-        let row = begun(station, found, shared);
-        if ledger.has(&row) && !again {
-            failed += usize::from(ledger.of(&row).is_some_and(|it| !it.is_passed()));
-            continue;
-        }
-        open.push((found.clone(), row));
+        open.push((found.clone(), begun(station, found, shared)));
     }
+    // A file that was refused as another robot's is tried again where it is no longer.
+    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
+    let mut doubles = doubles.iter();
+    open.retain(|(_, row)| {
+        let is_double = doubles.next().is_some_and(Option::is_some);
+        let last = ledger.of(row).filter(|_| ledger.has(row) && !again);
+        let is_freed = last.is_some_and(|it| it.exit == REFUSED && it.of_another.is_some()) && !is_double;
+        failed += usize::from(last.is_some_and(|it| !is_freed && !it.is_passed()));
+        last.is_none() || is_freed
+    });
     (open, failed)
 }
 
@@ -183,22 +193,40 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
 
 /// Calibrates one robot after the other, of those that no other thread took, until there is none.
 fn calibrate_next(
-    station: &Station,
+    (station, prior): (&Station, &[OsString]),
     open: &[(Found, LedgerRow)],
-    before: &[Option<String>],
-    prior: &[OsString],
+    (changed, doubles): (&[Option<String>], &[Option<String>]),
     (next, own): (&AtomicUsize, &mpsc::Sender<(usize, LedgerRow)>),
 ) {
     loop {
         let at = next.fetch_add(1, Ordering::Relaxed);
         let Some((found, row)) = open.get(at) else { return };
-        let done = match &before[at] {
-            Some(sentence) => refused(row.clone(), sentence.clone()),
-            None => calibrated(station, found, row.clone(), prior),
+        let done = match (&changed[at], doubles[at].as_ref().filter(|_| found.fault().is_none())) {
+            (Some(sentence), _) => refused(row.clone(), sentence.clone()),
+            (None, Some(sentence)) => {
+                LedgerRow { of_another: Some(sentence.clone()), ..refused(row.clone(), sentence.clone()) }
+            }
+            (None, None) => calibrated(station, found, row.clone(), prior),
         };
         if own.send((at, done)).is_err() {
             return;
         }
+    }
+}
+
+/// A row that was calibrated, which fails where it is of another robot of the line.
+fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> LedgerRow {
+    if row.exit >= REFUSED {
+        return row;
+    }
+    match exchanged(station, &row, ledger) {
+        Some(sentence) => LedgerRow {
+            exit: row.exit.max(WORSE),
+            reason: Some(sentence.clone()),
+            of_another: Some(sentence),
+            ..row
+        },
+        None => row,
     }
 }
 

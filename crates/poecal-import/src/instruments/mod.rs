@@ -26,6 +26,8 @@ mod two_sets;
 mod words;
 #[cfg(feature = "workbooks")]
 mod workbook;
+#[cfg(feature = "workbooks")]
+mod workbook_cells;
 
 #[cfg(feature = "workbooks")]
 use std::io::Read as _;
@@ -36,7 +38,6 @@ use self::maker::{Made, Refused};
 pub(crate) use self::recording::{OwnTable, Recording};
 use super::ReadOptions;
 use crate::table::configurations;
-use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::ErrorKind;
@@ -208,9 +209,13 @@ impl Opening<'_> {
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        // A mapping that names columns reads the text as it is.
-        let is_mapped = self.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
-        let mut forms = FORMS.iter().skip(if is_mapped { FORMS.len() - 1 } else { 0 });
+        // A mapping that names columns reads the text as it is; where it says nothing of joints, lists of them are what they are without it.
+        let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
+            None => &FORMS,
+            Some(map) if map.names_joints() => &[headerless::FORM],
+            Some(_) => &[programs::FORM, headerless::FORM],
+        };
+        let mut forms = forms.iter();
         let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {
             return Ok(Opened::Own(Box::new(blocks)));
         };

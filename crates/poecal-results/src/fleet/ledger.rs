@@ -51,6 +51,12 @@ impl Ledger {
         Ok(ledger)
     }
 
+    /// The lines, in their order.
+    #[must_use]
+    pub fn rows(&self) -> &[LedgerRow] {
+        &self.rows
+    }
+
     fn add(&mut self, row: LedgerRow) {
         self.places.entry(key(&row)).or_default().push(self.rows.len());
         self.rows.push(row);

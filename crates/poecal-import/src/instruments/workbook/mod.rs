@@ -18,6 +18,7 @@ use self::old::Sheet as OldSheet;
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
+use super::workbook_cells::{no_number, refuse_uncomputed};
 use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
 
@@ -90,7 +91,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
         };
         let range = book.range(name).or_else(Refused::whole)?;
         return match found(&range) {
-            Some(table) => made(&range, &table, name),
+            Some(table) => made(&mut book, &range, &table, name),
             None => Refused::whole(format!(
                 "found no table in sheet `{name}`, expected a row that names the columns and rows of numbers below it"
             )),
@@ -104,7 +105,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
         }
     }
     match tables.as_slice() {
-        [(name, range, table)] => made(range, table, name),
+        [(name, range, table)] => made(&mut book, range, table, name),
         [] => Refused::whole(format!(
             "found no table in {}, expected a sheet with a row that names the columns and rows of numbers below it",
             if names.len() == 1 {
@@ -178,7 +179,12 @@ fn text(cell: &Data) -> String {
     if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
-fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused> {
+fn made(
+    book: &mut Sheets<Cursor<Vec<u8>>>,
+    range: &Range<Data>,
+    table: &Found,
+    name: &str,
+) -> Result<Made, Refused> {
     let (first_row, first_column) = range.start().unwrap_or_default();
     let line = |at: usize| first_row as usize + at + 1;
     let sheet = Sheet { name: name.to_owned(), first_column: first_column as usize };
@@ -188,6 +194,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         (0..table.columns).map(|column| row(at).get(column).map(text).unwrap_or_default()).collect()
     };
     let header = texts(table.header);
+    refuse_uncomputed(book, range, &sheet, (&table.rows, &header))?;
     let mut made = Made::new(line(table.header), header.iter().map(String::as_str));
     if let Some(units) = table.units {
         let units_of = texts(units);
@@ -204,7 +211,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         .collect();
     let mut stored = Vec::new();
     for &at in &table.rows {
-        let cells = cells_of_row(row(at), &numeric, (&sheet, line(at)), &mut stored)?;
+        let cells = cells_of_row(row(at), (&numeric, &header), (&sheet, line(at)), &mut stored)?;
         let values = cells.iter().map(|(text, value)| match value {
             Some(value) => Value::Number(*value),
             None if text.is_empty() => Value::Empty,
@@ -226,7 +233,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
 /// The cells of a row, as texts or numbers; numbers that are stored as text in a column of numbers are told.
 fn cells_of_row(
     row: &[Data],
-    numeric: &[bool],
+    (numeric, header): (&[bool], &[String]),
     (sheet, line): (&Sheet, usize),
     stored: &mut Vec<String>,
 ) -> Result<Vec<(String, Option<f64>)>, Refused> {
@@ -234,6 +241,10 @@ fn cells_of_row(
     for (column, is_numeric) in numeric.iter().enumerate() {
         let cell = row.get(column).unwrap_or(&Data::Empty);
         let is_text = matches!(cell, Data::String(_));
+        if let Some(shown) = no_number(cell, header.get(column).map_or("", String::as_str)) {
+            cells.push((shown, None));
+            continue;
+        }
         if *is_numeric && is_text && !is_empty(cell) {
             let written = text(cell);
             let place = sheet.cell(column, line);
