@@ -6,6 +6,7 @@ mod correlation;
 mod discrepancy;
 mod folds;
 mod held;
+mod information;
 mod motions;
 mod neighbours;
 mod order;
@@ -29,6 +30,7 @@ pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
 pub use share::Shares;
 pub use view::{PriorInformation, View};
 
+use information::{ROUNDING, factor};
 use motions::{motions, products};
 use prior_size::own_size;
 
@@ -46,9 +48,6 @@ use poecal_numerics::solve::Normal;
 
 /// Configurations whose columns share one matrix: enough for a quick product, few enough for the cache.
 const TOGETHER: usize = 32;
-/// Rounding of the normal equations, as a share of their largest diagonal element.
-const ROUNDING: f64 = 1e-15;
-
 /// Covariance of an estimate's unknowns, and the model error beside it (theory.md §9 (39) and (41)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
@@ -201,13 +200,6 @@ impl Uncertainty {
 /// Predictions are stated in the device frame of the first station.
 fn in_first((row, target): (usize, usize)) -> (usize, Sight) {
     (row, Sight::from(target))
-}
-
-/// Factor of `JᵀJ + variance · prior`, the H of theory.md §9 (39).
-fn factor(gram: &[f64], n: usize, prior: &PriorInformation, variance: f64) -> Option<Factor> {
-    let both = prior.with(gram, variance);
-    let largest = (0..n).map(|k| both[k * n + k]).fold(0.0, f64::max);
-    linalg::cholesky(&both, n, ROUNDING * largest)
 }
 
 /// Covariance of an estimate whose residuals scatter by `inflation` κ times as much as independent ones. With `H = N + s²Λ` and a prior Λ

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{View, factor};
+use super::information::factor;
+use super::view::View;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
