@@ -32,7 +32,8 @@ impl Default for MostChange {
 pub enum Outcome {
     /// The tip is where it was meant.
     Reached,
-    /// Its point is, its orientation is not: near a singularity the joints would have to move too far.
+    /// Its point is, its orientation is not: near a singularity the joints would have to move too far. It is no farther off than without
+    /// correction, or than five times the usual error of the arm's orientation.
     Turned,
     /// The arm cannot have the tip there, as one of fewer than six joints mostly cannot: this is the nearest configuration.
     Nearest,
@@ -54,7 +55,7 @@ pub struct Correction {
 /// Corrections of an arm's readings: those with which the actual arm has its tip where the nominal one has it,
 /// `actual(q) = nominal(q₀)`, on the branch of `q₀`: no joint moves by more than [`MostChange`] from `q₀ + z`, where `z` are the zeros of the
 /// actual arm's joints. Near a singularity, where the pose would take more, the tip's point is exact, and of its rotation is left what cannot
-/// be had.
+/// be had, but not much more than without correction.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -79,6 +80,8 @@ pub struct Corrections {
     most: MostChange,
     /// Smallest singular value below which a configuration is near a singularity: the usual one.
     singular: f64,
+    /// Largest angle that may be left near a singularity where it was less without correction, radians.
+    most_left_rad: f64,
 }
 
 impl Corrections {
@@ -95,9 +98,18 @@ impl Corrections {
         let mut sizes: [f64; CONFIGURATIONS as usize] = core::array::from_fn(|row| {
             actual.smallest_singular_value(&configuration(nominal, row as u32)[..actual.joints()])
         });
-        sizes.sort_unstable_by(f64::total_cmp);
-        let singular = sizes[sizes.len() / 2];
-        Some(Corrections { nominal: nominal.clone(), actual: actual.clone(), zeros, most, singular })
+        let mut angles: [f64; CONFIGURATIONS as usize] = core::array::from_fn(|row| {
+            let q = configuration(nominal, row as u32);
+            let q = &q[..actual.joints()];
+            actual.forward_kinematics(q).apart(&nominal.forward_kinematics(q)).1
+        });
+        let median = |all: &mut [f64]| {
+            all.sort_unstable_by(f64::total_cmp);
+            all[all.len() / 2]
+        };
+        let (singular, most_left_rad) = (median(&mut sizes), LEFT * median(&mut angles));
+        let (nominal, actual) = (nominal.clone(), actual.clone());
+        Some(Corrections { nominal, actual, zeros, most, singular, most_left_rad })
     }
 
     /// The nominal arm.
@@ -162,13 +174,38 @@ impl Corrections {
         }
         let mut near = [0.0; MOST_JOINTS];
         near[..n].copy_from_slice(q);
-        self.begin(meant, q);
-        if let Some(left_rad) = self.point(target, meant, q) {
-            let (left_m, _) = self.left(target, q);
-            return Correction { outcome: Outcome::Turned, left_m, left_rad };
+        if let Some(found) = self.turned(target, meant, q) {
+            return found;
         }
         q.copy_from_slice(&near[..n]);
         self.kept(target, meant, q, farthest)
+    }
+
+    /// The configuration that has the tip's point, and the orientation as near as joints may move: to the one that is meant, or where that ends
+    /// farther off than without correction, to the uncorrected one, if it is nearer. `None` where the point cannot be had so, where the
+    /// orientation would end farther off than without correction and than the arm's usually is by far, or where no singularity is near.
+    fn turned(&self, target: &Pose, meant: &[f64], q: &mut [f64]) -> Option<Correction> {
+        let of = |(left_m, left_rad)| Correction { outcome: Outcome::Turned, left_m, left_rad };
+        self.begin(meant, q);
+        self.point(target, meant, q)?;
+        let found = of(self.left(target, q));
+        let uncorrected = self.actual.forward_kinematics(meant);
+        let (_, was_rad) = uncorrected.apart(target);
+        if found.left_rad <= was_rad {
+            return Some(found);
+        }
+        let mut other = [0.0; MOST_JOINTS];
+        let other = &mut other[..q.len()];
+        self.begin(meant, other);
+        let as_it_was = Pose::new(uncorrected.rotation, target.translation);
+        if self.point(&as_it_was, meant, other).is_some() {
+            let instead = of(self.left(target, other));
+            if instead.left_rad < found.left_rad {
+                q.copy_from_slice(other);
+                return Some(instead).filter(|it| it.left_rad <= self.most_left_rad.max(was_rad));
+            }
+        }
+        Some(found).filter(|it| it.left_rad <= self.most_left_rad)
     }
 
     /// Takes `q` to where zeros alone have it.
@@ -299,6 +336,9 @@ impl Corrections {
 
 /// Steps to a configuration near a singularity: each leaves some hundredths of the one before.
 const MOST_STEPS: u32 = 40;
+/// Angle that may be left near a singularity, in units of the usual one without correction: a tool of a tenth of the reach is then off by what the
+/// correction of its point removes.
+const LEFT: f64 = 5.0;
 /// Share of what a joint may move that the search uses: the last digits of the point take some more.
 const MARGIN: f64 = 0.999;
 /// Distance over the reach below which the tip's point is met.

@@ -47,14 +47,15 @@ pub(crate) use words::CameraPlace;
 pub(crate) use words::{CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, ProgramLanguage, word_of};
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit};
+use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit as ErrorLimit};
 use poecal_results::model::ModelFormat;
 use poecal_results::predictions::PredictionFrame;
 use poecal_results::record::Record;
 
-use crate::quantity::{sigma_m, threads};
+use crate::quantity::{Allowed, limit_of_change, limit_of_files, seconds, threads};
 pub(crate) use shared::{ChainArgs, OutFile};
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
 use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
@@ -77,6 +78,12 @@ pub(crate) struct Arguments {
     /// Number of threads, 1 to 256 (results do not depend on it)
     #[arg(long, global = true, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
+    /// What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names)
+    #[arg(long, global = true, value_name = "NAME=N", value_parser = limit_of_files)]
+    pub(crate) limit: Vec<Allowed>,
+    /// Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once]
+    #[arg(long, global = true, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) wait: Option<Duration>,
 }
 
 /// The commands.
@@ -175,9 +182,10 @@ pub(crate) struct Compare {
     pub(crate) first: PathBuf,
     /// The second calibration of the same robot (calibration.json)
     pub(crate) second: PathBuf,
-    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together]
-    #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true)]
-    pub(crate) limit: Option<f64>,
+    /// How far the tip may have moved (RMS), like 0.5mm; end with code 1 where it moved further [default: the expected errors of both together].
+    /// NAME=N is what a file may take, as for all commands
+    #[arg(long, value_name = "LENGTH", value_parser = limit_of_change, allow_hyphen_values = true)]
+    limit: Vec<Allowed>,
     /// Print each joint with its test against noise, and the errors of both
     #[arg(long)]
     pub(crate) verbose: bool,
@@ -186,6 +194,16 @@ pub(crate) struct Compare {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) place: OutFile,
+}
+
+impl Compare {
+    /// How far the tip may have moved, metres, as stated last.
+    pub(crate) fn limit_m(&self) -> Option<f64> {
+        self.limit
+            .iter()
+            .rev()
+            .find_map(|it| if let Allowed::Change(limit_m) = it { Some(*limit_m) } else { None })
+    }
 }
 
 /// Arguments of `poecal validate`.
@@ -218,7 +236,7 @@ pub(crate) struct Validate {
     /// Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End with
     /// code 1 unless each is shown to be kept, with 95 % confidence
     #[arg(long, value_name = "[rms:|p95:|max:]LIMIT", value_delimiter = ',', help_heading = JUDGED)]
-    pub(crate) accept: Vec<Limit>,
+    pub(crate) accept: Vec<ErrorLimit>,
     /// Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds
     #[arg(long, value_parser = one_of(MODEL), help_heading = JUDGED)]
     pub(crate) accept_model: Option<AcceptedModel>,

@@ -32,21 +32,29 @@ pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
 }
 
 /// Output of clap: help, version, or a usage error.
-pub(crate) fn usage(error: &clap::Error) {
+///
+/// # Errors
+/// If the help cannot be printed.
+pub(crate) fn usage(error: &clap::Error) -> Result<()> {
     let text = error.render().to_string();
     let add = |said: &mut Said| {
         if error.use_stderr() { said.err.push_str(&text) } else { said.out.push_str(&text) }
     };
     if kept(add) {
-        return;
+        return Ok(());
     }
-    match width_of(&std::io::stderr()).filter(|_| error.use_stderr()) {
+    if !error.use_stderr() {
+        let is_plain = AutoStream::choice(&std::io::stdout()) == ColorChoice::Never;
+        return Console::new(false).data(&if is_plain { text } else { error.render().ansi().to_string() });
+    }
+    match width_of(&std::io::stderr()) {
         // Lists of words are longer than a terminal is wide.
         Some(width) => anstream::eprint!("{}", style::listed(&error.render().ansi().to_string(), width)),
         None => {
             let _ = error.print();
         }
     }
+    Ok(())
 }
 
 /// Output of the program.

@@ -32,6 +32,9 @@ use help::command_line;
 use poecal_fit::problem::stated_level;
 use poecal_numerics::error::{Error, ErrorKind};
 use poecal_numerics::text::visible;
+use poecal_storage::held;
+use poecal_storage::limits::{self, Limits};
+use quantity::Allowed;
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
@@ -55,7 +58,12 @@ fn usage(error: &clap::Error) -> u8 {
             let option = option.split(' ').next().unwrap_or_default();
             Console::new(false).error(format!("{option}: {sentence}"));
         }
-        _ => console::usage(error),
+        _ => {
+            if let Err(unprinted) = console::usage(error) {
+                Console::new(false).error(unprinted);
+                return REFUSED;
+            }
+        }
     }
     if error.use_stderr() { REFUSED } else { DONE }
 }
@@ -84,7 +92,9 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         }
     };
     let (matches, arguments) = parsed(&typed).map_err(|error| told(&typed, error))?;
-    let Some(completed) = settings::complete(&typed, &matches).map_err(|error| refused(&error))? else {
+    let Some(completed) = limits::on(stated_limits(&arguments), || settings::complete(&typed, &matches))
+        .map_err(|error| refused(&error))?
+    else {
         return Ok((typed, arguments));
     };
     match parsed(&completed.words) {
@@ -157,7 +167,9 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         // Fails only if a pool exists already, which is then used.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
-    match run_command(&arguments.command, &typed, &console) {
+    let work = || run_command(&arguments.command, &typed, &console);
+    let work = || held::waiting(arguments.wait.unwrap_or_default(), work);
+    match limits::on(stated_limits(&arguments), work) {
         Ok(code) => code,
         Err(error) => {
             // After a signal, errors from removed files mean nothing.
@@ -166,6 +178,14 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             if error.kind() == ErrorKind::Solver { NO_RESULT } else { REFUSED }
         }
     }
+}
+
+/// The limits of this thread with those that were typed.
+fn stated_limits(arguments: &Arguments) -> Limits {
+    arguments.limit.iter().fold(limits::here(), |all, it| match it {
+        Allowed::File(limit, most) => all.with(*limit, *most),
+        Allowed::Change(_) => all,
+    })
 }
 
 /// Runs a command; gives the exit code.

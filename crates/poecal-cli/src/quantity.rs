@@ -11,6 +11,7 @@ use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::threads::MOST_THREADS;
 use poecal_numerics::unit::Unit;
 use poecal_plan::plan::RobotError;
+use poecal_storage::limits::{self, Limit as FileLimit};
 
 /// A number with its unit, in SI: metres for a length, radians for an angle.
 ///
@@ -291,6 +292,28 @@ pub(crate) fn seconds(text: &str) -> std::result::Result<Duration, String> {
         Ok(number) if (0.05..=86400.0).contains(&number) => Ok(Duration::from_secs_f64(number)),
         _ => Err(format!("found `{text}`, expected seconds from 0.05 to 86400, like 2s")),
     }
+}
+
+/// What `--limit` states: of files for all commands, and of a change for `compare`, which had the word first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Allowed {
+    /// What a file may take.
+    File(FileLimit, u64),
+    /// How far the tip may have moved, metres.
+    Change(f64),
+}
+
+/// Parser of what a file may take for clap.
+pub(crate) fn limit_of_files(text: &str) -> Result<Allowed> {
+    limits::parse(text).map(|(limit, most)| Allowed::File(limit, most))
+}
+
+/// Parser of how far the tip may have moved for clap, or of what a file may take.
+pub(crate) fn limit_of_change(text: &str) -> std::result::Result<Allowed, String> {
+    if text.contains('=') {
+        return limit_of_files(text).map_err(|error| error.to_string());
+    }
+    sigma_m(text).map(Allowed::Change)
 }
 
 /// Parser of a number of threads for clap.

@@ -20,8 +20,8 @@ const COMMAND: &str = "calibrate";
 /// Commands that read settings. Each takes those that it has an option for.
 const READERS: [&str; 3] = [COMMAND, "check", "import"];
 /// Options of a single run, which settings cannot hold.
-const NOT_KEPT: [&str; 8] =
-    ["settings", "verbose", "json", "timings", "quiet", "threads", "help", "force_own"];
+const NOT_KEPT: [&str; 10] =
+    ["settings", "verbose", "json", "timings", "quiet", "threads", "limit", "wait", "help", "force_own"];
 /// The setting that is a table: what is typed replaces the entry of that key.
 const TABLE: &str = "record";
 /// Settings with the place of an output.

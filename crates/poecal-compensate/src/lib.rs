@@ -27,9 +27,7 @@ use reach::Reach;
 pub use inverse::Inverse;
 pub use kinematics::Kinematics;
 pub use poecal_arm::{MostChange, Outcome};
-pub use programs::{
-    LARGEST_PROGRAM, PoseCompensation, ProgramOptions, ProgramSummary, compensate_file, compensate_program,
-};
+pub use programs::{PoseCompensation, ProgramOptions, ProgramSummary, compensate_file, compensate_program};
 pub use summary::{Checked, CorrectedTarget, Largest, Summary};
 pub use table::{TableOptions, compensate_table};
 

@@ -15,6 +15,8 @@ use crate::named::{Named, OFF, keep_round, pairs, radius, seek};
 use crate::parts::{Blob, Shades};
 use crate::whole::is_whole;
 
+/// Parts that look like dots for each dot of the board, of which one picture may have more.
+const FOR_EACH: usize = 3;
 /// Most lattices that are tried.
 const LATTICES: usize = 5;
 /// One dot of so many may be beyond the board: something else that looks like one.
@@ -23,8 +25,10 @@ const BEYOND: usize = 12;
 const SAME: (f64, f64) = (0.3, 0.03);
 
 /// Finds a grid of dots that reaches over all its columns and rows.
-pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64) -> Result<Found, Rejected> {
-    of_dots(gray, layout, noise, &dots(gray, noise))
+pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64, most: usize) -> Result<Found, Rejected> {
+    // A board of many dots is one.
+    let most = most.max(FOR_EACH * layout.corners());
+    of_dots(gray, layout, noise, &dots(gray, noise, most)?)
 }
 
 /// The same of dots that were found.
@@ -40,8 +44,8 @@ pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) ->
     Err(reason)
 }
 
-/// Dark dots of any size.
-pub(crate) fn dots(gray: &Gray, noise: f64) -> Vec<Dot> {
+/// Dark dots of any size, of at most so many parts that look like one: each is compared with all others.
+pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rejected> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Dot> = Vec::new();
@@ -57,13 +61,16 @@ pub(crate) fn dots(gray: &Gray, noise: f64) -> Vec<Dot> {
             if found.iter().any(known) || refused.iter().any(same) {
                 continue;
             }
+            if found.len() + refused.len() >= most {
+                return Err(Rejected::Many(most));
+            }
             match ellipse::fit(gray, blob.middle, to_circle, noise) {
                 Some(dot) => found.push(dot),
                 None => refused.push((blob.middle, to_circle)),
             }
         }
     }
-    found
+    Ok(found)
 }
 
 /// What makes a circle of a part of the picture, if it is nearly an ellipse.

@@ -14,7 +14,11 @@ pub struct Detector {
     spec: Spec,
     layout: Layout,
     reader: Option<Reader>,
+    most_dots: usize,
 }
+
+/// Most parts of a picture that may look like dots of a grid, if nothing else is asked for.
+pub const MOST_DOTS: usize = 6_000;
 
 /// Levels below which a picture is dark, edges beyond which it is blurred, and white parts beyond which it is overexposed.
 const DARK: f64 = 45.0;
@@ -33,7 +37,13 @@ impl Detector {
             Spec::AprilGrid(AprilGrid { dictionary, .. }) => Some(Reader::with_border(dictionary, 2)),
             Spec::Chessboard(_) | Spec::Circles(_) => None,
         };
-        Detector { spec: spec.clone(), layout, reader }
+        Detector { spec: spec.clone(), layout, reader, most_dots: MOST_DOTS }
+    }
+
+    /// The same where so many parts of a picture may look like dots: time grows with their square.
+    #[must_use]
+    pub fn with_most_dots(self, most_dots: usize) -> Self {
+        Detector { most_dots, ..self }
     }
 
     /// The board.
@@ -62,11 +72,12 @@ impl Detector {
             (Spec::AprilGrid(_), Some(reader)) => aprilgrid::detect(gray, &self.layout, reader, noise),
             (Spec::Chessboard(_), _) => chessboard::detect(gray, &self.layout, noise),
             (Spec::Charuco(_) | Spec::Tags(_) | Spec::AprilGrid(_), None) => Err(Rejected::NoBoard),
-            (Spec::Circles(_), _) => circles::detect(gray, &self.layout, noise),
+            (Spec::Circles(_), _) => circles::detect(gray, &self.layout, noise, self.most_dots),
         };
         found.map_err(|reason| match reason {
             Rejected::NoBoard => because_of_light(gray),
             Rejected::Few(_)
+            | Rejected::Many(_)
             | Rejected::Other
             | Rejected::Blurred(_)
             | Rejected::Dark(_)
@@ -77,7 +88,7 @@ impl Detector {
     /// Another board that pictures show in which this one was not found: with columns and rows exchanged, of the other pattern, with other markers.
     #[must_use]
     pub fn suggest(&self, pictures: &[&Gray]) -> Option<Suggestion> {
-        suggest::suggest(&self.spec, pictures)
+        suggest::suggest(&self.spec, pictures, self.most_dots)
     }
 }
 

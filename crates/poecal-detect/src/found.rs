@@ -77,6 +77,8 @@ pub enum Rejected {
     NoBoard,
     /// So many of its corners were seen, too few to know which.
     Few(usize),
+    /// More parts than this look like dots: a mesh or a perforated sheet.
+    Many(usize),
     /// A board of other squares or other markers.
     Other,
     /// No board, and edges as wide as this, pixels.
@@ -93,6 +95,7 @@ impl fmt::Display for Rejected {
             Rejected::NoBoard => formatter.write_str("no board"),
             Rejected::Few(1) => formatter.write_str("only 1 corner"),
             Rejected::Few(count) => write!(formatter, "only {count} corners"),
+            Rejected::Many(most) => write!(formatter, "too many dots: more than {most} parts look like one"),
             Rejected::Other => formatter.write_str("another board"),
             Rejected::Blurred(edge_px) => {
                 write!(formatter, "blurred: its sharpest edges are {edge_px:.0} pixels wide")

@@ -50,12 +50,12 @@ use tags::{dictionary, markers, quads, tagfit};
 
 use picture::{decoded, exif, preview};
 
-pub use detector::Detector;
+pub use detector::{Detector, MOST_DOTS};
 pub use error::{Error, Result};
 pub use found::{Corner, Found, Kind, Rejected};
 pub use gray::Gray;
 pub use layout::{Layout, Pattern, Point, Tagged};
-pub use picture::{Picture, Turned};
+pub use picture::{MOST_PIXELS, Picture, Turned, Undecodable};
 pub use preview::{png, preview};
 pub use spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 pub use suggest::Suggestion;

@@ -32,7 +32,7 @@ impl fmt::Display for Suggestion {
 }
 
 /// The board that has most corners, if any has some: of several the first that is tried.
-pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
+pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray], most_dots: usize) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match spec {
         Spec::Chessboard(board) => {
@@ -43,7 +43,8 @@ pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray]) -> Option<Suggestion> {
         }
         Spec::Charuco(board) => charucos_in(board, &with(&seen, quads)),
         Spec::Circles(board) => {
-            let seen = with(&seen, circles::dots);
+            let dots = |gray: &Gray, noise: f64| circles::dots(gray, noise, most_dots).unwrap_or_default();
+            let seen = with(&seen, dots);
             let detect = |layout: &Layout, one: &Seen<'_, Vec<Dot>>| {
                 circles::of_dots(one.gray, layout, one.noise, &one.parts)
             };

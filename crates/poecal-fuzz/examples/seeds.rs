@@ -120,6 +120,9 @@ fn main() {
     for (name, text) in recorded() {
         put_bytes("recorded", &name, &text);
     }
+    for (target, name, bytes) in binary().into_iter().chain(lists()) {
+        put_bytes(target, name, &bytes);
+    }
     put("joints", "points", &points);
     put("joints", "ids", "id,joint1,joint2,joint3,joint4\na,0.1,0.2,0.1,1\n\"b,c\",0.2,0.1,0,-1\n");
     for (name, robot, kind, count) in [
@@ -156,6 +159,161 @@ fn put_bytes(target: &str, name: &str, bytes: &[u8]) {
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join(name), bytes).unwrap();
     println!("{target}/{name}: {} bytes", bytes.len());
+}
+
+/// Rows of an elbow: readings (deg) and points (mm), with their columns.
+fn rows() -> Vec<Vec<String>> {
+    let made = Simulation { count: 4, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap().data;
+    let header = made.reading_names().iter().map(|it| format!("{it}[deg]"));
+    let header = header.chain(["x[mm]", "y[mm]", "z[mm]"].map(str::to_owned)).collect();
+    let row = |at: usize| {
+        let readings = made.readings(at).iter().map(|it| format!("{:.5}", it.to_degrees()));
+        let point = made.observations[at].measurement.pose().translation;
+        readings.chain(point.iter().map(|it| format!("{:.5}", it * 1e3))).collect()
+    };
+    std::iter::once(header).chain((0..made.len()).map(row)).collect()
+}
+
+/// Workbooks, as parts of archives and of the old form; bags; pictures.
+fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let rows = rows();
+    let parts = |all: &[(&str, String)]| {
+        let all: Vec<String> = all.iter().map(|(name, content)| format!("{name}\n{content}")).collect();
+        all.join(&format!("\n{BETWEEN}\n")).into_bytes()
+    };
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    let each = |row: &dyn Fn(usize, &[String]) -> String| {
+        rows.iter().enumerate().map(|(at, cells)| row(at, cells)).collect::<String>()
+    };
+    let sheet = each(&|at, cells| {
+        let cell = |(column, text): (char, &String)| match is_number(text) {
+            true => format!("<c r=\"{column}{}\"><v>{text}</v></c>", at + 1),
+            false => format!("<c r=\"{column}{}\" t=\"inlineStr\"><is><t>{text}</t></is></c>", at + 1),
+        };
+        format!("<row r=\"{}\">{}</row>", at + 1, ('A'..).zip(cells).map(cell).collect::<String>())
+    });
+    let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
+    let package = "http://schemas.openxmlformats.org/package/2006/relationships";
+    let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
+    let link = |kind: &str, to: &str| {
+        format!(
+            "<Relationships xmlns=\"{package}\"><Relationship Id=\"rId1\" Type=\"{office}/{kind}\" Target=\"{to}\"/></Relationships>"
+        )
+    };
+    let xlsx = parts(&[
+        (
+            "xl/worksheets/sheet1.xml",
+            format!(
+                "<worksheet xmlns=\"{main}\"><dimension ref=\"A1:I5\"/><sheetData>{sheet}</sheetData></worksheet>"
+            ),
+        ),
+        (
+            "xl/workbook.xml",
+            format!(
+                "<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets><sheet name=\"A\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+            ),
+        ),
+        ("xl/_rels/workbook.xml.rels", link("worksheet", "worksheets/sheet1.xml")),
+        ("_rels/.rels", link("officeDocument", "xl/workbook.xml")),
+    ]);
+    let table = each(&|_, cells| {
+        let cell = |text: &String| match is_number(text) {
+            true => format!(
+                "<table:table-cell office:value-type=\"float\" office:value=\"{text}\"><text:p>{text}</text:p></table:table-cell>"
+            ),
+            false => format!(
+                "<table:table-cell office:value-type=\"string\"><text:p>{text}</text:p></table:table-cell>"
+            ),
+        };
+        let cells: String = cells.iter().map(cell).collect();
+        format!(
+            "<table:table-row>{cells}<table:table-cell table:number-columns-repeated=\"9\"/></table:table-row>"
+        )
+    });
+    let ods = parts(&[
+        ("mimetype", "application/vnd.oasis.opendocument.spreadsheet".to_owned()),
+        ("META-INF/manifest.xml", "<manifest:manifest/>".to_owned()),
+        (
+            "content.xml",
+            format!(
+                "<office:document-content><office:body><office:spreadsheet><table:table table:name=\"A\">{table}</table:table></office:spreadsheet></office:body></office:document-content>"
+            ),
+        ),
+    ]);
+    let joints = |at: usize| {
+        let mut cdr = Cdr::new(at);
+        cdr.list(&(1..=6).map(|joint| format!("joint{joint}")).collect::<Vec<_>>());
+        let own = rows[at + 1].iter().take(6);
+        cdr.numbers(&own.map(|it| it.parse::<f64>().unwrap().to_radians()).collect::<Vec<_>>());
+        cdr
+    };
+    let points: String = rows.iter().map(|row| row[6..].join(",") + "\n").collect();
+    let between = format!("\n{BETWEEN}{BETWEEN}\n");
+    let bag =
+        [bag("sensor_msgs/msg/JointState", &joints), between.into_bytes(), points.into_bytes()].concat();
+    let gray = |width: usize, height: usize| {
+        let level = |at: usize| if (at % width / 5 + at / width / 5) % 2 == 0 { 30.0 } else { 220.0 };
+        poecal_detect::Gray::new(width, height, (0..width * height).map(level).collect()).unwrap()
+    };
+    vec![
+        ("workbooks", "xlsx", xlsx),
+        ("workbooks", "ods", ods),
+        ("workbooks", "xls", old_workbook(&rows)),
+        ("bags", "joints", bag),
+        ("pictures", "png", poecal_detect::preview(&gray(60, 40), &[]).unwrap()),
+        ("pictures", "jpeg", include_bytes!("../../poecal-detect/tests/it/pictures/gray.jpg").to_vec()),
+        (
+            "pictures",
+            "progressive",
+            include_bytes!("../../poecal-detect/tests/it/pictures/progressive.jpg").to_vec(),
+        ),
+    ]
+}
+
+/// An old workbook (.xls) of these rows.
+fn old_workbook(rows: &[Vec<String>]) -> Vec<u8> {
+    let record =
+        |kind: u16, data: &[u8]| [&kind.to_le_bytes(), &(data.len() as u16).to_le_bytes(), data].concat();
+    let begin = record(0x0809, &[0, 6, 5, 0]);
+    let globals = |start: u32| {
+        let name = [&start.to_le_bytes()[..], &[0, 0, 1, 0], b"A"].concat();
+        [begin.clone(), record(0x00E0, &[0; 4]), record(0x0085, &name), record(0x000A, &[])].concat()
+    };
+    let mut stream = [globals(globals(0).len() as u32), begin.clone()].concat();
+    for (row, cells) in (0_u16..).zip(rows) {
+        for (column, text) in (0_u16..).zip(cells) {
+            let place = [row.to_le_bytes(), column.to_le_bytes(), [0, 0]].concat();
+            stream.extend(match text.parse::<f64>() {
+                Ok(number) => record(0x0203, &[place, number.to_le_bytes().to_vec()].concat()),
+                Err(_) => {
+                    let size = (text.len() as u16).to_le_bytes();
+                    record(0x0204, &[place, size.to_vec(), vec![0], text.as_bytes().to_vec()].concat())
+                }
+            });
+        }
+    }
+    stream.extend(record(0x000A, &[]));
+    poecal_testing::old_workbook::container(&stream)
+}
+
+/// Lists of poses, a ledger and a history.
+fn lists() -> Vec<(&'static str, &'static str, Vec<u8>)> {
+    let first = |text: &str, count: usize| {
+        text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>()
+    };
+    let row = |serial: &str, exit: u8| {
+        format!(
+            "{{\"schema\":\"poecal-fleet-1\",\"time\":\"2026-01-01T00:00:00Z\",\"serial\":\"{serial}\",\"date\":\"2026-01-01\",\"type\":\"\",\"file\":\"a.csv\",\"results\":\"r\",\"inputs\":[{{\"file\":\"a.csv\",\"sha256\":\"00\"}}],\"poecal_version\":\"0.1.0\",\"exit\":{exit},\"reason\":null,\"verdict\":\"good\",\"accepted\":null,\"rows\":30,\"error_rms\":0.1,\"error_of\":\"held_out\",\"noise\":0.05,\"corrections\":[{{\"joint\":\"j1\",\"offset\":0.1,\"sigma_offset\":0.01,\"unit\":\"deg\",\"tilt_deg\":0.1,\"sigma_tilt_deg\":0.01,\"shift_mm\":0.1,\"sigma_shift_mm\":null}}],\"terms\":[{{\"joint\":\"j1\",\"group\":\"sag\",\"amplitude\":1.0,\"sigma\":0.1,\"found\":true}}]}}\n"
+        )
+    };
+    let check = "{\"time\":\"2026-01-01T00:00:00Z\",\"schema\":\"SCHEMA\",\"count\":3,\"verdict\":{},\"inputs\":{\"calibration\":\"c.json\",\"sha256\":{\"c.json\":\"00\"}}}\n";
+    let histories = ["poecal-validation-1", "poecal-track-1"].map(|it| check.replace("SCHEMA", it)).concat();
+    vec![
+        ("hand_eye", "pairs", first(include_str!("../../../examples/howto/hand_eye.csv"), 9).into_bytes()),
+        ("tcp", "touches", first(include_str!("../../../examples/howto/touches.csv"), 9).into_bytes()),
+        ("ledgers", "two", [row("SN1", 0), row("SN2", 1), row("SN1", 2)].concat().into_bytes()),
+        ("histories", "two", histories.into_bytes()),
+    ]
 }
 
 /// A line of a file by its number, the readings and the place.

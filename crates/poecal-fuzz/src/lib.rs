@@ -34,7 +34,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 16] = [
+pub const TARGETS: [Target; 23] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },
     Target { name: "foreign", run: targets::foreign, trials: 3000 },
@@ -50,5 +50,12 @@ pub const TARGETS: [Target; 16] = [
     Target { name: "calibration", run: targets::calibration, trials: 1000 },
     Target { name: "report", run: targets::report, trials: 600 },
     Target { name: "programs", run: targets::programs, trials: 300 },
+    Target { name: "workbooks", run: targets::workbooks, trials: 3000 },
+    Target { name: "bags", run: targets::bags, trials: 3000 },
+    Target { name: "pictures", run: targets::pictures, trials: 3000 },
+    Target { name: "hand_eye", run: targets::hand_eye, trials: 3000 },
+    Target { name: "tcp", run: targets::tcp, trials: 6000 },
+    Target { name: "ledgers", run: targets::ledgers, trials: 10000 },
+    Target { name: "histories", run: targets::histories, trials: 20000 },
     Target { name: "pipeline", run: targets::pipeline, trials: 150 },
 ];

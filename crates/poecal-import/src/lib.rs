@@ -32,7 +32,7 @@ pub use crate::join::join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
 pub use crate::join::witness::to_measure_again;
 pub use crate::pictures::board_files::{BoardOfFile, board_of_file};
 pub use crate::pictures::boards::read_boards;
-pub use crate::pictures::cameras::{camera_file, read_cameras};
+pub use crate::pictures::cameras::{CameraFile, camera_file, read_cameras};
 pub use crate::poses::pose_columns::PoseUnits;
 pub use crate::poses::pose_lists::{FlangePoses, PosePairs, PoseSource, read_flange_poses, read_pose_pairs};
 pub use crate::poses::pose_table::pose_table;
@@ -118,7 +118,7 @@ pub struct ReadOptions {
     pub instrument_noise: Vec<InstrumentNoise>,
     /// Joints that the model has beyond the robot's tip link, each with an end link that it moves: their columns are named.
     pub beyond_tip: Vec<(String, String)>,
-    /// What was understood of files of boards, a sentence each, for the warnings.
+    /// What was understood of files of cameras and boards, a sentence each, for the warnings.
     pub said: Vec<String>,
 }
 
@@ -140,6 +140,17 @@ impl ReadOptions {
     /// [`ErrorKind::Unit`](poecal_numerics::error::ErrorKind::Unit) of an unknown unit, or of two of one kind.
     pub fn state_units(&mut self, words: &str) -> Result<()> {
         self.mapping.get_or_insert_default().state_units(words)
+    }
+
+    /// Adds the cameras of a file ([`read_cameras`]), with what was understood of them.
+    ///
+    /// # Errors
+    /// As [`read_cameras`].
+    pub fn add_cameras(&mut self, typed: &str) -> Result<()> {
+        let CameraFile { cameras, said } = read_cameras(typed)?;
+        self.cameras.extend(cameras);
+        self.said.extend(said);
+        Ok(())
     }
 
     /// Adds the boards of a file or of words ([`read_boards`]), with what was understood of them.

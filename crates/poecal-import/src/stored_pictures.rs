@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ReadOptions;
+use crate::pictures::lens_checks::size_of_pictures;
 use poecal_calibrate::ImageMap;
 use poecal_model::camera::{Board, Camera, Centre, CommonError, Distortion, Lens, PictureNumber};
 use poecal_model::measurement::Dataset;
@@ -250,6 +251,8 @@ impl CameraEntry {
             format!("found {count} coefficients of a distortion `{model}`, expected 8 of `brown` or 4 of `fisheye`")
         })?;
         let CameraEntry { focal_px, centre_px, size_px, .. } = *self;
+        let size = size_px.map(|it| size_of_pictures(it.map(f64::from))).transpose();
+        size.map_err(|error| error.message().to_owned())?;
         Ok(Camera::new(self.name.clone(), Lens { focal_px, centre_px, distortion, size_px }))
     }
 

@@ -4,9 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::flow::Node;
 use poecal_numerics::error::{ErrorKind, Result};
-
-/// Blocks within blocks.
-const DEEPEST: usize = 100;
+use poecal_storage::limits::Limit;
 
 /// A program in its blocks, while it is read and then.
 #[derive(Clone, Debug)]
@@ -60,12 +58,9 @@ impl<S> Blocks<S> {
     }
 
     fn begin(&mut self, block: Block<S>, line: usize) -> Result<()> {
-        if self.open.len() >= DEEPEST {
-            return Err(ErrorKind::Syntax
-                .error(format!(
-                    "found a block within {DEEPEST} others, expected fewer: make routines of them"
-                ))
-                .at_line("program", line));
+        if self.open.len() >= Limit::Nesting.most_held() {
+            let message = Limit::Nesting.exceeded("blocks in each other");
+            return Err(ErrorKind::Syntax.error(message).at_line("program", line));
         }
         self.size += 1;
         self.open.push((block, std::mem::take(&mut self.nodes)));

@@ -32,6 +32,7 @@ use axes::Axes;
 use parsed::{Meant, Parsed};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
+use poecal_storage::limits::Limit;
 
 pub use given::Given;
 pub use language::Language;
@@ -40,13 +41,26 @@ pub use listed::Listed;
 /// The targets of a program and its motions.
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none.
+/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks in more others than
+/// [`Limit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`Limit::Program`].
 pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
+    Limit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
+    scan::refuse_nested(text, rules(language))?;
     match language {
         Language::UrScript => urscript::parse(text, given, axes),
         Language::Krl => krl::parse(text, given, axes),
         Language::Rapid => Ok(rapid::parse(text, given, axes)),
         Language::Fanuc => Ok(fanuc::parse(text, given, axes)),
+    }
+}
+
+/// How a language is written.
+fn rules(language: Language) -> &'static scan::Rules {
+    match language {
+        Language::UrScript => &urscript::RULES,
+        Language::Krl => &krl::RULES,
+        Language::Rapid => &rapid::RULES,
+        Language::Fanuc => &fanuc::RULES,
     }
 }
 

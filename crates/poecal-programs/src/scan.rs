@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use super::number::Number;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::limits::Limit;
 
 /// How a language is written.
 #[derive(Clone, Copy, Debug)]
@@ -159,6 +161,30 @@ impl Iterator for Scanner<'_> {
             }
         }
     }
+}
+
+/// Refuses brackets of a kind in more others than there may be: each is looked into, and what it holds once more.
+///
+/// # Errors
+/// [`ErrorKind::Syntax`], with the line.
+pub(crate) fn refuse_nested(text: &[u8], rules: &Rules) -> Result<()> {
+    let mut depths = [0_usize; 3];
+    for token in Scanner::new(text, rules) {
+        let Kind::Sign(sign) = token.kind else {
+            if token.kind == Kind::LineEnd {
+                depths = [0; 3];
+            }
+            continue;
+        };
+        let Some(kind) = [b"()", b"[]", b"{}"].iter().position(|it| it.contains(&sign)) else { continue };
+        let depth = &mut depths[kind];
+        *depth = if token.opens() { *depth + 1 } else { depth.saturating_sub(1) };
+        if *depth > Limit::Nesting.most_held() {
+            let message = Limit::Nesting.exceeded("brackets in each other");
+            return Err(ErrorKind::Syntax.error(message).at_line("program", token.line));
+        }
+    }
+    Ok(())
 }
 
 /// The number at the beginning of a text: its length, value and digits behind the point.

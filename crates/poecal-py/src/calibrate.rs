@@ -15,6 +15,7 @@ use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
 use poecal_model::robot::{GravityDirection, Tolerance};
 use poecal_numerics::error::ErrorKind;
 use poecal_results::calibration_file::Inputs;
+use poecal_results::model::Model;
 use poecal_results::record::Record;
 use poecal_storage::named_files::refuse_fitted;
 use pyo3::prelude::*;
@@ -160,7 +161,7 @@ pub(crate) fn calibrate(
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
     let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
-    let (found, repaired, took) = fit(py, &robot.model.robot, &data, &options, progress)?;
+    let (found, repaired, took) = fit(py, &robot.model, &data, &options, progress)?;
     let data = kept_rows(measurements, repaired, data);
     Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
 }
@@ -209,11 +210,12 @@ pub(crate) fn accept_limits(
 /// The fit, without the interpreter's lock, and the time of the library. Warns as the program does.
 fn fit(
     py: Python<'_>,
-    nominal: &poecal_model::robot::Robot,
+    model: &Model,
     data: &Dataset,
     options: &CalibrationOptions,
     progress: Option<Function>,
 ) -> PyResult<(poecal_calibrate::Calibration, Option<Dataset>, Duration)> {
+    let options = &CalibrationOptions { devices: model.devices_of(data), ..options.clone() };
     let mut raised = None;
     let mut tell = |stage: Stage| {
         if let (Some(Function(progress)), None) = (&progress, &raised) {
@@ -222,7 +224,7 @@ fn fit(
     };
     let (found, took) = py.detach(|| {
         let start = Instant::now();
-        (calibrate_repairing(nominal, data, options, &mut tell), start.elapsed())
+        (calibrate_repairing(&model.robot, data, options, &mut tell), start.elapsed())
     });
     if let Some(raised) = raised {
         return Err(raised);
@@ -249,6 +251,7 @@ fn rows<'a>(
     seed: Option<u64>,
 ) -> PyResult<Cow<'a, Dataset>> {
     measurements.check_robot(robot)?;
+    crate::warn(py, &Vec::from_iter(robot.model.terms_left_out()))?;
     let mut data = Cow::Borrowed(measurements.data());
     if let Some(other) = validate {
         other.check_robot(robot)?;

@@ -158,6 +158,22 @@ mod _poecal {
         })
     }
 
+    /// Sets what files may take, where that is less than they need.
+    ///
+    /// Parameters
+    /// ----------
+    /// name
+    ///     The limit: `rows`, `columns`, `text`, `cells`, `bag` and the others of SECURITY.md.
+    /// most
+    ///     The number, of bytes also as a text such as `"2GiB"`. It holds for all calls from then on.
+    #[pyfunction]
+    fn set_limit(name: &str, most: &Bound<'_, PyAny>) -> PyResult<()> {
+        let typed = format!("{name}={}", most.str()?.to_cow()?);
+        let (limit, most) = poecal_storage::limits::parse(&typed).map_err(crate::errors::raise)?;
+        poecal_storage::limits::set(limit, most);
+        Ok(())
+    }
+
     /// Runs the program `poecal`.
     ///
     /// Parameters

@@ -8,6 +8,7 @@ use poecal_plan::fleet::{
     Capability, FEWEST, Outlier, Series, Spread, Step, Value, outliers, steps, typical,
 };
 use poecal_results::fleet::LedgerRow;
+use poecal_storage::csv_text::cell;
 
 /// A figure of the line with its spread.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,7 +157,8 @@ impl Line {
         let all = series(&rows);
         let mut out = String::from("serial,date,type,exit,verdict,accepted,rows,error_rms,noise,prior_share");
         for it in &all {
-            let _ = write!(out, ",{}[{}],sigma_{}[{}]", it.name, it.unit, it.name, it.unit);
+            let name = format!("{}[{}]", it.name, it.unit);
+            let _ = write!(out, ",{},{}", cell(&name), cell(&format!("sigma_{name}")));
         }
         out.push_str(",reason\n");
         let by_robot: Vec<BTreeMap<&str, &Value>> = all
@@ -164,14 +166,14 @@ impl Line {
             .map(|it| it.values.iter().map(|value| (value.serial.as_str(), value)).collect())
             .collect();
         for row in &self.rows {
-            let text = |it: &Option<String>| quoted(it.as_deref().unwrap_or_default());
+            let text = |it: &Option<String>| cell(it.as_deref().unwrap_or_default()).into_owned();
             let number = |it: Option<f64>| it.map_or_else(String::new, |it| it.to_string());
             let _ = write!(
                 out,
                 "{},{},{},{},{},{},{},{},{},{}",
-                quoted(&row.serial),
-                quoted(&row.date),
-                quoted(&row.of_type),
+                cell(&row.serial),
+                cell(&row.date),
+                cell(&row.of_type),
                 row.exit,
                 text(&row.verdict),
                 text(&row.accepted),
@@ -198,13 +200,22 @@ impl Line {
     pub fn text(&self) -> String {
         let mut out = String::new();
         let rate = 100.0 * self.first_passed as f64 / self.first.max(1) as f64;
+        let robots = self.rows.iter().map(|row| &row.serial).collect::<BTreeSet<_>>().len();
+        let visits = if self.rows.len() > robots {
+            format!("; {} measurements in all", self.rows.len())
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             out,
-            "robots      {}, {} of {} passed at their first measurement ({rate:.1} %)",
-            self.rows.len(),
-            self.first_passed,
-            self.first
+            "robots      {robots}, {} of {} passed at their first measurement ({rate:.1} %){visits}",
+            self.first_passed, self.first
         );
+        for row in &self.rows {
+            if let Some(sentence) = &row.of_another {
+                let _ = writeln!(out, "another     {} {}: {sentence}", row.serial, row.date);
+            }
+        }
         if self.is_few {
             let _ = writeln!(out, "spreads     none: fewer than {FEWEST} robots");
         }
@@ -329,13 +340,4 @@ pub(crate) fn series(rows: &[&LedgerRow]) -> Vec<Series> {
 /// Unit of the terms of a group.
 fn unit(group: &str) -> &'static str {
     if group == "shift" || group == "runout" { "mm" } else { "mrad" }
-}
-
-/// A cell that no separator can break.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

@@ -235,8 +235,13 @@ pub(crate) fn coverage_table<'a>(
 ) {
     // Writing to a String cannot fail.
     let _ = writeln!(out, "\n{:<21}{:>23}{:>26}{:>8}", "joint", "sampled", "limits", "share");
+    let mut is_of_a_turn = false;
     for (joint, kind) in joints {
+        is_of_a_turn |= joint.is_of_a_turn(kind);
         let _ = writeln!(out, "{}", coverage_row(joint, kind));
+    }
+    if is_of_a_turn {
+        let _ = writeln!(out, "  share: of one turn where the limits span more");
     }
 }
 

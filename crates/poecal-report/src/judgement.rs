@@ -75,14 +75,19 @@ fn gain_words(judgement: &Judgement) -> String {
         return "not known: too few rows to fit device frame and targets to them".to_owned();
     };
     let Improvement { factor, from, to } = found;
-    let clear = match found.gain() {
+    format!(
+        "{}the error of the nominal model is {factor:.2} times this one's ({from:.2} to {to:.2}), device frame and targets fitted for both",
+        before_factor(found.gain())
+    )
+}
+
+/// The judgement of a gain before its factor; nothing of a clear one.
+pub(crate) fn before_factor(gain: Gain) -> &'static str {
+    match gain {
         Gain::Clear => "",
         Gain::Unclear => "no clear gain: ",
         Gain::Loss => "a loss: ",
-    };
-    format!(
-        "{clear}the error of the nominal model is {factor:.2} times this one's ({from:.2} to {to:.2}), device frame and targets fitted for both"
-    )
+    }
 }
 
 /// The verdict with its one figure, and why it is no better.

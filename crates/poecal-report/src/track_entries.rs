@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use poecal_fit::analysis::JointCoverage;
 use poecal_numerics::text::visible;
-use poecal_results::track::{Explanation, JointSight, Kind, Unseen};
+use poecal_results::track::{Explanation, JointSight, Kind, Size, Unseen};
 
 /// What explains the changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -34,7 +34,31 @@ pub(crate) struct ExplanationEntry {
     pub(crate) size_ppm: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sigma_ppm: Option<f64>,
+    /// Of zeros of three joints or more each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) zeros: Vec<ZeroEntry>,
     pub(crate) words: String,
+}
+
+/// The zero of one of several joints: its shift in degrees, of a slide in millimetres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ZeroEntry {
+    pub(crate) joint: String,
+    pub(crate) unit: &'static str,
+    pub(crate) size: f64,
+    pub(crate) sigma: f64,
+}
+
+impl ZeroEntry {
+    fn all(found: &Explanation) -> Vec<Self> {
+        let of = |(joint, size): (&String, &Size)| ZeroEntry {
+            joint: joint.clone(),
+            unit: if size.turns { "deg" } else { "mm" },
+            size: shown(size.value, !size.turns),
+            sigma: shown(size.sigma, !size.turns),
+        };
+        found.names.iter().zip(&found.sizes).map(of).collect()
+    }
 }
 
 /// A joint of which no shift of the zero is visible.
@@ -74,6 +98,7 @@ fn kind(of: Kind) -> &'static str {
         Kind::Axis => "axis",
         Kind::Give => "give",
         Kind::TwoZeros => "two_zeros",
+        Kind::Zeros => "zeros",
     }
 }
 
@@ -132,12 +157,13 @@ impl ExplanationEntry {
         let is_of_joint = matches!(found.kind, Kind::Zero | Kind::Axis | Kind::Give | Kind::TwoZeros);
         let name = |at: usize| found.names.get(at).filter(|it| !it.is_empty()).cloned();
         let is_pair = found.kind == Kind::TwoZeros;
+        let are_several = found.kind == Kind::Zeros;
         let (angle, length) = (found.size(true), found.size(false));
         let share = found.kind == Kind::Lengths;
         let own = |at: usize| found.sizes.get(at).filter(|it| it.turns).map(|it| (it.value, it.sigma));
-        let angle = if is_pair { own(0) } else { angle };
+        let angle = if is_pair { own(0) } else { angle.filter(|_| !are_several) };
         let other = if is_pair { own(1) } else { None };
-        let millimetres = length.filter(|_| !share);
+        let millimetres = length.filter(|_| !share && !are_several);
         ExplanationEntry {
             of: found.kind,
             kind: kind(found.kind),
@@ -152,6 +178,7 @@ impl ExplanationEntry {
             sigma_mm: millimetres.map(|it| 1e3 * it.1),
             size_ppm: length.filter(|_| share).map(|it| 1e6 * it.0),
             sigma_ppm: length.filter(|_| share).map(|it| 1e6 * it.1),
+            zeros: if are_several { ZeroEntry::all(found) } else { Vec::new() },
             words: words(found),
         }
     }
@@ -254,6 +281,11 @@ fn words(found: &Explanation) -> String {
         Kind::Axis => format!("{first}: axis moved by {}", far()),
         Kind::Give => format!("{first}: gives otherwise by {} at full weight", far()),
         Kind::TwoZeros => format!("{first}: zero by {}, and {second}: zero by {}", each(0), each(1)),
+        Kind::Zeros => {
+            let all =
+                found.names.iter().enumerate().map(|(at, name)| format!("{name}: zero by {}", each(at)));
+            all.collect::<Vec<_>>().join(", ")
+        }
     }
 }
 

@@ -5,11 +5,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::calibration_file::CalibrationFile;
+use poecal_arm::lie::Pose;
 use poecal_formats::foreign::Form;
 use poecal_formats::proof::Difference;
 use poecal_formats::robot_toml;
 use poecal_formats::urdf::{self, ChainSelection, Converted, UrdfDocument};
 use poecal_import::ReadOptions;
+use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_plan::plan::RobotError;
@@ -61,6 +63,15 @@ pub struct Model {
 }
 
 impl Model {
+    /// `base_from_device` of each station of some measurements, if the model is a calibration that has them all; else none.
+    #[must_use]
+    pub fn devices_of(&self, data: &Dataset) -> Vec<Pose> {
+        match &self.source {
+            ModelSource::Calibration(file) => file.devices_of(data).unwrap_or_default(),
+            ModelSource::Urdf(_) | ModelSource::Toml => Vec::new(),
+        }
+    }
+
     /// As [`CalibrationFile::left_error`], if the model is a calibration.
     #[must_use]
     pub fn left_error(&self) -> Option<RobotError> {
@@ -202,6 +213,20 @@ impl Model {
         match &self.source {
             ModelSource::Urdf(document) => urdf::doubts(document, &self.robot),
             ModelSource::Toml | ModelSource::Calibration(_) => Vec::new(),
+        }
+    }
+
+    /// That a new calibration starts from the axes of this one alone; `None` of other models, and of a calibration without joint terms.
+    #[must_use]
+    pub fn terms_left_out(&self) -> Option<String> {
+        match &self.source {
+            ModelSource::Calibration(file) => file.corrected().map(|_| {
+                format!(
+                    "{}: its calibrated axes are the nominal model; its joint terms are not taken over",
+                    self.path.display()
+                )
+            }),
+            ModelSource::Urdf(_) | ModelSource::Toml => None,
         }
     }
 

@@ -4,15 +4,13 @@ use std::io::Read as _;
 use std::path::Path;
 
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::limits::Limit;
 use poecal_storage::source;
-
-/// Largest program that is read, bytes.
-const LARGEST: u64 = 64 << 20;
 
 /// The bytes of a robot program, of whatever encoding.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than 64 MiB, or empty; [`ErrorKind::Syntax`] if it is text of two
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than [`Limit::Program`], or empty; [`ErrorKind::Syntax`] if it is text of two
 /// bytes a letter.
 pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     read_at(path.as_ref())
@@ -22,7 +20,7 @@ pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
 fn read_at(path: &Path) -> Result<Vec<u8>> {
     let expected = "a robot program";
     let mut bytes = Vec::new();
-    source::open(path, expected, LARGEST)?
+    source::open(path, expected, Limit::Program)?
         .read_to_end(&mut bytes)
         .map_err(|error| source::unreadable(path, &error, expected))?;
     if bytes.iter().all(u8::is_ascii_whitespace) {

@@ -6,6 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use poecal_numerics::error::{Error, ErrorKind, Result, nearest_or_all, position};
+use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
 /// Key with the version of the file.
@@ -55,7 +56,7 @@ impl Settings {
     pub fn read(path: impl AsRef<Path>, keys: &[&str]) -> Result<Self> {
         let path = path.as_ref();
         Settings::parse(
-            &source_text::read(path, "settings (TOML, as `poecal init` writes them)")?,
+            &source_text::read_up_to(path, "settings (TOML, as `poecal init` writes them)", Limit::Settings)?,
             path,
             keys,
         )

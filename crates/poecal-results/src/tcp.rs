@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::frame_entries::{FindingEntry, InputsEntry, VerdictEntry, name_of};
 use super::frame_texts::{NamedFrame, ToolBounds, ToolForm, tool_forms};
-use poecal_fit::hand_eye::Tool;
+use poecal_fit::hand_eye::{Level, Tool};
 use poecal_import::FlangePoses;
 use poecal_numerics::error::Result;
 use poecal_storage::json_text;
@@ -72,9 +72,12 @@ impl ToolResult<'_> {
         NamedFrame { parent: "tool0".to_owned(), child: "tcp".to_owned(), pose: self.found.frame }
     }
 
-    /// The tool in the forms of controllers.
+    /// The tool in the forms of controllers; none of one that is not to be used.
     #[must_use]
     pub fn forms(&self) -> Vec<ToolForm> {
+        if self.found.level == Level::DoNotUse {
+            return Vec::new();
+        }
         let tip_m = self.found.tips.first().map_or(0.0, |it| it.placed.bound95_m);
         tool_forms(&self.found.frame, ToolBounds { tip_m, axis_rad: self.found.axis.map(|it| it.1) })
     }

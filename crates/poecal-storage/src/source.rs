@@ -1,17 +1,14 @@
-//! Opens inputs, files and standard input: of limited size, and no archive or workbook.
+//! Opens inputs, files and standard input: of limited size ([`Limit`]), and no archive or workbook.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::disk::{self, ObjectKind};
+use super::limits::{Limit, amount};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// The path that means standard input.
 pub(crate) const STANDARD_INPUT: &str = "-";
-/// Largest text that is held whole, bytes.
-pub const LARGEST_TEXT: u64 = 256 << 20;
-/// Largest table, bytes.
-pub const LARGEST_TABLE: u64 = 4 << 30;
 /// Number of bytes by which other forms are recognised.
 const HEAD: u64 = 16;
 
@@ -107,15 +104,15 @@ impl Form {
 pub struct Input {
     /// The head, which is looked at first, and the rest.
     bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Box<dyn Read + Send>>>,
-    largest: u64,
+    limit: Limit,
 }
 
 /// Opens a file, or standard input for `-`; `expected` describes it in messages.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, or of a form that is no text.
-pub fn open(path: &Path, expected: &str, largest: u64) -> Result<Input> {
-    let (input, head) = open_any(path, expected, largest)?;
+pub fn open(path: &Path, expected: &str, limit: Limit) -> Result<Input> {
+    let (input, head) = open_any(path, expected, limit)?;
     refuse_other_forms(path, expected, &head)?;
     Ok(input)
 }
@@ -135,7 +132,7 @@ pub fn refuse_named(path: &Path, expected: &str) -> Result<()> {
 }
 
 /// The same of any form, with its first bytes.
-pub fn open_any(path: &Path, expected: &str, largest: u64) -> Result<(Input, Vec<u8>)> {
+pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
     let error = |message: String| ErrorKind::File.error(message).in_file(path);
     let disk = disk::here();
     let opened = if is_standard_input(path) {
@@ -155,7 +152,8 @@ pub fn open_any(path: &Path, expected: &str, largest: u64) -> Result<(Input, Vec
     let mut head = Vec::new();
     rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
     // One byte more than allowed shows that the file is too large.
-    let input = Input { bytes: Cursor::new(head.clone()).chain(rest.take(largest - HEAD + 1)), largest };
+    let rest = rest.take((limit.most() + 1).saturating_sub(head.len() as u64));
+    let input = Input { bytes: Cursor::new(head.clone()).chain(rest), limit };
     Ok((input, head))
 }
 
@@ -163,8 +161,20 @@ impl Input {
     /// Reads from `source`, up to the size of the largest table.
     #[must_use]
     pub fn from_reader(source: Box<dyn Read + Send>) -> Self {
-        Input { bytes: Cursor::default().chain(source.take(LARGEST_TABLE)), largest: LARGEST_TABLE }
+        let limit = Limit::Table;
+        Input { bytes: Cursor::default().chain(source.take(limit.most() + 1)), limit }
     }
+}
+
+/// What is wrong with an input beyond its limit.
+fn too_large(limit: Limit) -> String {
+    let (row, most) = (limit.row(), limit.most());
+    format!(
+        "it is larger than {}: {}, or allow more by --limit {}=N",
+        amount(most, row.unit),
+        row.advice,
+        row.name
+    )
 }
 
 /// Whether a path means standard input.
@@ -181,7 +191,7 @@ impl Read for Input {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let count = self.bytes.read(into)?;
         if self.bytes.get_ref().1.limit() == 0 {
-            return Err(io::Error::other(format!("it is larger than {} MiB", self.largest >> 20)));
+            return Err(io::Error::other(too_large(self.limit)));
         }
         Ok(count)
     }
@@ -190,6 +200,7 @@ impl Read for Input {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits;
 
     #[test]
     fn an_input_larger_than_it_may_be_is_an_error_and_no_shorter_input() {
@@ -197,22 +208,27 @@ mod tests {
         let text = vec![b'a'; 1 << 10];
         std::fs::write(&path, &text).unwrap();
         let read = |largest| {
-            let mut bytes = Vec::new();
-            open(&path, "a text", largest).unwrap().read_to_end(&mut bytes).map(|_| bytes)
+            limits::on(limits::here().with(Limit::Text, largest), || {
+                let mut bytes = Vec::new();
+                open(&path, "a text", Limit::Text).unwrap().read_to_end(&mut bytes).map(|_| bytes)
+            })
         };
         assert_eq!(read(1 << 10).unwrap(), text);
-        assert!(read((1 << 10) - 1).unwrap_err().to_string().starts_with("it is larger than"));
+        for largest in [(1 << 10) - 1, 17, 16, 3] {
+            let error = read(largest).unwrap_err().to_string();
+            assert!(error.starts_with("it is larger than ") && error.ends_with("--limit text=N"), "{error}");
+        }
         for Form { starts, ends, words } in FORMS {
             let expected = format!("found {words}, expected a text");
             for start in starts {
                 std::fs::write(&path, [start, &b"rest of it"[..]].concat()).unwrap();
-                let Err(error) = open(&path, "a text", 1 << 10) else { panic!("{start:?}") };
+                let Err(error) = open(&path, "a text", Limit::Text) else { panic!("{start:?}") };
                 assert!(error.to_string().ends_with(&expected), "{error}");
             }
             for end in ends {
                 let named = path.with_extension(end.to_uppercase());
                 std::fs::write(&named, "a text\n").unwrap();
-                let refused = open(&named, "a text", 1 << 10).map(|_| ());
+                let refused = open(&named, "a text", Limit::Text).map(|_| ());
                 std::fs::remove_file(&named).unwrap();
                 let error = refused.unwrap_err();
                 assert!(error.to_string().ends_with(&expected), "{error}");

@@ -3,6 +3,7 @@
 use std::io::Read as _;
 use std::path::Path;
 
+use super::limits::Limit;
 use super::source;
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -11,13 +12,13 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// # Errors
 /// [`ErrorKind::File`] if it is a directory, missing, unreadable, too large, empty or not UTF-8.
 pub fn read(path: &Path, expected: &str) -> Result<String> {
-    read_up_to(path, expected, source::LARGEST_TEXT)
+    read_up_to(path, expected, Limit::Text)
 }
 
-/// [`read()`], with another largest size.
-pub fn read_up_to(path: &Path, expected: &str, largest: u64) -> Result<String> {
+/// [`read()`], with another limit.
+pub fn read_up_to(path: &Path, expected: &str, limit: Limit) -> Result<String> {
     let mut bytes = Vec::new();
-    source::open(path, expected, largest)?
+    source::open(path, expected, limit)?
         .read_to_end(&mut bytes)
         .map_err(|error| source::unreadable(path, &error, expected))?;
     let text =

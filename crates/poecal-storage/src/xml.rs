@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
-use roxmltree::{Attribute, Document, Node};
+use roxmltree::{Attribute, Document, Node, ParsingOptions};
 
+use crate::limits::Limit;
 use crate::numbers::LARGEST_NUMBER;
 use poecal_numerics::error::{Error, ErrorKind, Result, position};
 
@@ -32,6 +33,43 @@ fn crowded_element(text: &str) -> Option<usize> {
         if values > MOST_ATTRIBUTES && element.is_some_and(|start| bytes.get(start + 1) != Some(&b'!')) {
             return element;
         }
+    }
+    None
+}
+
+/// Byte offset of the first element within more others than there may be: what walks through a document may take a frame of the stack for each.
+fn deepest_element(text: &str) -> Option<usize> {
+    let (bytes, most) = (text.as_bytes(), Limit::Nesting.most_held());
+    let (mut at, mut depth) = (0, 0_usize);
+    while let Some(open) = memchr::memchr(b'<', bytes.get(at..)?).map(|it| at + it) {
+        let rest = text.get(open..)?;
+        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((start, end)) = skipped.into_iter().find(|(start, _)| rest.starts_with(start)) {
+            at = open + start.len() + rest.get(start.len()..)?.find(end)? + end.len();
+            continue;
+        }
+        // No value of an attribute holds `<`, so that a tag that is not closed ends with the next one.
+        let mut end = open + 1;
+        let mut quote = None;
+        while let Some(byte) = bytes.get(end).filter(|it| **it != b'<' && (**it != b'>' || quote.is_some())) {
+            match quote {
+                Some(sign) if sign == *byte => quote = None,
+                None if matches!(byte, b'"' | b'\'') => quote = Some(*byte),
+                _ => {}
+            }
+            end += 1;
+        }
+        let is_empty = bytes.get(end - 1) == Some(&b'/') && end > open + 1;
+        match bytes.get(open + 1) {
+            Some(b'/') => depth = depth.saturating_sub(1),
+            Some(b'!') => {}
+            _ if is_empty => {}
+            _ => depth += 1,
+        }
+        if depth > most {
+            return Some(open);
+        }
+        at = end;
     }
     None
 }
@@ -111,7 +149,14 @@ pub fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document
             .error(format!("found an element with more than 1000 attributes, expected {expected}"))
             .at_offset(path, text, offset));
     }
-    Document::parse(text).map_err(|error| broken(&error, path, expected))
+    if let Some(offset) = deepest_element(text) {
+        return Err(ErrorKind::Syntax
+            .error(Limit::Nesting.exceeded("each other"))
+            .at_offset(path, text, offset));
+    }
+    let nodes_limit = u32::try_from(Limit::Elements.most()).unwrap_or(u32::MAX);
+    let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|error| broken(&error, path, expected))
 }
 
 /// The name of the first element of a text; `None` if it does not begin as XML.
@@ -141,6 +186,8 @@ fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
         format!(
             "found the prefix `{prefix}`, which is declared in another element alone, expected xmlns:{prefix}=\"…\" in the first element too"
         )
+    } else if let roxmltree::Error::NodesLimitReached = error {
+        Limit::Elements.exceeded("an XML file")
     } else if let roxmltree::Error::DtdDetected = error {
         format!("found a document type definition, expected {expected} without one")
     } else {

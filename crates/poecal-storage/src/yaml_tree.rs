@@ -1,5 +1,6 @@
 //! Documents of YAML and JSON as trees, each part with its place.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use granit_parser::{Event, Parser, Span};
@@ -109,6 +110,8 @@ struct Open {
     node: Node,
     /// The key whose value comes next.
     key: Option<String>,
+    /// All keys of the mapping.
+    seen: BTreeSet<String>,
 }
 
 fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
@@ -128,8 +131,8 @@ fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result
             |kind: NodeKind| Node { kind, line: before + span.start.line(), column: span.start.col() + 1 };
         match event {
             Event::Scalar(text, ..) => match open.last_mut() {
-                Some(Open { node: Node { kind: NodeKind::Map(entries), .. }, key: key @ None }) => {
-                    if entries.iter().any(|(own, _)| *own == text) {
+                Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: key @ None, seen }) => {
+                    if !seen.insert(text.to_string()) {
                         return refuse(&span, &format!("the key `{}` twice", visible(&text)));
                     }
                     *key = Some(text.to_string());
@@ -137,8 +140,10 @@ fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result
                 _ => close(node(NodeKind::Text(text.to_string())), &mut open, &mut found),
             },
             Event::MappingStart(..) | Event::SequenceStart(..) => {
-                if matches!(open.last(), Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: None }))
-                {
+                if matches!(
+                    open.last(),
+                    Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: None, .. })
+                ) {
                     return refuse(&span, "a key that is no text");
                 }
                 if open.len() > DEEPEST {
@@ -146,7 +151,7 @@ fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result
                 }
                 let is_map = matches!(event, Event::MappingStart(..));
                 let kind = if is_map { NodeKind::Map(Vec::new()) } else { NodeKind::List(Vec::new()) };
-                open.push(Open { node: node(kind), key: None });
+                open.push(Open { node: node(kind), key: None, seen: BTreeSet::new() });
             }
             Event::MappingEnd | Event::SequenceEnd => {
                 if let Some(Open { node, .. }) = open.pop() {
@@ -171,7 +176,7 @@ fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result
 fn close(node: Node, open: &mut [Open], found: &mut Vec<Node>) {
     match open.last_mut() {
         None => found.push(node),
-        Some(Open { node: outer, key }) => match &mut outer.kind {
+        Some(Open { node: outer, key, .. }) => match &mut outer.kind {
             NodeKind::List(entries) => entries.push(node),
             NodeKind::Map(entries) => entries.extend(key.take().map(|key| (key, node))),
             NodeKind::Text(_) => {}

@@ -6,6 +6,7 @@
 
 pub mod files;
 pub mod largest;
+pub mod old_workbook;
 #[cfg(feature = "sessions")]
 pub mod sessions;
 pub mod trials;

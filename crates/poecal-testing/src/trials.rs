@@ -1,4 +1,4 @@
-//! How many trials a test makes of its weekly number, which `POECAL_TRIALS` says: nothing, a sixth; `quick`, a twentieth; `weekly`, all;
+//! How many trials a test makes of its weekly number, which `POECAL_TRIALS` says: nothing, a twelfth; `quick`, a twentieth; `weekly`, all;
 //! `full`, a hundred times as many; or a number.
 
 /// A number of trials, and by how much a figure that is made of them may be off more than one of the weekly number.
@@ -11,9 +11,9 @@ pub struct Trials {
 
 /// The fewest trials that show anything.
 const FEWEST: usize = 2;
-/// The part of the weekly number that every change is tried by. The scatter of a mean is 2.4 times as large, and its tolerance grows by three of
-/// the added standard errors ([`Trials::more`]): a fault shows if it is 2.4 times as large as one that the weekly number just shows.
-const OF_A_CHANGE: usize = 6;
+/// The part of the weekly number that every change is tried by. The scatter of a mean is 3.5 times as large, and its tolerance grows by three of
+/// the added standard errors ([`Trials::more`]): a fault shows if it is 3.5 times as large as one that the weekly number just shows.
+const OF_A_CHANGE: usize = 12;
 /// The same of `quick`.
 const OF_A_QUICK_LOOK: usize = 20;
 

@@ -3,7 +3,9 @@
 use super::optics::{BestStep, Optics};
 use crate::steps::calibrated::CalibratedFit;
 use crate::trust::information::FitInformation;
-use poecal_model::camera::{Board, Camera, PictureNumber, PictureUnknown, Pictures, is_flat_sheet};
+use poecal_model::camera::{
+    Board, Camera, OTHER_LENS, PictureNumber, PictureUnknown, Pictures, changed_numbers, is_flat_sheet,
+};
 use poecal_numerics::error::shown;
 
 /// Least share of the squared errors of corners that another lens or board must explain.
@@ -19,8 +21,16 @@ const LEAST_FREEDOM: f64 = 30.0;
 /// Fewest corners of which something can be said.
 const FEWEST: usize = 100;
 
+/// What is doubtful of a camera or a board that was taken as stated.
+pub(crate) struct OpticsDoubt {
+    /// What explains most of the corners' errors, with what to do, a sentence.
+    pub(crate) statement: String,
+    /// Why the model is not good, where a lens is that of other pictures.
+    pub(crate) against_good: Option<String>,
+}
+
 /// What is doubtful of cameras and boards that were taken as stated: the one thing that explains most of the corners' errors, with what to do.
-pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<String> {
+pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     let pictures = &fit.run.data.pictures;
     if pictures.all.iter().map(|it| it.corners.len()).sum::<usize>() < FEWEST {
         return None;
@@ -44,7 +54,15 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<String> {
     if after > (1.0 - EVIDENT) * before {
         return None;
     }
-    words(pictures, unknown, (&optics, &best), [before, after].map(f64::sqrt))
+    let [before_px, after_px] = [before, after].map(f64::sqrt);
+    let statement = words(pictures, unknown, (&optics, &best), [before_px, after_px])?;
+    let is_other = matches!(unknown, PictureUnknown::Lens(_)) && before_px > OTHER_LENS * after_px;
+    let against_good = is_other.then(|| {
+        format!(
+            "the corners of single pictures contradict the stated lens: they are {before_px:.2} px off the best pose of their picture, and {after_px:.2}              px with another lens"
+        )
+    });
+    Some(OpticsDoubt { statement, against_good })
 }
 
 /// Mean squared error of the coordinates of corners beside the best pose of each picture that was held out, pixels²: the numbers were found without
@@ -80,21 +98,12 @@ fn words(
 ) -> Option<String> {
     let numbers = optics.numbers_after(best);
     let both = format!("{before_px:.2} px off the best pose of their picture, {after_px:.2} px");
-    let differs = |it: &PictureNumber| (it.found - it.given).abs() > FAR * it.deviation;
     match unknown {
         PictureUnknown::Lens(camera) => {
-            let own = |it: &PictureNumber| it.name.rsplit('.').next().unwrap_or_default().to_owned();
-            let digits = |it: &PictureNumber| if it.unit == "px" { 1 } else { 4 };
-            let changes = numbers.iter().filter(|it| differs(it));
-            let changes: Vec<String> = changes
-                .map(|it| {
-                    format!("{} {:.*} instead of {:.*}", own(it), digits(it), it.found, digits(it), it.given)
-                })
-                .collect();
             let name = shown(&pictures.cameras.get(camera)?.name);
             Some(format!(
                 "the corners are {both} with another lens of the camera `{name}` ({}): calibrate with --free lens",
-                if changes.is_empty() { "of several numbers".to_owned() } else { changes.join(", ") }
+                changed_numbers(&numbers, FAR)
             ))
         }
         PictureUnknown::Board(board) => shape_words(pictures.boards.get(board)?, &numbers, best, &both),

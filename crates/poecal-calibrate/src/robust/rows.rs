@@ -113,6 +113,11 @@ impl Robustness {
     }
 }
 
+/// Times the median of held-out rows beyond which one of them is gross, and fewest of these: predictions of a fit with few rows are uncertain, but not so
+/// differently.
+const GROSS: f64 = 50.0;
+const FEWEST_BESIDE: usize = 5;
+
 /// Share of suspected rows above which the whole session is doubtful.
 const MANY: f64 = 0.2;
 
@@ -182,7 +187,7 @@ pub(crate) fn judge_rows(
     let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
         let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
-        return robustness(judged, scale);
+        return robustness(rows.with_gross(judged, scale), scale);
     }
     let judged = rows.judged(task, fitted, scale, loss);
     if !judged.iter().any(|row| row.suspected) {
@@ -206,6 +211,18 @@ struct Rows {
 }
 
 impl Rows {
+    /// Rows of a fit with too few numbers for a judgement of its rows, in which held-out ones that are gross beside the others are suspected: what others
+    /// predict of them needs no scale.
+    fn with_gross(&self, mut judged: Vec<RowJudgement>, scale: Scale) -> Vec<RowJudgement> {
+        let held_out = || self.all.iter().filter(|row| self.weights[**row as usize].is_none());
+        let middle = distributions::median(held_out().map(|&row| self.length(row, scale).0));
+        let Some(middle) = middle.filter(|_| held_out().count() >= FEWEST_BESIDE) else { return judged };
+        for &row in held_out() {
+            judged[row as usize].suspected = self.length(row, scale).0 > GROSS * middle;
+        }
+        judged
+    }
+
     /// The part of a row's length that counts, at a scale, and the number of its components.
     fn length(&self, row: u32, scale: Scale) -> (f64, usize) {
         let (length, components) = scale.length(&self.parts[row as usize]);

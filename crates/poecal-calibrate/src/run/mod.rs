@@ -63,6 +63,17 @@ pub(crate) struct Run<'a> {
     device_free: bool,
 }
 
+/// The nominal estimate, with frames that are held where an earlier calibration has them.
+fn started(robot: &Robot, data: &Dataset, (options, unknowns): (&CalibrationOptions, &Unknowns)) -> Estimate {
+    let mut start = delivered(robot, data);
+    for (station, device) in options.devices.iter().enumerate().take(data.station_count()) {
+        if !unknowns.moves_frame(station) {
+            *start.device_mut(station) = device.inverse();
+        }
+    }
+    start
+}
+
 impl<'a> Run<'a> {
     /// Splits the rows; refuses problems that cannot be fitted. The rows `left_out`, in order, are suspected from the beginning.
     pub(crate) fn new(
@@ -88,7 +99,7 @@ impl<'a> Run<'a> {
         check_length(&session, options, &fit_rows)?;
         Ok(Run {
             corrections: allowed_corrections(&robot, &unknowns, options)?,
-            delivered: delivered(&robot, &data),
+            delivered: started(&robot, &data, (options, &unknowns)),
             prior: options.prior(&session),
             length_m: session.length_m,
             options: options.clone(),

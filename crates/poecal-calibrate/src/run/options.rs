@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use poecal_arm::lie::Pose;
 use poecal_fit::problem::Prior;
 use poecal_fit::state::Session;
 use poecal_model::measurement::ByQuantity;
@@ -50,6 +51,9 @@ pub struct CalibrationOptions {
     pub frame: DeviceFrameKnowledge,
     /// Which blocks of unknowns are fitted; by default all axes, targets and frames.
     pub blocks: BlockChoice,
+    /// `base_from_device` of each station where an earlier calibration has it: a frame that is held stands there. Empty where there is none; a frame that
+    /// is held then stands where the model has its instrument, else in the base.
+    pub devices: Vec<Pose>,
     /// Stated standard deviation of each component of a quantity, metres or radians; estimated from the data if absent.
     pub sigma: ByQuantity<Option<f64>>,
     /// Share of the configurations held out, 0 to below 1, if rows do not state their set.
@@ -91,6 +95,7 @@ impl Default for CalibrationOptions {
         CalibrationOptions {
             frame: DeviceFrameKnowledge::Unknown,
             blocks: BlockChoice::default(),
+            devices: Vec::new(),
             sigma: ByQuantity::default(),
             held_out: 0.3,
             seed: 1,

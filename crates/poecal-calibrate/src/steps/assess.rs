@@ -12,7 +12,7 @@ use crate::doubts::one_zero::one_zero;
 use crate::doubts::signs::Signs;
 use crate::events::Events;
 use crate::pictures::image_map::image_maps;
-use crate::pictures::optics_doubts::optics_doubt;
+use crate::pictures::optics_doubts::{OpticsDoubt, optics_doubt};
 use crate::pictures::view_doubts::view_doubts;
 use crate::robust::RobustFit;
 use crate::run::Run;
@@ -21,6 +21,7 @@ use crate::run::rounding::rounded;
 use crate::{
     Accuracy, CalibratedTarget, Calibration, Correction, Corrections, Level, Repaired, Trust, Verdict,
 };
+use poecal_arm::TermGroup;
 use poecal_fit::forensics::Diagnosis;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -58,11 +59,14 @@ impl<'a> Found<'a> {
             figures.trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
         figures.explain_suspicions(&fit.run.robot);
-        let warnings = fit.warnings(&figures, &signs, &events);
+        let optics = optics_doubt(&fit);
+        let against_good = optics.as_ref().and_then(|it| it.against_good.clone());
+        let warnings = fit.warnings(&figures, &signs, (&events, optics));
         let images = image_maps(&fit, &figures);
         let stations = stations(&fit.session(), &fit.estimate, fit.noise());
         let Figures { models, accuracy, robustness, trust, identifiability, correction } = figures;
         let judged = events.against.into_iter().fold(judged, Judged::against);
+        let judged = against_good.into_iter().fold(judged, Judged::against_good);
         let verdict = verdict(&judged, correction.as_ref(), &accuracy, &trust);
         let CalibratedFit { run, robust: RobustFit { fitted, .. }, noise_ratios, .. } = fit;
         let calibration = Calibration {
@@ -109,7 +113,12 @@ impl CalibratedFit<'_> {
     }
 
     /// Warnings, a sentence each.
-    fn warnings(&self, figures: &Figures, signs: &Signs, events: &Events) -> Vec<String> {
+    fn warnings(
+        &self,
+        figures: &Figures,
+        signs: &Signs,
+        (events, optics): (&Events, Option<OpticsDoubt>),
+    ) -> Vec<String> {
         let Figures { accuracy, robustness, correction, .. } = figures;
         let mut warnings = signs.warnings();
         warnings.extend(rounded(&self.session(), accuracy.training.calibrated.leading_m()));
@@ -117,8 +126,12 @@ impl CalibratedFit<'_> {
             warnings.extend(robustness.warning(&self.run.fit_rows, &self.run.held_out_rows));
         }
         warnings.extend(correction.as_ref().and_then(|it| it.doubt.clone()));
+        let sags = correction
+            .as_ref()
+            .is_some_and(|it| [TermGroup::Sag, TermGroup::Tilt].iter().any(|of| it.sizes[*of] > 0.0));
+        warnings.extend(self.run.robot.placeholder_masses().filter(|_| sags));
         warnings.extend(one_zero(self));
-        warnings.extend(optics_doubt(self));
+        warnings.extend(optics.map(|it| it.statement));
         warnings.extend(view_doubts(self));
         warnings.extend(events.early.clone());
         warnings

@@ -45,6 +45,12 @@ impl Judged {
         self
     }
 
+    /// The same with this against use outside the sampled range.
+    pub(crate) fn against_good(mut self, reason: String) -> Self {
+        self.everywhere.insert(0, reason);
+        self
+    }
+
     /// The verdict on the calibrated model, with these expected errors.
     pub(crate) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
         let against = [self.no_better.as_ref(), self.too_large.as_ref()];
@@ -316,11 +322,9 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     }
     for (coverage, joint) in trust.coverage.iter().zip(&run.robot.joints) {
         if let Some(share) = coverage.share(joint.kind).filter(|share| *share < COVERED) {
-            reasons.push(format!(
-                "{} was moved through {:.0} % of its range only",
-                coverage.joint,
-                100.0 * share
-            ));
+            let range = if coverage.is_of_a_turn(joint.kind) { "a turn" } else { "its range" };
+            let (name, share) = (&coverage.joint, 100.0 * share);
+            reasons.push(format!("{name} was moved through {share:.0} % of {range} only"));
         }
     }
     let open = undetermined_directions(grounds);

@@ -6,7 +6,7 @@ use crate::acceptance::{Acceptance, AcceptedModel};
 use crate::run::accuracy::{Improvement, ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
 use crate::steps::improvement::paired;
-use crate::steps::level::{Gain, Level};
+use crate::steps::level::Level;
 use crate::trust::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
     coverage_checks, promised_rows,
@@ -324,20 +324,6 @@ impl Judgement {
                 in_sampled_range: self.in_sampled_range.as_ref(),
             },
         }
-    }
-
-    /// Why the measurements do not show a clear gain over the nominal model; `None` if they do.
-    #[must_use]
-    pub fn gain_doubt(&self) -> Option<String> {
-        let Some(found) = self.improvement else {
-            return Some("these rows are too few to compare it with the nominal model".to_owned());
-        };
-        let Improvement { factor, from, to } = found;
-        (found.gain() != Gain::Clear).then(|| {
-            format!(
-                "on these rows the error of the nominal model is {factor:.2} times that of this one, from {from:.2} to {to:.2} with 95 % confidence"
-            )
-        })
     }
 
     /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use poecal_fit::hand_eye::CameraPlace;
-use poecal_import::{PoseUnits, ReadOptions, camera_file, read_cameras};
+use poecal_import::{PoseUnits, ReadOptions, camera_file};
 use poecal_results::hand_eye::FrameNames;
 use poecal_storage::disk::is_file;
 
@@ -61,7 +61,7 @@ impl HandEye {
     pub(crate) fn pictures(&self) -> poecal_numerics::error::Result<ReadOptions> {
         let mut options = ReadOptions::default();
         if let Some(typed) = &self.lens {
-            options.cameras = read_cameras(typed)?;
+            options.add_cameras(typed)?;
         }
         if let Some(typed) = &self.markers {
             options.add_boards(typed)?;

@@ -6,7 +6,6 @@ use clap::Args;
 use poecal_formats::urdf::{ChainSelection, named_link};
 use poecal_import::{
     ColumnMap, Frames, InstrumentNoise, Join, Lag, PlaneContact, ReadOptions, SocketDistances, camera_file,
-    read_cameras,
 };
 use poecal_numerics::error::ErrorKind;
 use poecal_results::output::{Existing, FilePlace};
@@ -133,7 +132,7 @@ impl CameraArgs {
     /// The same options with these cameras and boards.
     pub(crate) fn add(&self, mut options: ReadOptions) -> poecal_numerics::error::Result<ReadOptions> {
         for typed in &self.camera {
-            options.cameras.extend(read_cameras(typed)?);
+            options.add_cameras(typed)?;
         }
         for typed in &self.markers {
             options.add_boards(typed)?;

@@ -41,11 +41,12 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let reading = arguments.reading.options();
     let mut model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
     model.robot = model.robot.with_factors(&arguments.factors)?;
+    model.terms_left_out().iter().for_each(|note| console.note(note));
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;
     let out = folder(arguments);
     let places = Places::reserve(arguments, &out, console)?;
     let inputs = Inputs { command: Some(command(typed)), ..inputs };
-    let options = options(arguments, console)?;
+    let options = CalibrationOptions { devices: model.devices_of(&data), ..options(arguments, console)? };
     let record = record(arguments)?;
     let poses = data.observations.iter().any(|row| row.measurement.sees_orientation());
     if arguments.residual != Residual::default() && !poses {

@@ -19,7 +19,7 @@ pub(crate) fn compare(arguments: &Compare, console: &Console) -> Result<u8> {
     };
     first.robot().map_err(|error| error.in_file(&arguments.first))?;
     second.robot().map_err(|error| error.in_file(&arguments.second))?;
-    let found = compare::compare(&first, &second, arguments.limit).map_err(in_file)?;
+    let found = compare::compare(&first, &second, arguments.limit_m()).map_err(in_file)?;
     let [one, other] = [&arguments.first, &arguments.second].map(|path| path.display().to_string());
     let told = report::Comparison::new((&one, &first), (&other, &second), &found)?;
     let text = if arguments.json {

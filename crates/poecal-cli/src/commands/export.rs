@@ -8,7 +8,8 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_results::export::{self, ExportFormat, ExportOptions};
 use poecal_results::model::Model;
 use poecal_results::output::{Existing, FilePlace};
-use poecal_storage::text_of;
+use poecal_storage::limits::Limit;
+use poecal_storage::source_text::read_up_to;
 
 use crate::DONE;
 use crate::args::{Apply, Export, ExportForm, INSTEAD};
@@ -61,8 +62,11 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
         console.deliver(converted.text, place)?;
         return Ok(DONE);
     }
-    let motors =
-        arguments.motors.as_ref().map(|path| text_of(path, "a calibration of motors (JSON)")).transpose()?;
+    let motors = arguments
+        .motors
+        .as_ref()
+        .map(|path| read_up_to(path, "a calibration of motors (JSON)", Limit::Settings))
+        .transpose()?;
     let options = ExportOptions { hash: arguments.hash.clone(), motors };
     let exported = export::export(&model, format, &options)?;
     let beside = match (&exported.beside, &arguments.place.out) {

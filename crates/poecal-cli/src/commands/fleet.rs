@@ -1,6 +1,6 @@
 //! `poecal fleet`: a folder of robots, worked off by processes of one thread each.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,11 +11,14 @@ use std::thread;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
-use poecal_results::fleet::{Found, InputRow, LEDGER, Ledger, LedgerRow, Station, newest, read_ledgers};
+use poecal_results::fleet::{
+    Found, InputRow, LEDGER, Ledger, LedgerRow, Station, doubled, exchanged, newest, read_ledgers,
+};
 use poecal_results::output::{Existing, FilePlace};
 use poecal_results::settings::{SettingValue, Settings};
 use poecal_results::validation::now;
 use poecal_storage::named_files::actual;
+use poecal_storage::{held, limits};
 
 use crate::args::{Fleet, FleetCommand, FleetPrior, FleetReport};
 use crate::console::Console;
@@ -38,11 +41,19 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
         }
         None => station.ledger.clone(),
     };
+    let _held = held::hold(&place, "the ledger", held::patience(), &mut console.warner())?;
     let mut ledger = Ledger::open(&place)?;
     let mut seen: BTreeMap<PathBuf, String> = BTreeMap::new();
+    let mut told = BTreeSet::new();
     let mut again = arguments.again;
     loop {
-        let all = newest(&station)?;
+        let (all, left) = newest(&station)?;
+        for other in left {
+            let sentence = other.to_string();
+            if told.insert(other) {
+                console.warning(sentence);
+            }
+        }
         let mut own: Vec<Found> =
             all.into_iter().filter(|it| arguments.shard.is_none_or(|shard| it.is_of_shard(shard))).collect();
         own.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.cmp(b)));
@@ -54,25 +65,43 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
             });
         }
         let failed = work_off(&station, &own, &mut ledger, again, console)?;
+        if arguments.watch.is_none() && failed.now + failed.passed == 0 && failed.before > 0 {
+            let what = if failed.before == 1 { "robot failed" } else { "robots failed" };
+            console.say(&format!(
+                "nothing new; {} {what} before, with the same files: {} says why, and --again calibrates all again\n",
+                failed.before,
+                place.display()
+            ))?;
+        }
         again = false;
         let Some(time) = arguments.watch else {
-            return Ok(if failed > 0 { WORSE } else { DONE });
+            return Ok(if failed.now + failed.before > 0 { WORSE } else { DONE });
         };
         thread::sleep(time);
     }
 }
 
-/// Calibrates what the ledger does not have. Returns how many of these robots failed, now or before.
+/// How many robots passed and failed.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    passed: usize,
+    now: usize,
+    before: usize,
+}
+
+/// Calibrates what the ledger does not have.
 fn work_off(
     station: &Station,
     all: &[Found],
     ledger: &mut Ledger,
     again: bool,
     console: &Console,
-) -> Result<usize> {
+) -> Result<Counts> {
     let shared = Shared::read(station)?;
-    let (open, mut failed) = find_open(station, all, ledger, again, &shared);
+    let mut failed = 0;
+    let (open, failed_before) = find_open(station, all, ledger, again, &shared);
     let before = find_changed(&open, ledger, again);
+    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let (skipped, total) = (all.len() - open.len(), open.len());
     let workers = rayon_threads().min(total.max(1));
     let next = AtomicUsize::new(0);
@@ -82,11 +111,12 @@ fn work_off(
     let mut passed = 0;
     thread::scope(|scope| {
         for _ in 0..workers {
-            let (next, open, before, shared) = (&next, &open, &before, &shared);
+            let (next, open, shared) = (&next, &open, &shared);
+            let before = (&before[..], &doubles[..]);
             let own = send.lock().map(|it| it.clone()).ok();
             scope.spawn(move || {
                 let Some(own) = own else { return };
-                calibrate_next(station, open, before, &shared.prior, (next, &own));
+                calibrate_next((station, &shared.prior), open, before, (next, &own));
             });
         }
         drop(send);
@@ -97,6 +127,7 @@ fn work_off(
             waiting.insert(at, row);
             while let Some(row) = waiting.remove(&place) {
                 place += 1;
+                let row = held_against_the_line(station, row, ledger);
                 failed += usize::from(!row.is_passed());
                 passed += usize::from(row.is_passed());
                 if let Some(reason) = row.reason.as_ref().filter(|_| !row.is_passed()) {
@@ -115,7 +146,7 @@ fn work_off(
     if total > 0 {
         console.say(&format!("{passed} of {total} robots passed; {skipped} were done before\n"))?;
     }
-    Ok(failed)
+    Ok(Counts { passed, now: failed, before: failed_before })
 }
 
 /// Finds the robots that the ledger does not have, with their rows, and counts those before that failed.
@@ -129,13 +160,18 @@ fn find_open(
     let mut failed = 0;
     let mut open: Vec<(Found, LedgerRow)> = Vec::new();
     for found in all {
-        let row = begun(station, found, shared);
-        if ledger.has(&row) && !again {
-            failed += usize::from(ledger.of(&row).is_some_and(|it| !it.is_passed()));
-            continue;
-        }
-        open.push((found.clone(), row));
+        open.push((found.clone(), begun(station, found, shared)));
     }
+    // A file that was refused as another robot's is tried again where it is no longer.
+    let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
+    let mut doubles = doubles.iter();
+    open.retain(|(_, row)| {
+        let is_double = doubles.next().is_some_and(Option::is_some);
+        let last = ledger.of(row).filter(|_| ledger.has(row) && !again);
+        let is_freed = last.is_some_and(|it| it.exit == REFUSED && it.of_another.is_some()) && !is_double;
+        failed += usize::from(last.is_some_and(|it| !is_freed && !it.is_passed()));
+        last.is_none() || is_freed
+    });
     (open, failed)
 }
 
@@ -157,22 +193,40 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
 
 /// Calibrates one robot after the other, of those that no other thread took, until there is none.
 fn calibrate_next(
-    station: &Station,
+    (station, prior): (&Station, &[OsString]),
     open: &[(Found, LedgerRow)],
-    before: &[Option<String>],
-    prior: &[OsString],
+    (changed, doubles): (&[Option<String>], &[Option<String>]),
     (next, own): (&AtomicUsize, &mpsc::Sender<(usize, LedgerRow)>),
 ) {
     loop {
         let at = next.fetch_add(1, Ordering::Relaxed);
         let Some((found, row)) = open.get(at) else { return };
-        let done = match &before[at] {
-            Some(sentence) => refused(row.clone(), sentence.clone()),
-            None => calibrated(station, found, row.clone(), prior),
+        let done = match (&changed[at], doubles[at].as_ref().filter(|_| found.fault().is_none())) {
+            (Some(sentence), _) => refused(row.clone(), sentence.clone()),
+            (None, Some(sentence)) => {
+                LedgerRow { of_another: Some(sentence.clone()), ..refused(row.clone(), sentence.clone()) }
+            }
+            (None, None) => calibrated(station, found, row.clone(), prior),
         };
         if own.send((at, done)).is_err() {
             return;
         }
+    }
+}
+
+/// A row that was calibrated, which fails where it is of another robot of the line.
+fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> LedgerRow {
+    if row.exit >= REFUSED {
+        return row;
+    }
+    match exchanged(station, &row, ledger) {
+        Some(sentence) => LedgerRow {
+            exit: row.exit.max(WORSE),
+            reason: Some(sentence.clone()),
+            of_another: Some(sentence),
+            ..row
+        },
+        None => row,
     }
 }
 
@@ -259,7 +313,9 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
     words.extend(["--out".into(), results.clone().into_os_string()]);
-    words.extend(["--force", "--quiet", "--threads", "1"].map(OsString::from));
+    // A process of a fleet that was killed may still be at work on this robot.
+    words.extend(["--force", "--quiet", "--threads", "1", "--wait", "120s"].map(OsString::from));
+    words.extend(limits::stated().into_iter().map(|it| format!("--limit={it}").into()));
     if let Some(settings) = &station.settings {
         words.extend(["--settings".into(), settings.clone().into_os_string()]);
     }

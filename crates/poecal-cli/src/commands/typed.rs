@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 
 /// Options that do not change the result: places, output, speed; settings are among the words already.
-const WITH_VALUE: [&str; 6] = ["--history", "--out", "--threads", "--require", "--report", "--settings"];
+const WITH_VALUE: [&str; 7] =
+    ["--history", "--out", "--threads", "--wait", "--require", "--report", "--settings"];
 const WITHOUT_VALUE: [&str; 5] = ["--force", "--force-own", "--json", "--verbose", "--quiet"];
 
 /// Arguments of a run, the program first, without those that do not change the result.

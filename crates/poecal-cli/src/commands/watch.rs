@@ -19,6 +19,8 @@ use crate::{DONE, WORSE};
 
 /// How often the file is looked at.
 const PAUSE: Duration = Duration::from_millis(100);
+/// A file that so many looks in a row find wrong in the same way is wrong, and is not written again at the moment.
+const LOOKS: u32 = 20;
 
 pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     if cfg!(target_family = "wasm") && !arguments.once {
@@ -38,11 +40,20 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     };
     let fit = fit(&arguments.fit, &model, Kind::POINT, 30)?;
     let options = WatchOptions { fit, candidates, workspace, seed: arguments.seed };
-    let mut file = GrowingFile::new(&arguments.measurements);
+    let file = GrowingFile::new(&arguments.measurements);
+    let mut file = if arguments.once { file } else { file.waited_for() };
+    if !arguments.once && file.is_absent() {
+        console.remark(format!("{}: waits for its first lines", arguments.measurements.display()));
+    }
+    let mut trouble = (String::new(), 0);
     let (mut watched, mut done, mut is_named, mut is_reached) = (None, 0, false, false);
     let is_corrected = arguments.fit.corrections != Corrections::Off;
     loop {
-        if let Some(News { file, is_again }) = file.news(&model.robot, &reading)? {
+        let news = match file.news(&model.robot, &reading) {
+            Err(error) if !arguments.once && is_for_a_moment(&error.to_string(), &mut trouble) => None,
+            news => news?,
+        };
+        if let Some(News { file, is_again }) = news {
             if is_again && done > 0 {
                 console.warning("the file was shortened or changed: all rows are read again from the first");
                 (watched, done) = (None, 0);
@@ -76,4 +87,14 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
         }
         sleep(PAUSE);
     }
+}
+
+/// Whether a file may be wrong because it is being written: `trouble` is what was wrong at the last look, and how often in a row.
+fn is_for_a_moment(sentence: &str, trouble: &mut (String, u32)) -> bool {
+    if trouble.0 == sentence {
+        trouble.1 += 1;
+    } else {
+        *trouble = (sentence.to_owned(), 1);
+    }
+    trouble.1 < LOOKS
 }

@@ -190,7 +190,7 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
     std::fs::write(folder.path("p.script"), SCRIPT).unwrap();
     folder.write("empty.src", " \n");
     std::fs::write(folder.path("wide.src"), b"D\0E\0F\0").unwrap();
-    folder.write("deep.script", "if True:\n".repeat(200));
+    folder.write("deep.script", "if True:\n".repeat(300));
     folder.write("map.toml", "[joints]\n");
     let before = folder.listing();
     for (arguments, sentence) in [
@@ -212,7 +212,10 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
         ("p.script --language logo", "error: invalid value 'logo' for '--language <LANGUAGE>'"),
         ("empty.src", "error: empty.src: the file is empty, expected a robot program"),
         ("wide.src", "error: wide.src: found zero bytes, expected a robot program as text"),
-        ("deep.script", "error: deep.script:101: found a block within 100 others, expected fewer"),
+        (
+            "deep.script",
+            "error: deep.script:201: found more than 200 levels in blocks in each other, expected",
+        ),
         ("nowhere.src", "error: nowhere.src: found no such file, expected a robot program"),
         ("results --language krl", "error: results: found a directory, expected a robot program"),
     ] {

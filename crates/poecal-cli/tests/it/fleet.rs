@@ -125,9 +125,13 @@ fn the_prior_of_a_line_is_written_and_used() {
     folder.run("fleet station.toml");
     let run = folder.run("fleet prior station.toml");
     assert!(run.code == 2 && run.err.contains("expected at least 30"), "{}", run.err);
-    // The same robots with other serial numbers make a line.
+    // The same robots with other serial numbers and files make a line.
     let rows: Vec<String> = folder.read("fleet.jsonl").lines().map(str::to_owned).collect();
-    let many = (0..36).map(|k| rows[k % 3].replace("\"serial\":\"SN", &format!("\"serial\":\"A{k}B")) + "\n");
+    let other = |k: usize| {
+        let row = rows[k % 3].replace("\"serial\":\"SN", &format!("\"serial\":\"A{k}B"));
+        row.replace("\"sha256\":\"", &format!("\"sha256\":\"{k}")) + "\n"
+    };
+    let many = (0..36).map(other);
     folder.write("fleet.jsonl", many.collect::<String>());
     let prior = folder.run("fleet prior station.toml");
     assert_eq!(prior.code, 0, "{}", prior.err);
@@ -211,4 +215,105 @@ fn a_clock_that_jumped_changes_neither_what_is_done_nor_the_report() {
     assert_eq!(folder.read("fleet.jsonl").lines().count(), 3, "{}", run.out);
     folder.done("fleet report station.toml --force");
     assert_eq!(folder.read("fleet.html"), page);
+}
+
+/// Two visits of each of some robots: halves of one session each.
+fn two_visits(count: usize) -> Folder {
+    let folder = Folder::new();
+    folder.write("robot.urdf", crate::session::ROBOT);
+    folder.write("station.toml", STATION);
+    for robot in 0..count {
+        folder.done(&format!(
+            "simulate robot.urdf --kind point --count 60 --seed {robot} --errors 0.05deg,0.3mm --out made{robot}"
+        ));
+        let text = folder.read(&format!("made{robot}/measurements.csv"));
+        let mut lines = text.lines().skip_while(|it| it.starts_with('#'));
+        let header = lines.next().unwrap();
+        let rows: Vec<&str> = lines.collect();
+        std::fs::create_dir_all(folder.path(&format!("inbox/SN{robot}"))).unwrap();
+        for (date, part) in [
+            (format!("2026-03-0{}", robot + 1), &rows[..30]),
+            (format!("2026-09-0{}", robot + 1), &rows[30..]),
+        ] {
+            folder.write(&format!("inbox/SN{robot}/{date}.csv"), format!("{header}\n{}\n", part.join("\n")));
+        }
+    }
+    folder
+}
+
+#[test]
+fn robots_that_were_exchanged_are_named_by_the_ledger_and_others_are_not() {
+    let folder = two_visits(3);
+    let run = folder.run("fleet station.toml");
+    assert!(!run.err.contains("exchanged"), "{}", run.err);
+    // The second visit of the first robot under the number of the second one, and the other way round.
+    let folder = two_visits(3);
+    let (first, second) = ("inbox/SN0/2026-09-01.csv", "inbox/SN1/2026-09-02.csv");
+    let (one, other) = (folder.read(first), folder.read(second));
+    folder.write(first, other);
+    folder.write(second, one);
+    let run = folder.run("fleet station.toml");
+    println!("{}{}", run.out, run.err);
+    let words = run.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(run.code, 1);
+    assert!(
+        words.contains("SN0 2026-09-01: found a robot whose tip is")
+            && words.contains("where SN1 had it on 2026-03-02"),
+        "{words}"
+    );
+    assert!(
+        words.contains("SN1 2026-09-02: found a robot whose tip is")
+            && words.contains("where SN0 had it on 2026-03-01"),
+        "{words}"
+    );
+    assert!(!words.contains("SN2"), "{words}");
+    let run = folder.run("fleet report station.toml");
+    println!("{}", run.out);
+    assert!(
+        run.out.contains("robots      3, ") && run.out.contains("; 6 measurements in all"),
+        "{}",
+        run.out
+    );
+    assert_eq!(run.out.lines().filter(|it| it.starts_with("another     SN")).count(), 2);
+    // Under its own number each is itself again.
+    for (path, number) in [(first, 0), (second, 1)] {
+        std::fs::remove_file(folder.path(path)).unwrap();
+        let made = folder.read(&format!("made{number}/measurements.csv"));
+        let rows: Vec<&str> = made.lines().skip_while(|it| it.starts_with('#')).collect();
+        let text = format!("{}\n{}\n", rows[0], rows[31..].join("\n"));
+        folder.write(&format!("inbox/SN{number}/2026-10-01.csv"), text);
+    }
+    let run = folder.run("fleet station.toml");
+    assert!(run.code == 0 && !run.err.contains("exchanged"), "{}{}", run.out, run.err);
+}
+
+#[test]
+fn one_file_under_two_serial_numbers_is_refused_under_the_second() {
+    let folder = line(2);
+    let text = folder.read("inbox/SN0/2026-01-01.csv");
+    std::fs::create_dir_all(folder.path("inbox/SN7")).unwrap();
+    folder.write("inbox/SN7/2026-01-09.csv", text);
+    let run = folder.run("fleet station.toml");
+    println!("{}", run.err);
+    let words = run.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(run.code, 1);
+    assert!(
+        words.contains("SN7 2026-01-09: found the same bytes as `inbox/SN0/2026-01-01.csv` of SN0"),
+        "{words}"
+    );
+    assert!(!words.contains("SN0 2026-01-01: ") && !folder.path("results/SN7").exists());
+    // It was that of the second one: it is calibrated once the first one is gone.
+    std::fs::remove_file(folder.path("inbox/SN0/2026-01-01.csv")).unwrap();
+    std::fs::remove_file(folder.path("fleet.jsonl")).unwrap();
+    let run = folder.run("fleet station.toml");
+    assert!(run.code == 0 && run.out.contains("2 of 2 robots passed"), "{}{}", run.out, run.err);
+    std::fs::remove_file(folder.path("inbox/SN7/2026-01-09.csv")).unwrap();
+    // Beside a robot that is done already only the copy is refused.
+    folder.write("inbox/SN7/2026-01-09.csv", folder.read("inbox/SN1/2026-01-02.csv"));
+    let run = folder.run("fleet station.toml");
+    assert!(
+        run.code == 1 && run.err.contains("SN7 2026-01-09") && !run.err.contains("SN1 2026"),
+        "{}",
+        run.err
+    );
 }

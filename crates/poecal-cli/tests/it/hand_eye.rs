@@ -8,7 +8,7 @@ use crate::folder::Folder;
 use crate::session::calibration;
 
 /// Poses of the flange and of the target, from numbers without noise but for one thousandth of a degree.
-fn session(count: usize) -> Vec<(Pose, Pose)> {
+pub(crate) fn session(count: usize) -> Vec<(Pose, Pose)> {
     let camera = Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.05, -0.1, 1.5]);
     let board = Pose::from_xyz_rpy([0.7, 0.1, 0.02], [0.02, 0.03, 0.4]);
     (0..count)
@@ -26,7 +26,7 @@ fn session(count: usize) -> Vec<(Pose, Pose)> {
         .collect()
 }
 
-fn abc(pose: &Pose) -> [f64; 3] {
+pub(crate) fn abc(pose: &Pose) -> [f64; 3] {
     let [c, b, a] = rotation::to_rpy(&pose.rotation).map(f64::to_degrees);
     [a, b, c]
 }
@@ -35,28 +35,28 @@ fn text(numbers: impl IntoIterator<Item = f64>) -> String {
     numbers.into_iter().map(|it| format!("{it}")).collect::<Vec<_>>().join(",")
 }
 
-fn place(pose: &Pose, factor: f64) -> Vec<f64> {
+pub(crate) fn place(pose: &Pose, factor: f64) -> Vec<f64> {
     pose.translation.iter().map(|it| factor * it).collect()
 }
 
-fn rvec(pose: &Pose) -> Vec<f64> {
+pub(crate) fn rvec(pose: &Pose) -> Vec<f64> {
     rotation::log(&pose.rotation).iter().copied().collect()
 }
 
 /// OpenCV's columns.
-const SEEN: &str = "rvec_x,rvec_y,rvec_z,tvec_x[mm],tvec_y[mm],tvec_z[mm]";
+pub(crate) const SEEN: &str = "rvec_x,rvec_y,rvec_z,tvec_x[mm],tvec_y[mm],tvec_z[mm]";
 
-fn seen(pose: &Pose) -> Vec<f64> {
+pub(crate) fn seen(pose: &Pose) -> Vec<f64> {
     [rvec(pose), place(pose, 1e3)].concat()
 }
 
-fn table(folder: &Folder, name: &str, header: &str, rows: impl IntoIterator<Item = Vec<f64>>) {
+pub(crate) fn table(folder: &Folder, name: &str, header: &str, rows: impl IntoIterator<Item = Vec<f64>>) {
     let rows: Vec<String> = rows.into_iter().map(text).collect();
     fs::write(folder.path(name), format!("{header}\n{}\n", rows.join("\n"))).unwrap();
 }
 
 /// Position of the camera, and its bound.
-fn camera(json: &str) -> (Vec<f64>, f64) {
+pub(crate) fn camera(json: &str) -> (Vec<f64>, f64) {
     let all: serde_json::Value = serde_json::from_str(json).unwrap();
     let frame = &all["camera_frame"];
     let numbers = |key: &str| -> Vec<f64> {
@@ -345,7 +345,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         ),
     )
     .unwrap();
-    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,319.5,239.5,640,480\n")
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,319.5,239.5,720,480\n")
         .unwrap();
     let all = |turned: &dyn Fn(usize) -> bool| -> String {
         let lines = rows

@@ -24,11 +24,15 @@ const CELLS: [&str; 6] =
 
 /// `robot.urdf` with hostile names of joints, `points.csv` with hostile ids and targets, and `map.toml` that brings them together.
 fn folder() -> Folder {
+    folder_of(NAMES)
+}
+
+fn folder_of(names: [&str; 6]) -> Folder {
     let folder = Folder::new();
     folder.write("plain.urdf", ROBOT);
     let mut urdf = ROBOT.to_owned();
     let mut map = "[joints]\n".to_owned();
-    for (number, name) in (1..).zip(NAMES) {
+    for (number, name) in (1..).zip(names) {
         let joint = format!("joint{number}");
         let in_xml: String = name.chars().map(|c| format!("&#{};", u32::from(c))).collect();
         urdf = urdf.replace(&format!("\"{joint}\""), &format!("\"{in_xml}\""));
@@ -103,6 +107,84 @@ fn names_and_cells_reach_people_as_they_can_see_them() {
         assert!(!report.contains(c), "the report has {}", c.escape_unicode());
     }
     assert!(report.contains("\\u{202e}J4\\u{2066}rtl"));
+}
+
+/// The cells of a table, by the rules of CSV.
+fn cells(text: &str) -> Vec<String> {
+    let (mut found, mut cell, mut is_quoted) = (Vec::new(), String::new(), false);
+    let mut letters = text.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if is_quoted && letters.peek() == Some(&'"') => cell.extend(letters.next()),
+            '"' => is_quoted = !is_quoted,
+            ',' | '\n' if !is_quoted => found.push(std::mem::take(&mut cell)),
+            letter => cell.push(letter),
+        }
+    }
+    found
+}
+
+/// No cell of a table that any command writes is one that a spreadsheet would run.
+#[test]
+fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
+    let [one, two, three, four, five, _] = NAMES;
+    let folder = folder_of([one, two, three, four, five, "+J6"]);
+    std::fs::create_dir(folder.path("inbox")).unwrap();
+    let (rows, with) = (folder.read("points.csv"), "--columns map.toml");
+    folder.write("inbox/+1.csv", &rows);
+    folder.write("inbox/-1+2.csv", rows);
+    folder.write("settings.toml", "poecal_settings = 1\ncolumns = \"map.toml\"\n");
+    folder.write(
+        "station.toml",
+        "poecal_station = 1\ninbox = \"inbox/{serial}.csv\"\nresults = \"results/{serial}\"\nmodel = \"robot.urdf\"\nsettings = \"settings.toml\"\n",
+    );
+    let mut tables = Vec::new();
+    for words in [
+        format!("calibrate robot.urdf points.csv {with} --out out"),
+        format!("validate out/calibration.json points.csv {with} --out judged"),
+        format!("predict robot.urdf points.csv {with} --out predicted.csv"),
+        format!("import robot.urdf points.csv {with} --out imported.csv"),
+        format!("compensate out/calibration.json points.csv {with} --out corrected.csv --most-change 90deg"),
+        "simulate robot.urdf --kind point --count 8 --out simulated".to_owned(),
+        format!("plan robot.urdf --candidates points.csv {with} --count 8 --out planned.csv"),
+        "track out/calibration.json --plan 4 --out visit.csv".to_owned(),
+        "fleet station.toml".to_owned(),
+        "fleet report station.toml".to_owned(),
+    ] {
+        let run = folder.run(&words);
+        println!("{words}: {}, {}", run.code, run.err.lines().last().unwrap_or_default());
+        assert!(
+            run.code <= 1
+                || words.starts_with("plan")
+                || words.starts_with("track")
+                || words.starts_with("compensate"),
+            "{words}: {}",
+            run.err
+        );
+    }
+    let mut count = 0;
+    for (path, content) in folder.listing() {
+        let is_own = path.extension().is_some_and(|it| it == "csv")
+            && !path.ends_with("points.csv")
+            && !path.to_string_lossy().contains("inbox");
+        // What is corrected in place keeps the cells of its input.
+        let Some(content) = content.filter(|_| is_own && !path.ends_with("corrected.csv")) else { continue };
+        tables.push(path.file_name().unwrap().to_string_lossy().into_owned());
+        let text = String::from_utf8(content).unwrap();
+        let body: String =
+            text.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect();
+        for cell in cells(&body) {
+            count += 1;
+            let is_run = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
+            assert!(!is_run, "{}: {cell:?}", path.display());
+        }
+    }
+    println!("{count} cells of {tables:?}");
+    for name in
+        ["residuals.csv", "errors.csv", "predicted.csv", "imported.csv", "fleet.csv", "measurements.csv"]
+    {
+        assert!(tables.iter().any(|it| it == name), "{name}: {tables:?}");
+    }
 }
 
 #[test]

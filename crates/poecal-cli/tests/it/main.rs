@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod acceptance;
+#[cfg(any(unix, windows))]
+mod at_once;
 mod bad_input;
 mod board;
 mod certificate;
@@ -29,6 +31,7 @@ mod identify;
 mod init;
 mod joining;
 mod joining_faults;
+mod limits;
 mod lost_beams;
 mod mistaken_files;
 mod offsets;
@@ -43,6 +46,7 @@ mod project;
 mod readme;
 mod recorded;
 mod recordings;
+mod remedies;
 mod repaired;
 mod report;
 mod reproduce;
@@ -58,3 +62,4 @@ mod trees;
 mod trust;
 mod validate;
 mod workbook;
+mod workbook_cells;

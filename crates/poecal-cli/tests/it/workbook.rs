@@ -44,7 +44,8 @@ fn archive(files: &[(String, String)]) -> Vec<u8> {
     bytes
 }
 
-/// A workbook of sheets with the texts of their cells; a cell that is a number is stored as one, and what begins with `t` as the text behind it.
+/// A workbook of sheets with the texts of their cells; a cell that is a number is stored as one, what begins with `t` as the text behind it, with `=` as a
+/// formula, whose result is behind `|`, and with `d` as a number that is shown as a date.
 pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
     const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
@@ -59,6 +60,12 @@ pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
             for (column, text) in ('A'..).zip(cells) {
                 let own = text.strip_prefix('t').unwrap_or(text);
                 if text.is_empty() {
+                } else if let Some((formula, result)) =
+                    text.strip_prefix('=').and_then(|it| it.split_once('|'))
+                {
+                    write!(data, "<c r=\"{column}{row}\"><f>{formula}</f><v>{result}</v></c>").unwrap();
+                } else if let Some(number) = text.strip_prefix('d').filter(|it| it.parse::<f64>().is_ok()) {
+                    write!(data, "<c r=\"{column}{row}\" s=\"1\"><v>{number}</v></c>").unwrap();
                 } else if text.parse::<f64>().is_ok() {
                     write!(data, "<c r=\"{column}{row}\"><v>{text}</v></c>").unwrap();
                 } else {
@@ -83,6 +90,16 @@ pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
         )
         .unwrap();
     }
+    write!(links, "<Relationship Id=\"styles\" Type=\"{OFFICE}/styles\" Target=\"styles.xml\"/>").unwrap();
+    write!(
+        types,
+        "<Override PartName=\"/xl/styles.xml\" ContentType=\"application/vnd.openxmlformats-officedocument.spreadsheetml.styles+xml\"/>"
+    )
+    .unwrap();
+    files.push((
+        "xl/styles.xml".to_owned(),
+        format!("{HEAD}<styleSheet xmlns=\"{MAIN}\"><cellXfs count=\"2\"><xf numFmtId=\"0\"/><xf numFmtId=\"22\"/></cellXfs></styleSheet>"),
+    ));
     files.push((
         "xl/workbook.xml".to_owned(),
         format!("{HEAD}<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets>{list}</sheets></workbook>"),

@@ -24,9 +24,6 @@ use poecal_results::programs::read_program;
 pub use place::PoseCompensation;
 pub use summary::ProgramSummary;
 
-/// Largest program, bytes.
-pub const LARGEST_PROGRAM: usize = 64 << 20;
-
 /// How programs are compensated.
 #[derive(Clone, Debug)]
 pub struct ProgramOptions {
@@ -67,7 +64,7 @@ impl ProgramOptions {
 /// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`] if the text is larger than [`LARGEST_PROGRAM`] or is no program, and as
+/// as [`parse`] and
 /// [`Compensation::new`](super::Compensation::new).
 pub fn compensate_program(
     text: &[u8],
@@ -75,13 +72,6 @@ pub fn compensate_program(
     factors: &[f64],
     options: &ProgramOptions,
 ) -> Result<(Vec<u8>, ProgramSummary)> {
-    if text.len() > LARGEST_PROGRAM {
-        return ErrorKind::Syntax.refuse(format!(
-            "found a program of {} MB, expected at most {} MB: cut it into several",
-            text.len() >> 20,
-            LARGEST_PROGRAM >> 20
-        ));
-    }
     let counting = options.controller.as_ref().filter(|it| !it.is_plain());
     let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;

@@ -15,7 +15,7 @@ use crate::exif;
 use crate::gray::Gray;
 
 /// Most bytes that the reader of PNG takes beside the picture: its rows, and texts and profiles in the file.
-const BESIDE: usize = 512 << 20;
+const BESIDE: usize = 64 << 20;
 /// Most pixels for each byte of a file. Deflate makes at most 1032 bytes of one, of 8 pixels each; JPEG needs a bit for a block of 8 × 8 pixels,
 /// or of 32 × 32 if its parts have other sizes. A head that states more lies, and is not believed.
 const PIXELS_PER_BYTE: usize = 8 * 1032;
@@ -61,22 +61,22 @@ pub(crate) struct Decoded {
 }
 
 impl Decoded {
-    /// Decodes a file; an error says what is wrong with it.
-    pub(crate) fn of(bytes: &[u8]) -> std::result::Result<Self, String> {
+    /// Decodes a file of at most so many pixels; an error says what is wrong with it.
+    pub(crate) fn of(bytes: &[u8], most: u64) -> std::result::Result<Self, Undecoded> {
         if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-            return of_png(bytes);
+            return of_png(bytes, most);
         }
         if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
-            return of_jpeg(bytes);
+            return of_jpeg(bytes, most);
         }
         let is_it = |(at, magic, _): &&(usize, &[u8], &str)| {
             bytes.get(*at..).is_some_and(|rest| rest.starts_with(magic))
                 && (*at != 8 || bytes.starts_with(b"RIFF"))
         };
-        Err(OTHERS.iter().find(is_it).map_or_else(
+        Err(Undecoded::Broken(OTHERS.iter().find(is_it).map_or_else(
             || "The image format could not be determined".to_owned(),
             |(_, _, name)| format!("The image format {name} is not supported"),
-        ))
+        )))
     }
 
     /// Levels from 0 to 255, colours by the weights of OpenCV (ITU-R BT.601).
@@ -102,10 +102,33 @@ impl Decoded {
     }
 }
 
+/// Why a file is not decoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Undecoded {
+    /// What is wrong with it.
+    Broken(String),
+    /// It has this width and height, which are too many pixels.
+    Large([usize; 2]),
+}
+
+impl From<String> for Undecoded {
+    fn from(found: String) -> Self {
+        Undecoded::Broken(found)
+    }
+}
+
 /// Room for the samples of a picture, which a file of this many bytes can hold.
-fn room(size: [usize; 2], bytes_per_pixel: usize, file: usize) -> std::result::Result<Vec<u8>, String> {
-    let too_large = || TOO_LARGE.to_owned();
+fn room(
+    size: [usize; 2],
+    most: u64,
+    bytes_per_pixel: usize,
+    file: usize,
+) -> std::result::Result<Vec<u8>, Undecoded> {
+    let too_large = || Undecoded::Broken(TOO_LARGE.to_owned());
     let pixels = size[0].checked_mul(size[1]).ok_or_else(too_large)?;
+    if pixels as u64 > most {
+        return Err(Undecoded::Large(size));
+    }
     if pixels > file.saturating_mul(PIXELS_PER_BYTE) {
         return Err(too_large());
     }
@@ -116,7 +139,7 @@ fn room(size: [usize; 2], bytes_per_pixel: usize, file: usize) -> std::result::R
     Ok(samples)
 }
 
-fn of_png(bytes: &[u8]) -> std::result::Result<Decoded, String> {
+fn of_png(bytes: &[u8], most: u64) -> std::result::Result<Decoded, Undecoded> {
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: BESIDE });
     // Palettes become colours, and samples of fewer bits those of 8; 16 bits stay.
     decoder.set_transformations(Transformations::EXPAND);
@@ -126,7 +149,7 @@ fn of_png(bytes: &[u8]) -> std::result::Result<Decoded, String> {
     let orientation = reader.info().exif_metadata.as_deref().and_then(exif::orientation);
     let (colours, depth) = reader.output_color_type();
     let (channels, is_deep) = (colours.samples(), depth == BitDepth::Sixteen);
-    let mut samples = room([width, height], channels << usize::from(is_deep), bytes.len())?;
+    let mut samples = room([width, height], most, channels << usize::from(is_deep), bytes.len())?;
     reader.next_frame(&mut samples).map_err(no_png)?;
     Ok(Decoded { width, height, channels, is_deep, samples, orientation: orientation.unwrap_or(1) })
 }
@@ -141,7 +164,7 @@ fn no_png(error: DecodingError) -> String {
     }
 }
 
-fn of_jpeg(bytes: &[u8]) -> std::result::Result<Decoded, String> {
+fn of_jpeg(bytes: &[u8], most: u64) -> std::result::Result<Decoded, Undecoded> {
     let options =
         DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut head = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -150,7 +173,7 @@ fn of_jpeg(bytes: &[u8]) -> std::result::Result<Decoded, String> {
     let (width, height) = head.dimensions().unwrap_or_default();
     let is_gray = head.input_colorspace() == Some(ColorSpace::Luma);
     let (space, channels) = if is_gray { (ColorSpace::Luma, 1) } else { (ColorSpace::RGB, 3) };
-    let mut samples = room([width, height], channels, bytes.len())?;
+    let mut samples = room([width, height], most, channels, bytes.len())?;
     let options = options.jpeg_set_out_colorspace(space);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_into(&mut samples).map_err(no_jpeg)?;

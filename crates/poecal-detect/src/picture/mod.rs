@@ -7,7 +7,7 @@ pub(crate) mod preview;
 use std::fmt;
 use std::path::Path;
 
-use crate::decoded::Decoded;
+use crate::decoded::{Decoded, Undecoded};
 use crate::error::{Error, Result};
 use crate::gray::Gray;
 
@@ -94,17 +94,56 @@ impl Picture {
         Picture::decode(&bytes, path)
     }
 
-    /// The same of the bytes of such a file; `path` is its name in messages.
+    /// The same of the bytes of such a file, of at most [`MOST_PIXELS`]; `path` is its name in messages.
     ///
     /// # Errors
     /// If it is no such picture: with its path.
     pub fn decode(bytes: &[u8], path: &Path) -> Result<Self> {
-        let no_picture = |reason: &dyn fmt::Display| {
-            Error::new(format!("{}: found no picture, expected PNG or JPEG ({reason})", path.display()))
+        Picture::decode_up_to(bytes, path, MOST_PIXELS).map_err(|Undecodable { error, .. }| error)
+    }
+
+    /// The same of at most so many pixels: of a file that states more, no memory is taken.
+    ///
+    /// # Errors
+    /// As [`Picture::decode`], with the size of a picture of more pixels.
+    pub fn decode_up_to(
+        bytes: &[u8],
+        path: &Path,
+        most_pixels: u64,
+    ) -> std::result::Result<Self, Undecodable> {
+        let no_picture = |reason: &dyn fmt::Display| Undecodable {
+            error: Error::new(format!(
+                "{}: found no picture, expected PNG or JPEG ({reason})",
+                path.display()
+            )),
+            too_large: None,
         };
-        let decoded = Decoded::of(bytes).map_err(|error| no_picture(&error))?;
+        let decoded = Decoded::of(bytes, most_pixels).map_err(|found| match found {
+            Undecoded::Broken(reason) => no_picture(&reason),
+            Undecoded::Large([width, height]) => Undecodable {
+                error: Error::new(format!(
+                    "{}: found a picture of {width} x {height} pixels, expected at most {most_pixels} in all: make it smaller",
+                    path.display()
+                )),
+                too_large: Some([width, height]),
+            },
+        })?;
         let turned = Turned::of(decoded.orientation);
-        let gray = decoded.gray().and_then(|it| turned.apply(it)).map_err(|error| no_picture(&error))?;
+        let gray = decoded.gray().map_err(|error| no_picture(&error))?;
+        drop(decoded);
+        let gray = turned.apply(gray).map_err(|error| no_picture(&error))?;
         Ok(Picture { gray, turned })
     }
+}
+
+/// Most pixels of a picture, if nothing else is asked for.
+pub const MOST_PIXELS: u64 = 50_000_000;
+
+/// Why a file is no picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Undecodable {
+    /// What is wrong, in a sentence.
+    pub error: Error,
+    /// Width and height of a picture of more pixels than there may be.
+    pub too_large: Option<[usize; 2]>,
 }

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::direction::{Cause, Direction};
 use super::excitation::{Excitation, Turning};
+use super::open_offsets;
 use super::setup::Setup;
 use super::spectrum::Spectrum;
 use super::subspace;
@@ -45,7 +46,9 @@ pub(crate) fn explain(
     let space = spectrum.vectors.columns(first, count).into_owned();
     let mut rules = Rules { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
     // Offsets beside screws are a structural kernel, reported as such.
-    let offsets = rules.places(|parameter| matches!(parameter, Parameter::ValueTerm(_)));
+    let offsets = rules.places(|parameter| {
+        matches!(parameter, Parameter::ValueTerm(_)) && !open_offsets::is_own(setup, parameter)
+    });
     rules.take(&offsets);
     rules.unseen();
     rules.size();

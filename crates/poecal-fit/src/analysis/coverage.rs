@@ -50,6 +50,13 @@ impl JointCoverage {
         (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
+    /// Whether [`Self::share`] is of one turn, since the limits span more.
+    #[must_use]
+    pub fn is_of_a_turn(&self, kind: JointKind) -> bool {
+        let span = self.limit_min.zip(self.limit_max).map(|(least, most)| most - least);
+        kind == JointKind::Revolute && span.is_some_and(|span| span > Limits::TURN_RAD)
+    }
+
     /// Whether a value is in the sampled range; for a revolute joint also after whole turns.
     #[must_use]
     pub fn contains(&self, kind: JointKind, value: f64) -> bool {

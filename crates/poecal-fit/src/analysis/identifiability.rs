@@ -6,10 +6,11 @@ use super::causes::{Degree, explain};
 use super::direction::{Cause, Direction};
 use super::excitation::Excitation;
 use super::observability::Observability;
+use super::open_offsets::open_offsets;
 use super::setup::Setup;
 use super::spectrum::{PLAUSIBLE, ROUNDING, Spectrum, WEAK, rounding};
 use crate::parameters::Parameter;
-use poecal_model::robot::{Joint, JointKind};
+use poecal_model::robot::{Joint, JointKind, Term};
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
@@ -97,18 +98,21 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     let weak = (spectrum.undetermined..n)
         .take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.session.length_m)
         .count();
-    let unidentifiable = explain(setup, &excitation, &spectrum, Degree::Undetermined);
+    // A zero whose axis is held is an unknown, also where a free target or device hides it.
+    let mut unidentifiable = open_offsets(setup, &base);
+    let open: usize = unidentifiable.iter().map(|direction| direction.directions).sum();
+    unidentifiable.extend(explain(setup, &excitation, &spectrum, Degree::Undetermined));
     let mut hardly = explain(setup, &excitation, &spectrum, Degree::Weak(weak));
     hardly.extend(excitation.seen_once(setup));
     let rank = (n - spectrum.undetermined).saturating_sub(base.len());
     Identifiability {
-        parameters: n - base.len(),
+        parameters: n + open - base.len(),
         rank,
         effective_unknowns: rank as f64,
         condition,
         unidentifiable,
         weak: hardly,
-        structural: structural(setup, motions.of_base, base.len() - motions.of_base),
+        structural: structural(setup, motions.of_base, (base.len() - motions.of_base).saturating_sub(open)),
         observability: Observability::new(&singular, setup.rows.len()),
         spectrum,
     }
@@ -128,6 +132,17 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64
         }
     }
     gram
+}
+
+/// Whether the offset of a joint is free.
+fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
+    let name = |at: usize| setup.session.robot.joints.get(at).map(|it| it.name.as_str());
+    let is_it = |parameter: &Parameter| {
+        parameter
+            .value_term()
+            .is_some_and(|it| it.term == Term::OFFSET && name(it.joint) == Some(&joint.name))
+    };
+    setup.layout.parameters().any(|(parameter, _)| is_it(parameter))
 }
 
 /// The structural kernel, known before anything is measured: theory.md §7 (35). So many motions of the base have no effect though some
@@ -166,7 +181,9 @@ fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Dir
     add(Cause::BaseFrame, base_motions, &[], base);
     let free = "joint offsets: motions of free axes, targets or the device have the same effect as some of them together: chosen nearest to the \
                 model; hold axes (--fix joints) to find offsets";
-    add(Cause::JointOffsets, offsets, &[], free);
+    let beside_axes: Vec<String> =
+        joints.iter().filter(|joint| has_offset(setup, joint)).map(|it| it.name.clone()).collect();
+    add(Cause::JointOffsets, offsets, &beside_axes, free);
     let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
     // Beside held axes or targets an offset is no other unknown.
     if unknowns.are_usual() {

@@ -8,6 +8,7 @@ mod identifiability;
 mod identify;
 mod influence;
 mod observability;
+mod open_offsets;
 mod other_causes;
 mod setup;
 mod spectrum;

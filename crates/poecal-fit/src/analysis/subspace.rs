@@ -10,6 +10,15 @@ const VISIBLE: f64 = 0.1;
 /// The part of `space` that would still be undetermined if the quantities along some directions (unit vectors, not necessarily orthogonal)
 /// were known, and the number of dimensions removed: theory.md §7 (36a).
 pub(crate) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
+    without_beyond(space, directions, VISIBLE)
+}
+
+/// The same with another singular value above which a direction counts.
+pub(crate) fn without_beyond(
+    space: &DMatrix<f64>,
+    directions: &[Vec<f64>],
+    visible: f64,
+) -> (DMatrix<f64>, usize) {
     let k = space.ncols();
     let basis = orthonormal(directions, space.nrows());
     let seen: Vec<Vec<f64>> = basis
@@ -23,7 +32,7 @@ pub(crate) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix
         linalg::add_gram(&mut gram, k, row, 0);
     }
     let (values, vectors) = linalg::symmetric_eigen(&gram, k);
-    let kept = values.iter().take_while(|&&value| value <= VISIBLE * VISIBLE).count();
+    let kept = values.iter().take_while(|&&value| value <= visible * visible).count();
     (space * vectors.columns(0, kept), k - kept)
 }
 

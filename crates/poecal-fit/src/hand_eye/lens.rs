@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
 use super::equations::{Pair, UNKNOWNS, derivatives, errors, sight_axes};
 use super::fit::Fit;
+use super::other_lens::other_lens;
 use super::readings::PoseList;
 use super::unknown_lens::{FoundLens, UnknownLens};
 use poecal_arm::lie::{Pose, hat};
@@ -54,7 +55,7 @@ impl PoseList {
             let turned = half_turn.iter().flat_map(|turn| picture.poses.iter().map(move |it| *it * *turn));
             other_poses.push(picture.poses.iter().skip(1).copied().chain(turned).collect());
         }
-        Ok(PoseList { other_poses, ..poses.into() })
+        Ok(PoseList { other_poses, lens_doubt: other_lens(pictures), ..poses.into() })
     }
 }
 
@@ -86,7 +87,7 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
     let mut known = state.pictures.clone();
     known.cameras.iter_mut().for_each(|it| it.is_guessed = false);
     let list = PoseList::of_pictures(&known)?;
-    Ok(PoseList { lens: Some(UnknownLens { search, state }), ..list })
+    Ok(PoseList { lens: Some(UnknownLens { search, state }), lens_doubt: None, ..list })
 }
 
 /// A fit with its lens: the poses seen through it, and the joint uncertainty.

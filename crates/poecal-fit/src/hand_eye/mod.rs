@@ -20,13 +20,18 @@ mod lens;
 mod lens_tests;
 mod moved;
 mod noise;
+mod other_lens;
 mod other_poses;
 mod readings;
 mod result;
+mod scale;
 mod simulated;
 #[cfg(test)]
 mod tests;
 mod tip;
+mod tip_errors;
+#[cfg(test)]
+mod tip_tests;
 mod touches;
 mod turns;
 mod types;

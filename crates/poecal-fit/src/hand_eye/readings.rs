@@ -20,6 +20,8 @@ pub struct PoseList {
     pub other_poses: Vec<Vec<Pose>>,
     /// The unknown lens with which the poses were found from pictures, one a row; none where the lens is known, or there are no pictures.
     pub lens: Option<UnknownLens>,
+    /// That the pictures by themselves contradict the lens with which the poses were found, a sentence.
+    pub lens_doubt: Option<String>,
 }
 
 /// Another reading of a list.
@@ -41,7 +43,13 @@ impl PoseList {
             true => Vec::new(),
             false => rows.iter().filter_map(|&row| self.other_poses.get(row)).cloned().collect(),
         };
-        PoseList { poses: of(&self.poses), others: others.collect(), other_poses, lens: None }
+        PoseList {
+            poses: of(&self.poses),
+            others: others.collect(),
+            other_poses,
+            lens: None,
+            lens_doubt: self.lens_doubt.clone(),
+        }
     }
 }
 

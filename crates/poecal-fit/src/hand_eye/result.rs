@@ -13,7 +13,7 @@ use super::readings::{PoseList, least_score, misread_angles, mistaken, refuse_ot
 use super::turns::{refuse_one_axis, turns};
 use super::types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
 use super::unknown_lens::FoundLens;
-use super::{CameraPlace, moved, other_poses, simulated, verdict};
+use super::{CameraPlace, moved, other_poses, scale, simulated, verdict};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -92,7 +92,8 @@ pub fn hand_eye(
         );
     };
     let all = pairs(&flange.poses, &poses, options.camera, &directions);
-    finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)
+    let found = finished(&all, &counted, (&fit, joint, directions, turns), options.camera, findings, name)?;
+    Ok(found.with_lens_doubt(target.lens_doubt.as_ref()))
 }
 
 /// The target's list with those of several poses that the rows agree with.
@@ -179,9 +180,13 @@ fn finished(
         .collect();
     let outliers = find_outliers((all, counted), &rows_errors, fit);
     say_outliers(&outliers, name, &mut findings);
-    let scale = verdict::scale(&kept, fit);
     let held_out = held_out(&rows, fit);
     let noise = [0, 2, 3, 5].map(|number| fit.noise.sigma(number));
+    let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
+    let distance = distance.unwrap_or_default();
+    let scale = scale::of((&rows, &kept), fit, verdict::inconsistent(&noise, distance).is_none());
+    // Where camera and target are follows from lengths that are none.
+    findings.retain(|it| it.kind != FindingKind::Exchanged || !scale.is_some_and(scale::is_gross));
     let mut result = HandEye {
         camera,
         on_flange,
@@ -199,8 +204,7 @@ fn finished(
         findings,
         lens,
     };
-    let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
-    verdict::judge(&mut result, scale, distance.unwrap_or_default());
+    verdict::judge(&mut result, scale, distance);
     Ok(result)
 }
 

@@ -1,15 +1,15 @@
 //! The tip of a tool that touches a fixed point in many orientations: `R p + t = c`, linear in the tip and in the points.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::bounds::{Placed, length_within};
 use super::findings::{Finding, FindingKind, listed};
 use super::readings::refuse_arm_lengths;
+use super::tip_errors;
 use super::touches::{FEWEST, Layout, TipFit, Touches};
 use super::types::{Level, RowError};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_numerics::linalg::symmetric_eigen;
 
 /// A tip of the tool.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +50,12 @@ pub struct Tool {
 const UNTILTED: f64 = 0.03;
 /// The same that is enough: tilts of 20 deg.
 const TILTED: f64 = 0.25;
+/// Bound of a tip, and root mean square distance of touches, metres, above which there is no use of them.
+const USELESS: f64 = 0.02;
+/// Bound of a tip, metres, up to which it is good: an arm and a hand touch to 0.2 to 1 mm.
+const WIDE: f64 = 3e-3;
+/// Distance of a tip from the flange, metres, below which the flange itself touched.
+const AT_FLANGE: f64 = 2e-3;
 /// Root mean square distance, metres, above which other readings are tried.
 const SUSPICIOUS: f64 = 5e-3;
 
@@ -82,36 +88,20 @@ pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<Too
     let layout = Layout::of(touches);
     layout.refuse_few(touches)?;
     let poses = &touches.flange.poses;
-    let (weak, spread) = least_tilted(poses, &layout);
+    let (weak, spread) = layout.least_tilted(poses, &vec![true; poses.len()]);
     let solved = layout.robustly(poses).filter(|_| spread > UNTILTED);
     let Some(fit) = solved else { return Err(untilted(&weak, spread)) };
     if fit.rms(poses, &layout) > SUSPICIOUS
-        && let Some(error) = other_reading(touches, &layout, fit.rms(poses, &layout))
+        && let Some(error) = other_reading(touches, &layout, &fit)
     {
         return Err(error);
     }
-    Ok(finished(poses, &layout, &fit, (weak, spread), name))
-}
-
-/// The direction in the flange along which orientations tilted least, and the root mean square change of that unit vector.
-fn least_tilted(poses: &[Pose], layout: &Layout) -> (Vector3<f64>, f64) {
-    let mut upper = [0.0; 9];
-    for (tip, point) in
-        (0..layout.tips.len()).flat_map(|tip| (0..layout.points.len()).map(move |point| (tip, point)))
-    {
-        let own: Vec<&Pose> =
-            poses.iter().zip(&layout.rows).filter(|(_, row)| **row == (tip, point)).map(|it| it.0).collect();
-        let mean = own.iter().map(|it| it.rotation).sum::<Matrix3<f64>>() / own.len().max(1) as f64;
-        for pose in own {
-            let off = pose.rotation - mean;
-            let squares = off.transpose() * off / poses.len() as f64;
-            for (k, sum) in upper.iter_mut().enumerate() {
-                *sum += squares[(k / 3, k % 3)];
-            }
-        }
-    }
-    let (values, vectors) = symmetric_eigen(&upper, 3);
-    (Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)]), values[0].max(0.0).sqrt())
+    let Some(covariance) = tip_errors::covariance(poses, &layout, &fit, &weak) else {
+        return Err(untilted(&weak, spread));
+    };
+    let mut tool = finished(poses, &layout, &fit, &covariance);
+    judge(&mut tool, (weak, spread), turned(poses), name);
+    Ok(tool)
 }
 
 fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
@@ -125,46 +115,51 @@ fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
     ))
 }
 
-/// Another reading of the poses that fits evidently better.
-fn other_reading(touches: &Touches, layout: &Layout, found: f64) -> Option<Error> {
+/// Another reading of the poses that fits evidently better, with as many touches, which show as much of the tip.
+fn other_reading(touches: &Touches, layout: &Layout, found: &TipFit) -> Option<Error> {
     let inverted: Vec<Pose> = touches.flange.poses.iter().map(Pose::inverse).collect();
     let inverted = (
         "poses inverted (flange from base): export base from flange, the pose of the flange in the base",
         inverted,
     );
+    let counted = |kept: &[bool]| kept.iter().filter(|it| **it).count();
     let others = touches.flange.others.iter().map(|it| (it.advice.as_str(), it.poses.clone()));
     let fits = others.chain([inverted]).filter_map(|(advice, poses)| {
         let fit = layout.robustly(&poses)?;
-        Some((fit.rms(&poses, layout), advice))
+        let is_as_sure =
+            counted(&fit.kept) >= counted(&found.kept) && layout.least_tilted(&poses, &fit.kept).1 > UNTILTED;
+        is_as_sure.then(|| (fit.rms(&poses, layout), advice))
     });
     let (rms, advice) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (rms < 0.2 * found).then(|| {
+    let as_read = found.rms(&touches.flange.poses, layout);
+    (rms < 0.2 * as_read).then(|| {
         ErrorKind::Problem.error(format!(
             "found touches that are {:.0} mm apart (RMS), expected one point; they fit within {:.1} mm with {advice}",
-            1e3 * found,
+            1e3 * as_read,
             1e3 * rms
         ))
     })
 }
 
-/// All that is said of a fit.
-fn finished(
-    poses: &[Pose],
-    layout: &Layout,
-    fit: &TipFit,
-    (weak, spread): (Vector3<f64>, f64),
-    name: &dyn Fn(usize) -> String,
-) -> Tool {
+/// Largest angle between two orientations, radians.
+fn turned(poses: &[Pose]) -> f64 {
+    let first = poses.first().map_or_else(Matrix3::identity, |it| it.rotation);
+    poses.iter().map(|it| rotation::log(&(first.transpose() * it.rotation)).norm()).fold(0.0, f64::max)
+}
+
+/// The tool of a fit, not judged yet.
+fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<f64>) -> Tool {
     let at = |tip: usize| {
         Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2])
     };
+    let block = |i: usize, j: usize| covariance.fixed_view::<3, 3>(3 * i, 3 * j).into_owned();
     let bound = |covariance: &Matrix3<f64>| length_within(covariance, &[(covariance.trace(), fit.freedom)]);
     let tips: Vec<Tip> = layout
         .tips
         .iter()
         .enumerate()
         .map(|(k, name)| {
-            let covariance = fit.covariance_of(3 * k, None);
+            let covariance = block(k, k);
             let placed = Placed {
                 pose: Pose::from_translation(at(k)),
                 bound95_m: bound(&covariance),
@@ -178,8 +173,8 @@ fn finished(
         let along = at(0) - at(1);
         let direction = along.try_normalize(1e-9).unwrap_or_else(Vector3::z);
         let across = Matrix3::identity() - direction * direction.transpose();
-        let covariance = across * fit.covariance_of(0, Some(3)) * across;
-        (direction, (bound(&covariance) / along.norm().max(1e-9)).atan())
+        let between = block(0, 0) + block(1, 1) - block(0, 1) - block(1, 0);
+        (direction, (bound(&(across * between * across)) / along.norm().max(1e-9)).atan())
     });
     let turn = axis
         .map_or_else(Matrix3::identity, |(direction, _)| rotation::shortest_arc(&Vector3::z(), &direction));
@@ -190,7 +185,7 @@ fn finished(
         .map(|(miss, kept)| RowError { shift_m: miss.norm(), turn_rad: 0.0, is_fitted: *kept })
         .collect();
     let outliers: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].is_fitted).collect();
-    let mut tool = Tool {
+    Tool {
         frame: Pose::new(turn, at(0)),
         tips,
         axis,
@@ -201,20 +196,51 @@ fn finished(
         level: Level::Good,
         reasons: Vec::new(),
         findings: Vec::new(),
-    };
-    judge(&mut tool, &weak, spread, name);
-    tool
+    }
 }
 
-fn judge(tool: &mut Tool, weak: &Vector3<f64>, spread: f64, name: &dyn Fn(usize) -> String) {
+impl Tip {
+    /// Whether it is no tool: the poses are those of the tip itself.
+    fn is_at_flange(&self) -> bool {
+        self.placed.pose.translation.norm() < self.placed.bound95_m.clamp(AT_FLANGE, USELESS)
+    }
+
+    /// Why it is known too little to be used, if it is.
+    fn useless(&self) -> Option<String> {
+        let Placed { bound95_m: bound, pose, .. } = self.placed;
+        let length = pose.translation.norm();
+        (bound > USELESS.min(length)).then(|| {
+            let name = if self.name.is_empty() { String::new() } else { format!(" `{}`", self.name) };
+            format!(
+                "the tip{name} is known to {:.1} mm only (95 %), more than {}: touch the point in more orientations, tilted by 20 deg and more to \
+                 several sides",
+                1e3 * bound,
+                if bound > length { "it is away from the flange".to_owned() } else { format!("{:.0} mm", 1e3 * USELESS) }
+            )
+        })
+    }
+}
+
+/// Sets level and reasons; of the direction that tilted least with its tilt, and the largest turn.
+fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name: &dyn Fn(usize) -> String) {
     let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
     let (mut against, mut reasons) = (Vec::new(), Vec::new());
-    if tool.rms_m > 0.02 {
+    if tool.rms_m > USELESS {
         against.push(format!(
             "the touches are {:.0} mm apart (RMS): no one point was touched, or the poses are of another frame than the flange; check that the controller's \
              tool is zero (flange) in what was recorded",
             1e3 * tool.rms_m
         ));
+    } else if tool.tips.iter().any(Tip::is_at_flange) {
+        against.push(format!(
+            "the positions are one point within {:.1} mm (RMS) while the orientations turn by {:.0} deg: these are poses of the tip, whose tool was active \
+             in the controller, and not of the flange; record again with the tool zero (flange), or keep the controller's tool, which these touches \
+             confirm",
+            1e3 * tool.rms_m,
+            turned.to_degrees()
+        ));
+    } else {
+        against.extend(tool.tips.iter().filter_map(Tip::useless));
     }
     if 2 * outliers >= fitted {
         against.push(format!("{outliers} of {} touches contradict the others", fitted + outliers));
@@ -230,6 +256,14 @@ fn judge(tool: &mut Tool, weak: &Vector3<f64>, spread: f64, name: &dyn Fn(usize)
     }
     if fitted < 5 {
         reasons.push(format!("{fitted} touches show little of their own errors: take 6 or more"));
+    }
+    let bound = tool.tips.iter().map(|it| it.placed.bound95_m).fold(0.0, f64::max);
+    if bound > WIDE {
+        reasons.push(format!(
+            "the tip is known to {:.1} mm (95 %; good: up to {:.0} mm): touch the point in more orientations, tilted by 20 deg and more to several sides",
+            1e3 * bound,
+            1e3 * WIDE
+        ));
     }
     if spread < TILTED {
         let statement = format!(

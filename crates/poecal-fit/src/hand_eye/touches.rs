@@ -6,7 +6,7 @@ use super::readings::PoseList;
 use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::{f_quantile, median};
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_numerics::linalg::{cholesky, cholesky_solve, inverse};
+use poecal_numerics::linalg::{cholesky, cholesky_solve, symmetric_eigen};
 
 /// Fewest touches.
 pub(crate) const FEWEST: usize = 3;
@@ -14,6 +14,10 @@ pub(crate) const FEWEST: usize = 3;
 const LOST: f64 = 0.01;
 /// Rounds of robust weights, and of outliers.
 const ROUNDS: usize = 40;
+/// Share of the least tilt of all touches that is left without outliers, at least, and without any one more of so many or fewer.
+const STILL_TILTED: f64 = 0.5;
+const TILTED_WITHOUT_ONE: f64 = 0.25;
+const MANY: usize = 50;
 
 /// Poses in which a tip touched a point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,7 +41,6 @@ pub(crate) struct Layout {
 /// A fit: all unknowns, tips first, and which rows count.
 pub(crate) struct TipFit {
     pub(crate) unknowns: Vec<f64>,
-    covariance: Vec<f64>,
     pub(crate) kept: Vec<bool>,
     pub(crate) sigma_m: f64,
     pub(crate) freedom: f64,
@@ -84,8 +87,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Least squares with a weight of each row: unknowns, and the inverse of the normal equations.
-    pub(crate) fn solved(&self, poses: &[Pose], weights: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// Least squares with a weight of each row.
+    fn solved(&self, poses: &[Pose], weights: &[f64]) -> Option<Vec<f64>> {
         let n = self.unknowns();
         let (mut gram, mut right) = (vec![0.0; n * n], vec![0.0; n]);
         for ((pose, (tip, point)), weight) in poses.iter().zip(&self.rows).zip(weights) {
@@ -103,8 +106,8 @@ impl Layout {
             }
         }
         let factor = cholesky(&gram, n, 0.0)?;
-        let (found, covariance) = (cholesky_solve(&factor, &right), inverse(&factor));
-        found.iter().chain(&covariance).all(|it| it.is_finite()).then_some((found, covariance))
+        let found = cholesky_solve(&factor, &right);
+        found.iter().all(|it| it.is_finite()).then_some(found)
     }
 
     /// Distance of each row's tip from its point.
@@ -117,12 +120,13 @@ impl Layout {
     /// The fit without outliers: by least distances first, then by least squares of the rows that agree.
     pub(crate) fn robustly(&self, poses: &[Pose]) -> Option<TipFit> {
         let mut weights = vec![1.0; poses.len()];
-        let (mut unknowns, mut covariance) = self.solved(poses, &weights)?;
+        let (_, tilted) = self.least_tilted(poses, &vec![true; poses.len()]);
+        let mut unknowns = self.solved(poses, &weights)?;
         for _ in 0..ROUNDS {
             let lengths: Vec<f64> = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect();
             let middle = median(lengths.iter().copied())?.max(1e-9);
             weights = lengths.iter().map(|it| middle / it.max(0.1 * middle)).collect();
-            (unknowns, _) = self.solved(poses, &weights)?;
+            unknowns = self.solved(poses, &weights)?;
         }
         let lengths = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect::<Vec<f64>>();
         // A few touches fit themselves.
@@ -134,12 +138,11 @@ impl Layout {
             let lengths: Vec<f64> = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect();
             let cut = 3.0 * f_quantile(LOST / poses.len() as f64, 3.0, freedom.max(1.0));
             let mut next: Vec<bool> = lengths.iter().map(|it| (it / sigma_m).powi(2) <= cut).collect();
-            if 3 * next.iter().filter(|it| **it).count() <= self.unknowns() {
+            if !self.are_enough(poses, &next, tilted) {
                 next.fill(true);
             }
             weights = next.iter().map(|it| f64::from(u8::from(*it))).collect();
-            let Some(solved) = self.solved(poses, &weights) else { break };
-            (unknowns, covariance) = solved;
+            unknowns = self.solved(poses, &weights)?;
             let misses = self.misses(poses, &unknowns);
             let squares: f64 =
                 misses.iter().zip(&weights).map(|(miss, weight)| weight * miss.norm_squared()).sum();
@@ -151,7 +154,50 @@ impl Layout {
                 break;
             }
         }
-        Some(TipFit { unknowns, covariance, kept, sigma_m, freedom })
+        Some(TipFit { unknowns, kept, sigma_m, freedom })
+    }
+
+    /// Whether what is left determines all that all touches do, also without any one of them: rows that alone show a direction contradict nothing,
+    /// and are never left out.
+    fn are_enough(&self, poses: &[Pose], kept: &[bool], tilted: f64) -> bool {
+        let has = |of: &dyn Fn(&(usize, usize)) -> bool| {
+            self.rows.iter().zip(kept).any(|(row, kept)| *kept && of(row))
+        };
+        let is_tilted = |kept: &[bool], share: f64| self.least_tilted(poses, kept).1 >= share * tilted;
+        let without = |row: usize| {
+            let others: Vec<bool> = kept.iter().enumerate().map(|(at, kept)| *kept && at != row).collect();
+            is_tilted(&others, TILTED_WITHOUT_ONE)
+        };
+        let count = kept.iter().filter(|it| **it).count();
+        count == kept.len()
+            || 3 * count > self.unknowns()
+                && (0..self.tips.len()).all(|tip| has(&|row| row.0 == tip))
+                && (0..self.points.len()).all(|point| has(&|row| row.1 == point))
+                && is_tilted(kept, STILL_TILTED)
+                && (count > MANY || (0..kept.len()).filter(|row| kept[*row]).all(without))
+    }
+
+    /// The direction in the flange along which the orientations of some rows tilted least, and the root mean square change of that unit vector.
+    pub(crate) fn least_tilted(&self, poses: &[Pose], kept: &[bool]) -> (Vector3<f64>, f64) {
+        let count = kept.iter().filter(|it| **it).count();
+        let mut upper = [0.0; 9];
+        for (tip, point) in
+            (0..self.tips.len()).flat_map(|tip| (0..self.points.len()).map(move |point| (tip, point)))
+        {
+            let rows = poses.iter().zip(&self.rows).zip(kept);
+            let own: Vec<&Pose> =
+                rows.filter(|((_, row), kept)| **kept && **row == (tip, point)).map(|it| it.0.0).collect();
+            let mean = own.iter().map(|it| it.rotation).sum::<Matrix3<f64>>() / own.len().max(1) as f64;
+            for pose in own {
+                let off = pose.rotation - mean;
+                let squares = off.transpose() * off / count as f64;
+                for (k, sum) in upper.iter_mut().enumerate() {
+                    *sum += squares[(k / 3, k % 3)];
+                }
+            }
+        }
+        let (values, vectors) = symmetric_eigen(&upper, 3);
+        (Vector3::new(vectors[(0, 0)], vectors[(1, 0)], vectors[(2, 0)]), values[0].max(0.0).sqrt())
     }
 }
 
@@ -166,16 +212,5 @@ impl TipFit {
             .map(|(it, _)| it.norm_squared())
             .collect();
         (kept.iter().sum::<f64>() / kept.len().max(1) as f64).sqrt()
-    }
-
-    /// Covariance of the difference of two triples of unknowns, or of one.
-    pub(crate) fn covariance_of(&self, one: usize, other: Option<usize>) -> Matrix3<f64> {
-        let n = self.unknowns.len();
-        let block = |a: usize, b: usize| Matrix3::from_fn(|i, j| self.covariance[(a + i) * n + b + j]);
-        let sum = match other {
-            None => block(one, one),
-            Some(other) => block(one, one) + block(other, other) - block(one, other) - block(other, one),
-        };
-        sum * self.sigma_m * self.sigma_m
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::CameraPlace;
 use super::bounds::Placed;
-use super::findings::Finding;
+use super::findings::{Finding, FindingKind};
 use super::unknown_lens::FoundLens;
 
 /// Directions of the poses of two lists.
@@ -177,6 +177,15 @@ impl HandEye {
             CameraPlace::InHand => &self.on_flange,
             CameraPlace::Beside => &self.in_base,
         }
+    }
+
+    /// The same, no better than within its bounds if the pictures contradict the lens that they were seen through, as a sentence says.
+    pub(crate) fn with_lens_doubt(mut self, doubt: Option<&String>) -> Self {
+        if let Some(doubt) = doubt {
+            self.findings.push(Finding::new(FindingKind::Lens, doubt.clone(), Vec::new()));
+            self.weaken(doubt.clone());
+        }
+        self
     }
 
     /// Adds a reason for which the result is no better than within its bounds.

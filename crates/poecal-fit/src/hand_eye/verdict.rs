@@ -1,11 +1,9 @@
 //! How far to use the result: by what was promised of the frames, and not by what a tracker would do.
 
-use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
 use super::findings::{Finding, FindingKind};
-use super::fit::Fit;
+use super::scale::{self, NO_CAMERA};
 use super::types::{HandEye, Level};
 use poecal_model::camera::PictureNumber;
-use poecal_numerics::distributions::f_quantile;
 
 /// Rows from which on a result is tested well.
 const ENOUGH: usize = 10;
@@ -14,8 +12,6 @@ const TURNED: f64 = 0.17;
 /// Share of outliers up to which a result is good, and up to which it is used.
 const FEW: f64 = 0.2;
 const MANY: f64 = 0.4;
-/// Noise of orientations, radians, that no camera has.
-const NO_CAMERA: f64 = 0.1;
 /// The same of places, as a share of the distance.
 const NO_CAMERA_M: f64 = 0.06;
 /// Bound of the camera's position, as a share of the distance at which it sees the target, up to which a result is good: then what it sees is off by
@@ -23,43 +19,14 @@ const NO_CAMERA_M: f64 = 0.06;
 const NEAR: f64 = 0.01;
 /// How many times wider an unknown lens makes that bound where it is said.
 const WIDER: f64 = 2.0;
-/// Smallest difference of scales that is said.
-const OTHER_SCALE: f64 = 3e-3;
-/// Probability by chance at which scales differ.
-const CHANCE: f64 = 1e-4;
 
-/// How much longer the camera's lengths are than the arm's (a share), where that is more than chance.
-pub(crate) fn scale(kept: &[Pair], fit: &Fit) -> Option<f64> {
-    let weights = fit.noise.weights();
-    let known = normal(kept.iter().map(|it| (it, weights)), &fit.frames).covariance()?;
-    let (mut size, mut along, mut mixed) = (0.0, 0.0, [0.0; UNKNOWNS]);
-    for pair in kept {
-        // Without the point's share, which is of the same scale.
-        let seen = sight_axes(&pair.seen) * pair.seen.translation;
-        let numbers = [seen.x, seen.y, seen.z];
-        let rows = derivatives(pair, &fit.frames);
-        for (k, error) in errors(pair, &fit.frames).iter().take(NUMBERS / 2).enumerate() {
-            size += weights[k] * numbers[k] * numbers[k];
-            along += weights[k] * numbers[k] * error;
-            mixed.iter_mut().zip(rows[k]).for_each(|(sum, it)| *sum += weights[k] * numbers[k] * it);
-        }
-    }
-    let left = size - super::fit::variance_along(&known, &mixed);
-    if left <= 1e-9 * size {
-        return None;
-    }
-    let share = along / left;
-    let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
-    (share * share * left > f_quantile(CHANCE, 1.0, freedom) && share.abs() > OTHER_SCALE).then_some(share)
-}
-
-/// Sets level and reasons, and says which moves are missing.
+/// Sets level and reasons, and says which moves are missing; `scale` is how many times as long as the arm's the camera's lengths are.
 pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     let fitted = result.rows.iter().filter(|it| it.is_fitted).count();
     let outliers = result.outliers.len();
     let share = outliers as f64 / (fitted + outliers).max(1) as f64;
     let (mut against, mut weak) = (Vec::new(), Vec::new());
-    if let Some(statement) = inconsistent(result, distance_m) {
+    if let Some(statement) = inconsistent(&result.noise, distance_m).filter(|_| scale.is_none()) {
         result.findings.push(Finding::new(FindingKind::Inconsistent, statement.clone(), Vec::new()));
         against.push(statement);
     }
@@ -69,12 +36,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     } else if share > FEW {
         weak.push(format!("{outliers} of {} poses were left out", fitted + outliers));
     }
-    if let Some(share) = scale.filter(|_| against.is_empty()) {
-        let statement = format!(
-            "the camera's lengths are {:.1} % {} than the arm's: check the size of the board's squares or markers, and the camera's focal length",
-            100.0 * share.abs(),
-            if share > 0.0 { "longer" } else { "shorter" }
-        );
+    if let Some(statement) = scale.filter(|_| against.is_empty()).map(scale::words) {
         result.findings.push(Finding::new(FindingKind::Scale, statement.clone(), Vec::new()));
         against.push(statement);
     }
@@ -95,9 +57,9 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     (result.level, result.reasons) = Level::of(against, weak);
 }
 
-/// Why poses do not fit together, if they do not.
-fn inconsistent(result: &HandEye, distance_m: f64) -> Option<String> {
-    let noise = result.noise[2].max(result.noise[3]);
+/// Why poses with this noise (across, along, tilts, turn) do not fit together, if they do not.
+pub(crate) fn inconsistent(of: &[f64; 4], distance_m: f64) -> Option<String> {
+    let noise = of[2].max(of[3]);
     if noise > NO_CAMERA {
         return Some(format!(
             "the poses do not fit together: orientations are off by {:.1} deg, more than the noise of any camera; check that both lists are of the same \
@@ -105,7 +67,7 @@ fn inconsistent(result: &HandEye, distance_m: f64) -> Option<String> {
             noise.to_degrees()
         ));
     }
-    let places = result.noise[0].max(result.noise[1]);
+    let places = of[0].max(of[1]);
     (places > (NO_CAMERA_M * distance_m).max(0.01)).then(|| {
         format!(
             "the poses do not fit together: places are off by {:.0} mm, more than the noise of any camera; check units, signs and origins of both lists",

@@ -14,7 +14,7 @@ const TURN: f64 = 2.0 * PI + 0.01;
 /// Distance of two joints (m) that looks like millimetres.
 const FAR_M: f64 = 50.0;
 
-/// What looks like degrees or millimetres, a sentence each.
+/// What looks like degrees, millimetres or placeholders, a sentence each.
 pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
     let mut found = Vec::new();
     let is_degrees = |it: f64| it.abs() > TURNS && it.fract() == 0.0;
@@ -42,6 +42,7 @@ pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
             ));
         }
     }
+    found.extend(robot.placeholder_masses());
     found
 }
 
@@ -88,6 +89,33 @@ mod tests {
         format!(
             "<joint name=\"one\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>\n<origin {origin}/>\n<axis xyz=\"0 0 1\"/><limit {limit}/></joint>"
         )
+    }
+
+    #[test]
+    fn masses_of_exactly_one_kilogram_are_placeholders() {
+        let link = |name: &str, mass: &str| {
+            format!(
+                "<link name=\"{name}\"><inertial><origin xyz=\"0 0 0.1\"/><mass value=\"{mass}\"/></inertial></link>"
+            )
+        };
+        let of = |masses: [&str; 2]| {
+            let text = format!(
+                "<robot name=\"r\"><link name=\"a\"/>{}{}\n{}\n<joint name=\"two\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/><origin xyz=\"0.4 0 0\"/><axis xyz=\"0 1 0\"/><limit lower=\"-3.1\" upper=\"3.1\"/></joint></robot>",
+                link("b", masses[0]),
+                link("c", masses[1]),
+                joint("xyz=\"0 0 0.3\"", "lower=\"-2.9\" upper=\"2.9\"")
+            );
+            let document =
+                UrdfDocument::parse(&text, Path::new("r.urdf"), &ChainSelection::default()).unwrap();
+            let robot = document.robot().clone();
+            doubts(&document, &robot)
+        };
+        let found = of(["1.0", "1"]);
+        assert!(
+            found.len() == 1 && found[0].starts_with("2 of the 2 moving links with a mass have exactly 1 kg"),
+            "{found:?}"
+        );
+        assert!(of(["1.0", "3.2"]).is_empty() && of(["2", "2"]).is_empty());
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! What is fuzzed: functions of bytes that tell whether the input was understood.
 
+mod binary;
 mod calibration;
+mod lists;
 mod mapping;
 mod models;
 mod pictures;
@@ -11,7 +13,9 @@ mod residuals;
 mod settings;
 mod tables;
 
+pub use binary::{bags, pictures, workbooks};
 pub use calibration::{calibration, report};
+pub use lists::{hand_eye, histories, ledgers, tcp};
 pub use mapping::mapping;
 pub use models::{foreign, robot_toml, urdf};
 pub use pictures::{boards, cameras, messages};

@@ -20,7 +20,7 @@ fn file<'a>(text: &'a str, endings: &[&str]) -> Option<(String, &'a str)> {
 pub fn cameras(data: &[u8]) -> bool {
     let Some(whole) = text(data) else { return false };
     let Some((path, text)) = file(&whole, &["yaml", "xml", "csv"]) else { return false };
-    let read = || with_file(&path, text, || read_cameras(&path));
+    let read = || with_file(&path, text, || read_cameras(&path).map(|it| it.cameras));
     let Some(cameras) = understood(read(), text) else { return false };
     let again = certain(read(), "a second time");
     assert_eq!(format!("{cameras:?}"), format!("{again:?}"));

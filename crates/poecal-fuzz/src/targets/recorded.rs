@@ -8,7 +8,7 @@ use crate::properties::one_line;
 use crate::{BETWEEN, LONGEST};
 
 /// The names under which files are read.
-const NAMES: [&str; 2] = ["input.1", "input.2"];
+pub(crate) const NAMES: [&str; 2] = ["input.1", "input.2"];
 
 /// A file in any form, or two of which one has the joint readings of the other, bytes of workbooks and bags too: read as they are, joined row by
 /// row. What was read is the same each time, and as a table of our own.
@@ -22,12 +22,17 @@ pub fn recorded(data: &[u8]) -> bool {
         Some(at) => vec![(NAMES[0], &data[..at]), (NAMES[1], &data[at + between.len()..])],
         None => vec![(NAMES[0], data)],
     };
+    read_files(&files)
+}
+
+/// Files that are read together.
+pub(crate) fn read_files(files: &[(&str, &[u8])]) -> bool {
     let robot = elbow();
     let mut options = ReadOptions { join: (files.len() > 1).then_some(Join::Rows), ..ReadOptions::default() };
     let stated = options.state_units("mm,deg");
     assert!(stated.is_ok());
     let paths: Vec<&str> = files.iter().map(|it| it.0).collect();
-    let whole = || with_files(&files, || read(&paths, &robot, &options));
+    let whole = || with_files(files, || read(&paths, &robot, &options));
     let file = match whole() {
         Ok(file) => file,
         Err(error) => {

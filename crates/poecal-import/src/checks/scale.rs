@@ -246,13 +246,16 @@ impl OneJoint<'_> {
             None => format!("too far for joint `{}`", self.joint.name),
         };
         let extreme = input.unit.from_si(self.extreme);
-        let per_cent = if symbol == "deg" && is_per_cent {
-            " (per cent of the range are read as deg too: `poecal check` then names the factors)"
+        let (likely, per_cent) = if symbol == "deg" && is_per_cent {
+            (
+                ": deg, or per cent of the joints' ranges".to_owned(),
+                "; of per cent `poecal check` then names the factors, as lines of a mapping",
+            )
         } else {
-            ""
+            (format!(", most likely {symbol}"), "")
         };
         format!(
-            "found readings of up to {} {stated}, {outside}, expected another unit, most likely {symbol}; \
+            "found readings of up to {} {stated}, {outside}, expected another unit{likely}; \
              write `{}[{symbol}]` in the header, or {}{per_cent}",
             short(extreme),
             input.name,

@@ -54,7 +54,11 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             format!("found {} cells, expected {width} as in other lines from line {first} on", cells.len()),
         );
     }
-    if opening.options.mapping.as_ref().is_some_and(ColumnMap::names_columns) {
+    // Columns of measurements that this table does not have are of another one.
+    let is_of_this = |map: &&ColumnMap| {
+        map.names_columns() && (map.names_joints() || map.measured_numbers().is_none_or(|it| it <= width))
+    };
+    if opening.options.mapping.as_ref().filter(is_of_this).is_some() {
         let columns: Vec<String> = (1..=width).map(numbered_column).collect();
         let mut made = Made::new(1, columns.iter().map(String::as_str));
         rows.into_iter().for_each(|(line, cells)| made.row(line, cells.into_iter().map(Value::Text)));

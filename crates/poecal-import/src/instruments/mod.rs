@@ -26,6 +26,8 @@ mod two_sets;
 mod words;
 #[cfg(feature = "workbooks")]
 mod workbook;
+#[cfg(feature = "workbooks")]
+mod workbook_cells;
 
 #[cfg(feature = "workbooks")]
 use std::io::Read as _;
@@ -36,15 +38,15 @@ use self::maker::{Made, Refused};
 pub(crate) use self::recording::{OwnTable, Recording};
 use super::ReadOptions;
 use crate::table::configurations;
-use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::ErrorKind;
 #[cfg(feature = "workbooks")]
 use poecal_storage::hashes::Hashing;
+use poecal_storage::limits::Limit;
+use poecal_storage::source;
 #[cfg(feature = "workbooks")]
 use poecal_storage::source::Input;
-use poecal_storage::source::{self, LARGEST_TABLE};
 
 /// What a file of measurements is in messages.
 pub(crate) const MEASURED: &str = "a measurement file (CSV)";
@@ -168,7 +170,7 @@ impl Opening<'_> {
         if configurations::is_folder(path) {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
-        let (input, head) = source::open_any(path, expected, LARGEST_TABLE)?;
+        let (input, head) = source::open_any(path, expected, Limit::Table)?;
         source::refuse_named(path, expected)?;
         #[cfg(feature = "workbooks")]
         if workbook::is_one(&head) {
@@ -188,9 +190,12 @@ impl Opening<'_> {
     ) -> poecal_numerics::error::Result<Opened<'p>> {
         let mut bytes = Vec::new();
         let mut input = Hashing::new(input);
-        let read = input.by_ref().take(workbook::LARGEST + 1).read_to_end(&mut bytes);
+        let read = input.by_ref().take(Limit::Workbook.most() + 1).read_to_end(&mut bytes);
         read.map_err(|error| source::unreadable(path, &error, expected))?;
-        let made = workbook::table(bytes, self).map_err(|it| it.error(path))?;
+        if bytes.len() as u64 > Limit::Workbook.most() {
+            return Err(ErrorKind::File.error(Limit::Workbook.exceeded("a workbook")).in_file(path));
+        }
+        let made = workbook::table(&bytes, self).map_err(|it| it.error(path))?;
         Ok(Opened::Made(Box::new(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK })))
     }
 
@@ -204,9 +209,13 @@ impl Opening<'_> {
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        // A mapping that names columns reads the text as it is.
-        let is_mapped = self.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
-        let mut forms = FORMS.iter().skip(if is_mapped { FORMS.len() - 1 } else { 0 });
+        // A mapping that names columns reads the text as it is; where it says nothing of joints, lists of them are what they are without it.
+        let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
+            None => &FORMS,
+            Some(map) if map.names_joints() => &[headerless::FORM],
+            Some(_) => &[programs::FORM, headerless::FORM],
+        };
+        let mut forms = forms.iter();
         let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {
             return Ok(Opened::Own(Box::new(blocks)));
         };

@@ -236,6 +236,8 @@ fn part_of<'p>(
             (Part::Measured { is_named }, None)
         }
         (Err(as_joints), Err(as_measured)) => (Part::Whole, Some(Neither { as_joints, as_measured })),
+        // Columns by their numbers are those of the file that has no joints.
+        (Ok(_), Ok(_)) if !map.names_joints() && map.measured_numbers().is_some() => (Part::Joints, None),
         (Ok(_), Ok(_)) => (Part::Whole, None),
     };
     Ok(Found { part, table: None, why })

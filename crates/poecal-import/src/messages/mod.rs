@@ -14,7 +14,7 @@ use self::parsed::{CameraInfo, Message, Observation};
 pub(crate) use self::refused::are_messages;
 use super::read::Reader;
 use super::table::Table;
-use crate::pictures::lens_checks::{check, distortion};
+use crate::pictures::lens_checks::{check, distortion, size_of_pictures};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
@@ -151,12 +151,14 @@ impl Reader<'_> {
         if !self.options.cameras.is_empty() {
             return Ok(Some("took the stated lens, and not that of ext_camera_info".to_owned()));
         }
-        let mut names = Vec::new();
+        let (mut names, mut regions) = (Vec::new(), Vec::new());
         for (name, info) in infos {
-            let camera = Camera::new(name.to_owned(), lens(info, path)?);
+            let (lens, region) = lens(info, path)?;
+            let camera = Camera::new(name.to_owned(), lens);
             check(name, &camera.lens).map_err(|error| error.in_file(path))?;
-            let [width, height] = info.size_px;
+            let [width, height] = camera.lens.size_px.unwrap_or_default();
             names.push(format!("{name} ({width} x {height} px)"));
+            regions.extend(region.map(|words| format!("{name}: {words}")));
             match self.cameras.iter().find(|own| own.name == name) {
                 Some(own) if *own != camera => {
                     let message = format!(
@@ -168,7 +170,8 @@ impl Reader<'_> {
                 None => self.cameras.push(camera),
             }
         }
-        Ok(Some(format!("took ext_camera_info for the lens of {}", first_few(&names))))
+        let regions: String = regions.iter().map(|it| format!("; {it}")).collect();
+        Ok(Some(format!("took ext_camera_info for the lens of {}{regions}", first_few(&names))))
     }
 
     /// The boards that the messages state, unless there are stated ones. Says which.
@@ -279,16 +282,21 @@ fn readings(message: &Message<'_>, joints: &Joints, path: &Path) -> Result<Vec<f
     joints.iter().map(reading).collect()
 }
 
-fn lens(info: &CameraInfo, path: &Path) -> Result<Lens> {
-    let CameraInfo { size_px, k, d, model } = info;
+/// The lens of the pictures, and what its region changed in words.
+fn lens(info: &CameraInfo, path: &Path) -> Result<(Lens, Option<String>)> {
+    let CameraInfo { size_px, k, d, model, region } = info;
     let [fx, skew, cx, _, fy, cy, ..] = *k;
     if skew != 0.0 {
         let message = format!("found a skew of {skew} in `K`, expected 0");
         return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
     }
-    let size_px = size_px.iter().all(|it| *it >= 1.0).then(|| size_px.map(|it| it as u32));
+    // Messages of a camera that is not calibrated have zeros.
+    let is_stated = size_px.iter().any(|it| *it != 0.0);
+    let size_px = is_stated.then(|| size_of_pictures(*size_px)).transpose();
+    let size_px = size_px.map_err(|error| error.in_file(path))?;
     let distortion = distortion(model, d, path)?;
-    Ok(Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px })
+    let whole = Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px };
+    region.applied(&whole).map_err(|found| Error::new(ErrorKind::Measurement, found).in_file(path))
 }
 
 impl Rows {

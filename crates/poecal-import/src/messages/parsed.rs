@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::pictures::region::{KEYS, Region};
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_storage::numbers::LARGEST_NUMBER;
 use poecal_storage::yaml_tree::{Node, NodeKind, documents};
@@ -42,6 +43,8 @@ pub(crate) struct CameraInfo {
     pub(crate) k: [f64; 9],
     pub(crate) d: Vec<f64>,
     pub(crate) model: String,
+    /// The part of the sensor that the pictures show.
+    pub(crate) region: Region,
 }
 
 /// The messages of a file: each a document, or in a list.
@@ -137,7 +140,13 @@ fn camera_info(node: &Node, path: &Path) -> Result<Option<CameraInfo>> {
     let size = |key: &str| node.get(key).map(|node| number(node, key, path)).transpose();
     let size_px = [size("width")?.unwrap_or(0.0), size("height")?.unwrap_or(0.0)];
     let model = node.get("distortion_model").and_then(Node::text).unwrap_or_default().to_owned();
-    Ok(Some(CameraInfo { size_px, k: matrix, d, model }))
+    let mut part = [0.0; KEYS.len()];
+    for (value, keys) in part.iter_mut().zip(KEYS) {
+        let found = keys.iter().try_fold(node, |node, key| node.get(key));
+        *value = found.map_or(Ok(0.0), |node| number(node, &keys.join("."), path))?;
+    }
+    let region = Region::new(part).map_err(|found| node.error(path, found))?;
+    Ok(Some(CameraInfo { size_px, k: matrix, d, model, region }))
 }
 
 fn required<'a>(node: &'a Node, key: &str, path: &Path) -> Result<&'a Node> {

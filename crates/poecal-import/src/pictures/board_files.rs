@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use roxmltree::Document;
-
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::text_of;
+use poecal_storage::limits::Limit;
+use poecal_storage::source_text::read_up_to;
+use poecal_storage::xml::parsed;
 use poecal_storage::yaml::{Leaf, leaves};
 
 /// What such a file is.
@@ -59,7 +59,7 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let path = Path::new(typed);
     let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
     let Some(ending) = ending.filter(|it| ENDINGS.contains(&it.as_str())) else { return Ok(None) };
-    let text = text_of(path, EXPECTED)?;
+    let text = read_up_to(path, EXPECTED, Limit::Settings)?;
     let leaves = if ending == "xml" { of_xml(&text, path)? } else { leaves(&text, path, EXPECTED)? };
     let stated = Stated { leaves, path };
     let (words, of) = if stated.find("target_type").is_some() {
@@ -79,13 +79,14 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
 
 /// The texts of an XML file with the names of their elements.
 fn of_xml(text: &str, path: &Path) -> Result<Vec<Leaf>> {
-    let document = Document::parse(text).map_err(|error| {
-        let (message, place) = (format!("found broken XML ({error}), expected {EXPECTED}"), error.pos());
-        Error::new(ErrorKind::Syntax, message).at(path, place.row as usize, place.col as usize)
-    })?;
+    let document = parsed(text, path, EXPECTED)?;
+    // Elements are in their order: each begins so many lines after the one before.
+    let (mut line, mut at) = (1, 0);
     let leaf = |node: roxmltree::Node<'_, '_>| {
+        let start = node.range().start;
+        line += text.get(at..start).unwrap_or_default().matches('\n').count();
+        at = start;
         let text = node.text()?.trim().trim_matches('"').trim().to_owned();
-        let line = document.text_pos_at(node.range().start).row as usize;
         Some(Leaf { path: vec![node.tag_name().name().to_owned()], text, line })
     };
     let elements = document.descendants().filter(|node| node.is_element());

@@ -1,8 +1,11 @@
 //! Tables of cameras (CSV).
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::pictures::lens_checks::EXPECTED;
+use super::other_keys::other_keys;
+use crate::pictures::lens_checks::{EXPECTED, size_of_pictures};
+use crate::table::cells::Cell;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
@@ -10,6 +13,7 @@ use crate::table::text::Blocks;
 use crate::table::{Row, Table};
 use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_storage::yaml::Leaf;
 
 /// The columns of a table of cameras.
 struct CameraColumns {
@@ -20,20 +24,24 @@ struct CameraColumns {
     size: [Option<usize>; 2],
     model: Option<usize>,
     version: Option<usize>,
+    /// Names of all columns.
+    names: Vec<String>,
 }
 
 /// A camera of a table with its version and its line.
 type CameraRow = (Camera, String, usize);
 
-/// The cameras of a table, of the version that is named.
-pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<Vec<Camera>> {
+/// The cameras of a table, of the version that is named, and a sentence on columns that were not read.
+pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Camera>, Vec<String>)> {
     let map = ColumnMap::default();
     let mut table = Table::open(path, Blocks::open(path, "a camera (CSV)")?, &map)?;
     let columns = CameraColumns::find(&table.header)?;
     let mut cameras: Vec<CameraRow> = Vec::new();
     let mut reader = Numbers::new(None);
+    let mut others: Vec<Leaf> = Vec::new();
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
+            others.extend(columns.others(&row));
             cameras.push(columns.read(&mut reader, &row)?);
         }
     }
@@ -50,10 +58,24 @@ pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<Vec<Camer
         let message = format!("found a header and no rows, expected {EXPECTED}");
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    Ok(cameras.into_iter().map(|(camera, ..)| camera).collect())
+    let said = other_keys(&others, 0, |_| false, path)?;
+    Ok((cameras.into_iter().map(|(camera, ..)| camera).collect(), said.into_iter().collect()))
 }
 
 impl CameraColumns {
+    /// The cells of a row that are not read.
+    fn others(&self, row: &Row<'_>) -> Vec<Leaf> {
+        let CameraColumns { name, numbers, size, model, version, .. } = self;
+        let read = numbers.iter().chain(size).chain([name, model, version]).flatten().copied();
+        let read: Vec<usize> = read.collect();
+        let cells = row.cells.iter().enumerate().filter(|(at, _)| !read.contains(at));
+        let leaf = |(at, cell): (usize, &Cell<'_>)| {
+            let name = self.names.get(at).filter(|it| !it.is_empty())?;
+            Some(Leaf { path: vec![name.clone()], text: cell.text().trim().to_owned(), line: row.line })
+        };
+        cells.filter_map(leaf).collect()
+    }
+
     /// Finds the columns in a header.
     fn find(header: &Header<'_>) -> Result<Self> {
         let place = |name: &str| header.require(name, "for the camera", |_| false, "");
@@ -68,7 +90,8 @@ impl CameraColumns {
         }
         let size = [header.find("width")?, header.find("height")?];
         let (model, version) = (header.find("model")?, header.find("version")?);
-        Ok(CameraColumns { name, numbers, size, model, version })
+        let names = header.cells.iter().map(|cell| cell.name.clone()).collect();
+        Ok(CameraColumns { name, numbers, size, model, version, names })
     }
 
     /// The camera of a row, with its version and its line.
@@ -82,8 +105,9 @@ impl CameraColumns {
         let size = self.size.map(|column| column.map(|at| cell(reader, row, at, "size")).transpose());
         let [width, height] = size;
         let size_px = match (width?.flatten(), height?.flatten()) {
-            (Some(width), Some(height)) if width >= 1.0 && height >= 1.0 => {
-                Some([width as u32, height as u32])
+            (Some(width), Some(height)) => {
+                let found = size_of_pictures([width, height]);
+                Some(found.map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?)
             }
             _ => None,
         };
@@ -103,8 +127,12 @@ impl CameraColumns {
 /// Refuses two cameras of one name.
 fn refuse_twice(table: &Table<'_>, is_named: bool, cameras: &[CameraRow]) -> Result<()> {
     let path = table.header.path;
-    for (at, (camera, own, line)) in cameras.iter().enumerate() {
-        if let Some((_, other, first)) = cameras.iter().take(at).find(|it| it.0.name == camera.name) {
+    let mut firsts: BTreeMap<&str, &CameraRow> = BTreeMap::new();
+    for row in cameras {
+        let (camera, own, line) = row;
+        let first = *firsts.entry(&camera.name).or_insert(row);
+        if !std::ptr::eq(first, row) {
+            let (_, other, first) = first;
             if !is_named && own == other {
                 return Err(header_without_names(table));
             }

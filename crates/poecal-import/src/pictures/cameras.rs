@@ -2,42 +2,53 @@
 
 use std::path::Path;
 
-use roxmltree::Document;
+use roxmltree::Node;
 
 use super::camera_tables::read_table;
 use super::camera_texts::read_yaml;
 use super::unknown_camera::{UNKNOWN, unknown};
-use crate::pictures::lens_checks::{EXPECTED, check};
+use crate::pictures::lens_checks::{EXPECTED, check, size_of_pictures};
 use crate::stored_pictures::stored_cameras;
 use poecal_model::camera::{Camera, Distortion, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::is_file;
-use poecal_storage::text_of;
+use poecal_storage::limits::Limit;
+use poecal_storage::source_text::read_up_to;
+use poecal_storage::xml::parsed;
+
+/// Cameras of a file, and what was understood of it, a sentence each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CameraFile {
+    /// The cameras.
+    pub cameras: Vec<Camera>,
+    /// Regions of the sensor that were taken into account, and keys that were not read.
+    pub said: Vec<String>,
+}
 
 /// Reads the cameras of a file; of one that has a camera in several versions, those of the version that is named, as in `FILE#VERSION`.
 ///
 /// # Errors
 /// A file that cannot be read, or has no camera, a camera twice, or numbers that are none of a lens.
-pub fn read_cameras(typed: &str) -> Result<Vec<Camera>> {
+pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     if let Some(size) = typed.strip_prefix(UNKNOWN) {
-        return Ok(vec![unknown(size, typed)?]);
+        return Ok(CameraFile { cameras: vec![unknown(size, typed)?], said: Vec::new() });
     }
     let (path, version) = camera_file(typed).unwrap_or((Path::new(typed), None));
     let extension = path.extension().map(|it| it.to_ascii_lowercase());
     let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
-    let cameras = if is(&["yaml", "yml"]) {
-        read_yaml(&text_of(path, "a camera (YAML)")?, path)?
+    let (cameras, said) = if is(&["yaml", "yml"]) {
+        read_yaml(&read_up_to(path, "a camera (YAML)", Limit::Settings)?, path)?
     } else if is(&["json"]) {
-        stored_cameras(path)?
+        (stored_cameras(path)?, Vec::new())
     } else if is(&["xml"]) {
-        read_visp(&text_of(path, "a camera (XML)")?, path)?
+        (read_visp(&read_up_to(path, "a camera (XML)", Limit::Settings)?, path)?, Vec::new())
     } else {
         read_table(path, version)?
     };
     for Camera { name, lens, .. } in &cameras {
         check(name, lens).map_err(|error| error.in_file(path))?;
     }
-    Ok(cameras)
+    Ok(CameraFile { cameras, said })
 }
 
 /// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.
@@ -49,53 +60,62 @@ pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
     })
 }
 
+/// Models of ViSP that are read: without distortion, and with one coefficient.
+const VISP_MODELS: [&str; 2] = ["perspectiveProjWithoutDistortion", "perspectiveProjWithDistortion"];
+
 /// ViSP: `u = u0 + px x (1 + kud r²)`.
 fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
-    let document = Document::parse(text).map_err(|error| {
-        let place = error.pos();
-        Error::new(ErrorKind::Syntax, format!("found broken XML ({error}), expected {EXPECTED}")).at(
-            path,
-            place.row as usize,
-            place.col as usize,
-        )
-    })?;
+    let document = parsed(text, path, EXPECTED)?;
     let mut cameras: Vec<Camera> = Vec::new();
     for node in document.descendants().filter(|node| node.has_tag_name("camera")) {
-        let text = |of: roxmltree::Node<'_, '_>, name: &str| {
-            let child = of.children().find(|child| child.has_tag_name(name));
-            child.and_then(|child| child.text()).map(|text| text.trim().to_owned())
-        };
-        let number = |of: roxmltree::Node<'_, '_>, name: &str| {
-            text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
-        };
-        let model = node.children().filter(|child| child.has_tag_name("model"));
-        // The model with distortion, where both are there.
-        let Some(model) = model.max_by_key(|model| number(*model, "kud").is_some()) else { continue };
-        let parts = ["px", "py", "u0", "v0"].map(|name| number(model, name));
-        let [Some(px), Some(py), Some(u0), Some(v0)] = parts else {
-            let message = format!("found a `<model>` without px, py, u0 and v0, expected {EXPECTED}");
-            let place = document.text_pos_at(model.range().start);
-            return Err(Error::new(ErrorKind::Measurement, message).at(
-                path,
-                place.row as usize,
-                place.col as usize,
-            ));
-        };
-        let mut k = [0.0; 8];
-        k[0] = number(model, "kud").unwrap_or(0.0);
-        let size = ["image_width", "image_height"].map(|name| number(node, name));
-        let size_px =
-            if let [Some(width), Some(height)] = size { Some([width as u32, height as u32]) } else { None };
-        let lens =
-            Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
-        let name = text(node, "name").unwrap_or_default();
-        if !cameras.iter().any(|it| it.name == name) {
-            cameras.push(Camera::new(name, lens));
-        }
+        let camera = visp_camera(node).map_err(|(at, message)| {
+            let place = document.text_pos_at(at);
+            Error::new(ErrorKind::Measurement, message).at(path, place.row as usize, place.col as usize)
+        })?;
+        cameras.extend(camera.filter(|camera| !cameras.iter().any(|it| it.name == camera.name)));
     }
     if cameras.is_empty() {
         return Err(Error::new(ErrorKind::Measurement, format!("found no `<camera>`, expected {EXPECTED}"))
             .in_file(path));
     }
     Ok(cameras)
+}
+
+/// The camera of an element; `None` without a model. An error has its place in the text.
+fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize, String)> {
+    let text = |of: Node<'_, '_>, name: &str| {
+        let child = of.children().find(|child| child.has_tag_name(name));
+        child.and_then(|child| child.text()).map(|text| text.trim().to_owned())
+    };
+    let number = |of: Node<'_, '_>, name: &str| {
+        text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
+    };
+    let kind = |model: &Node<'_, '_>| text(*model, "type").unwrap_or_default();
+    let is_read =
+        |model: &Node<'_, '_>| kind(model).is_empty() || VISP_MODELS.contains(&kind(model).as_str());
+    let models: Vec<Node<'_, '_>> = node.children().filter(|child| child.has_tag_name("model")).collect();
+    // The model with distortion, where both are there.
+    let chosen = models.iter().copied().filter(is_read).max_by_key(|model| number(*model, "kud").is_some());
+    let Some(model) = chosen else {
+        let Some(other) = models.first() else { return Ok(None) };
+        let message = format!("found the model `{}`, expected {}", kind(other), VISP_MODELS.join(" or "));
+        return Err((other.range().start, message));
+    };
+    let [Some(px), Some(py), Some(u0), Some(v0)] = ["px", "py", "u0", "v0"].map(|name| number(model, name))
+    else {
+        let message = format!("found a `<model>` without px, py, u0 and v0, expected {EXPECTED}");
+        return Err((model.range().start, message));
+    };
+    let mut k = [0.0; 8];
+    k[0] = number(model, "kud").unwrap_or(0.0);
+    let size = ["image_width", "image_height"].map(|name| number(node, name));
+    let size_px = match size {
+        [Some(width), Some(height)] => {
+            let found = size_of_pictures([width, height]);
+            Some(found.map_err(|error| (node.range().start, error.to_string()))?)
+        }
+        _ => None,
+    };
+    let lens = Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
+    Ok(Some(Camera::new(text(node, "name").unwrap_or_default(), lens)))
 }

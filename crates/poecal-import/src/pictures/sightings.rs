@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::gathering::Gathered;
+use super::picture_sizes::check_sizes;
 use crate::read::Reader;
 use crate::table::Table;
 use crate::table::inputs::InputReader;
@@ -20,6 +21,8 @@ impl Reader<'_> {
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
+        let said = check_sizes(path, &self.cameras, &gathered)?;
+        self.found.warnings.extend(said);
         self.guess_lenses(&gathered)?;
         for one in gathered {
             let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));

@@ -1,5 +1,6 @@
 //! A camera of which only the size of its pictures is known.
 
+use super::lens_checks::LARGEST_SIDE;
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
@@ -7,8 +8,6 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 pub(crate) const UNKNOWN: &str = "unknown:";
 /// Name of a camera that has none.
 const NAMELESS: &str = "camera";
-/// Largest side of a picture, pixels.
-const LARGEST_SIDE: u32 = 100_000;
 
 /// A camera whose lens is to be found from its pictures, of which the size is known.
 pub(crate) fn unknown(size: &str, typed: &str) -> Result<Camera> {

@@ -45,7 +45,14 @@ const ZYX: OrientationForm = OrientationForm::Intrinsic([2, 1, 0]);
 const ZYZ: OrientationForm = OrientationForm::Intrinsic([2, 1, 2]);
 const CONTROLLER: Option<(&str, &str)> = Some(("mm", "deg"));
 
-const FORMS: [Form; 10] = [
+/// OpenCV's rotation vector, by the keys of its columns.
+const OPENCV: &[&str] = &["rvx", "rvy", "rvz"];
+/// Angles about x, y, z as turned, which makers call rx, ry, rz, as others call rotation vectors.
+const AS_TURNED: &[&str] = &["ix", "iy", "iz"];
+/// Letters of makers, by the first of which the columns are the arm's.
+const MAKERS: [&str; 4] = ["a", "w", "o", "u"];
+
+const FORMS: [Form; 13] = [
     form(&["qx", "qy", "qz", "qw"], OrientationForm::QuaternionXyzw, None, "quaternion by names"),
     form(
         &["q1", "q2", "q3", "q4"],
@@ -54,15 +61,18 @@ const FORMS: [Form; 10] = [
         "ABB's quaternion, q1 real",
     ),
     form(&["q0", "q1", "q2", "q3"], OrientationForm::QuaternionWxyz, None, "quaternion, q0 real"),
-    form(
-        &["rvx", "rvy", "rvz"],
-        OrientationForm::RotationVector,
-        Some(("m", "rad")),
-        "OpenCV's rvec and tvec",
-    ),
+    form(OPENCV, OrientationForm::RotationVector, Some(("m", "rad")), "OpenCV's rvec and tvec"),
     form(&["a", "b", "c"], ZYX, CONTROLLER, "KUKA's A, B, C"),
     form(&["w", "p", "r"], OrientationForm::ROLL_PITCH_YAW, CONTROLLER, "FANUC's W, P, R"),
     form(&["o", "a", "t"], ZYZ, CONTROLLER, "Kawasaki's O, A, T"),
+    form(&["a", "e", "r"], ZYZ, CONTROLLER, "Comau's A, E, R"),
+    form(&["u", "v", "w"], ZYX, CONTROLLER, "Epson's U, V, W"),
+    form(
+        AS_TURNED,
+        OrientationForm::Intrinsic([0, 1, 2]),
+        CONTROLLER,
+        "angles about x, y, z as turned (Stäubli's RX, RY, RZ)",
+    ),
     form(
         &["roll", "pitch", "yaw"],
         OrientationForm::ROLL_PITCH_YAW,
@@ -91,6 +101,8 @@ pub(crate) struct PoseColumns {
     pub(crate) position: [NumberColumn; 3],
     pub(crate) orientation: Vec<NumberColumn>,
     pub(crate) form: OrientationForm,
+    /// Whether stated units are of its angles: OpenCV's are radians.
+    pub(crate) takes_angle_unit: bool,
     /// How it was understood.
     pub(crate) words: String,
     pub(crate) whose: Whose,
@@ -122,6 +134,7 @@ fn key_of(name: &str) -> Option<String> {
         ("trans", ""),
         ("rvec", "rv"),
         ("rotvec", "rv"),
+        ("intrinsic", "i"),
         ("orientation", "q"),
         ("quaternion", "q"),
         ("quat", "q"),
@@ -139,7 +152,7 @@ fn key_of(name: &str) -> Option<String> {
     }
     let known = [
         "x", "y", "z", "qx", "qy", "qz", "qw", "q0", "q1", "q2", "q3", "q4", "rx", "ry", "rz", "a", "b", "c",
-        "w", "p", "r", "o", "t", "roll", "pitch", "yaw",
+        "w", "p", "r", "o", "t", "e", "u", "v", "roll", "pitch", "yaw",
     ];
     let plain = match squeezed.as_str() {
         "tx" | "px" => "x",
@@ -271,7 +284,7 @@ fn settle(named: &mut [Named]) {
         let is_place = keys[0] == "x";
         let orientations: Vec<&str> = FORMS.iter().flat_map(|it| it.columns.iter().copied()).collect();
         let others: &[&str] = if is_place { &["x", "y", "z", "m03"] } else { &orientations };
-        let is_maker = matches!(keys[0], "a" | "w" | "o");
+        let is_maker = MAKERS.contains(&keys[0]);
         let whose = if is_maker || !has(named, Whose::Arm, others) { Whose::Arm } else { Whose::Target };
         for it in named.iter_mut().filter(|it| it.whose.is_none() && keys.contains(&it.key.as_str())) {
             it.whose = Some(whose);
@@ -279,9 +292,9 @@ fn settle(named: &mut [Named]) {
     }
     // A quaternion that came first, beside the arm's own angles and the place of the camera.
     let quaternion = |it: &Named| it.key.starts_with('q');
-    let letters = named
-        .iter()
-        .any(|it| it.whose == Some(Whose::Arm) && matches!(it.key.as_str(), "a" | "b" | "w" | "p" | "o"));
+    let letters = named.iter().any(|it| {
+        it.whose == Some(Whose::Arm) && (MAKERS.contains(&it.key.as_str()) || it.key == "b" || it.key == "p")
+    });
     if letters && !has(named, Whose::Target, &["qx", "rvx", "rx", "roll", "m00"]) {
         for it in named.iter_mut().filter(|it| it.whose == Some(Whose::Arm) && quaternion(it)) {
             it.whose = Some(Whose::Target);
@@ -327,8 +340,9 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
     let Some((form, orientation)) = found else {
         return Err(ErrorKind::Measurement
             .error(format!(
-                "found no orientation of {who} among the columns {}, expected qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), rx, ry, rz (rotation \
-                 vector), q1 to q4 (ABB), roll, pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33: name them so",
+                "found no orientation of {who} among the columns {}, expected qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), O, A, T (Kawasaki), \
+                 A, E, R (Comau), U, V, W (Epson), intrinsic_x, intrinsic_y, intrinsic_z (Stäubli), rx, ry, rz (rotation vector), q1 to q4 (ABB), roll, \
+                 pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33: name them so",
                 names()
             ))
             .at_line(header.path, header.line));
@@ -338,8 +352,8 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
         number_column(header, (at, quantity), (stated, usual), who)
     };
     let quantity = form.form.quantity();
-    let angle =
-        stated.angle.filter(|_| quantity == Unit::Radian && form.form != OrientationForm::RotationVector);
+    let takes_angle_unit = quantity == Unit::Radian && form.columns != OPENCV;
+    let angle = stated.angle.filter(|_| takes_angle_unit);
     let usual_angle = if quantity == Unit::Radian { usual.1 } else { "1" };
     let position = [
         number(x, Unit::Metre, stated.length, usual.0)?,
@@ -355,7 +369,7 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
         position[0].unit.symbol(),
         symbol.map_or(String::new(), |it| format!(", {it}"))
     );
-    Ok(PoseColumns { position, orientation, form: form.form, words, whose })
+    Ok(PoseColumns { position, orientation, form: form.form, takes_angle_unit, words, whose })
 }
 
 /// A column of numbers with its unit: as the header has it, as its name ends, as it is stated, or the usual one.

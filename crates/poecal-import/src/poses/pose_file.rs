@@ -202,8 +202,9 @@ impl Columns {
         if self.columns.form.quantity() == Unit::Radian
             && parts.iter().any(|it| it.abs() > 2.01 * std::f64::consts::PI)
         {
+            let option = if self.columns.takes_angle_unit { ", or --units deg" } else { "" };
             let message = format!(
-                "found the angle {:.3} rad, expected at most a full turn: if the column is in degrees, write `[deg]` behind its name, or --units deg",
+                "found the angle {:.3} rad, expected at most a full turn: if the column is in degrees, write `[deg]` behind its name{option}",
                 parts.iter().copied().fold(0.0, |most: f64, it| if it.abs() > most.abs() {
                     it
                 } else {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::pose_columns::{PoseColumns, list_words};
+use super::pose_columns::{PoseColumns, Whose, list_words};
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::Pose;
 use poecal_fit::hand_eye::Reading;
@@ -37,7 +37,7 @@ fn ways(columns: &PoseColumns) -> Vec<Way> {
     match columns.form {
         OrientationForm::QuaternionXyzw => one(
             OrientationForm::QuaternionWxyz,
-            format!("quaternions of {who} with the real part first: exchange the names of the columns"),
+            format!("quaternions of {who} with the real part first: name the columns qw, qx, qy, qz"),
         ),
         OrientationForm::QuaternionWxyz => one(
             OrientationForm::QuaternionXyzw,
@@ -45,7 +45,9 @@ fn ways(columns: &PoseColumns) -> Vec<Way> {
         ),
         OrientationForm::MatrixByRows => one(
             OrientationForm::MatrixByColumns,
-            format!("matrices of {who} written column by column: exchange rows and columns"),
+            format!(
+                "matrices of {who} written column by column: name the columns r11, r21, r31, r12, r22, r32, r13, r23, r33"
+            ),
         ),
         OrientationForm::MatrixByColumns => Vec::new(),
         OrientationForm::RotationVector | OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => {
@@ -61,14 +63,29 @@ fn ways_of_angles(columns: &PoseColumns, who: &str) -> Vec<Way> {
         if symbol == "deg" { ("radians", "rad", 1.0 / degree) } else { ("degrees", "deg", degree) };
     let unit = format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns");
     let forms = [
-        (OrientationForm::Intrinsic([2, 1, 0]), "angles about z, y, x as turned (KUKA)"),
-        (OrientationForm::ROLL_PITCH_YAW, "roll, pitch, yaw about fixed axes (FANUC, URDF)"),
-        (OrientationForm::Intrinsic([0, 1, 2]), "angles about x, y, z as turned (Stäubli)"),
-        (OrientationForm::Intrinsic([2, 1, 2]), "angles about z, y, z as turned (Kawasaki)"),
-        (OrientationForm::RotationVector, "rotation vectors (Universal Robots, OpenCV)"),
+        (OrientationForm::Intrinsic([2, 1, 0]), "angles about z, y, x as turned (KUKA)", "A, B, C"),
+        (
+            OrientationForm::ROLL_PITCH_YAW,
+            "roll, pitch, yaw about fixed axes (FANUC, URDF)",
+            "roll, pitch, yaw",
+        ),
+        (
+            OrientationForm::Intrinsic([0, 1, 2]),
+            "angles about x, y, z as turned (Stäubli)",
+            "intrinsic_x, intrinsic_y, intrinsic_z",
+        ),
+        (OrientationForm::Intrinsic([2, 1, 2]), "angles about z, y, z as turned (Kawasaki)", "O, A, T"),
+        (OrientationForm::RotationVector, "rotation vectors (Universal Robots, OpenCV)", "rx, ry, rz"),
     ];
-    let conventions = forms.into_iter().filter(|(form, _)| *form != columns.form).map(|(form, words)| {
-        (form, 1.0, format!("orientations of {who} as {words}: name the columns as that form has them"))
+    let conventions = forms.into_iter().filter(|it| it.0 != columns.form).map(|(form, words, names)| {
+        let before = match columns.whose {
+            Whose::Arm => "",
+            Whose::Target => ", each behind `target_`",
+        };
+        let advice = format!(
+            "orientations of {who} as {words}: name the columns {names}{before}, with `[{symbol}]` behind each name"
+        );
+        (form, 1.0, advice)
     });
     std::iter::once((columns.form, factor, unit)).chain(conventions).collect()
 }

@@ -7,7 +7,9 @@ use super::picture_names::number_at_end;
 use poecal_numerics::error::{Error, ErrorKind, Result, shown};
 use poecal_storage::csv_text::cell;
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::hashes::sha256_of;
+use poecal_storage::limits::Limit;
 use poecal_storage::numbers::{LARGEST_NUMBER, push_number};
 use poecal_storage::source::SQLITE_BAG;
 use poecal_storage::yaml::{Leaf, leaves};
@@ -18,8 +20,6 @@ const ENDINGS: [&str; 6] = ["", "txt", "dat", "csv", "yaml", "yml"];
 /// Keys of a list of readings, and of the names of its joints.
 const LISTS: [&str; 5] = ["joints", "joint_positions", "positions", "position", "q"];
 const NAMES: [&str; 4] = ["joint_names", "names", "name", "joints"];
-/// Largest file, bytes.
-const LARGEST: u64 = 1 << 20;
 const EXPECTED: &str =
     "the joint readings of one picture: numbers, `joints: [0.1, …]`, or lines `joint1: 0.1`";
 
@@ -29,6 +29,8 @@ pub(crate) struct Configurations {
     pub(crate) text: String,
     /// SHA-256 of the texts of the files, one after the other by their numbers.
     pub(crate) sha256: String,
+    /// What has such a name and is no file.
+    pub(crate) left: Vec<LeftOut>,
 }
 
 /// The readings of a file; without names if it has none.
@@ -48,7 +50,7 @@ pub(crate) fn is_folder(path: &Path) -> bool {
 pub(crate) fn in_its_file(error: Error, folder: &Path) -> Error {
     let is_of_table = |place: &&poecal_numerics::error::Place| place.path == folder && is_folder(folder);
     let Some(line) = error.place().filter(is_of_table).and_then(|place| place.line) else { return error };
-    let files = numbered(folder).unwrap_or_default();
+    let files = numbered(folder).unwrap_or_default().0;
     // Below the header.
     match line.checked_sub(2).and_then(|at| files.get(at)) {
         Some(name) => error.without_line().with_path(&folder.join(name)),
@@ -68,11 +70,11 @@ pub(crate) fn advice(path: &Path) -> &'static str {
 
 /// Reads the files of a folder whose names end in a number.
 pub(crate) fn read(folder: &Path) -> Result<Configurations> {
-    let files = numbered(folder)?;
+    let (files, left) = numbered(folder)?;
     let (mut all, mut whole) = (Vec::with_capacity(files.len()), String::new());
     for name in &files {
         let path = folder.join(name);
-        let text = source_text::read_up_to(&path, EXPECTED, LARGEST)?;
+        let text = source_text::read_up_to(&path, EXPECTED, Limit::Settings)?;
         all.push(Readings::of(&text, path)?);
         whole.push_str(&text);
     }
@@ -91,26 +93,26 @@ pub(crate) fn read(folder: &Path) -> Result<Configurations> {
         }
         text.push('\n');
     }
-    Ok(Configurations { text, sha256: sha256_of(&whole) })
+    Ok(Configurations { text, sha256: sha256_of(&whole), left })
 }
 
-/// The names of the files of readings, by their numbers.
-fn numbered(folder: &Path) -> Result<Vec<String>> {
+/// The names of the files of readings, by their numbers, and what has such a name and is no file.
+fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
     const EXPECTED: &str =
         "`configuration_1`, `configuration_2.yaml`, … with the joint readings of each picture";
     let error = |message: String| Error::new(ErrorKind::Measurement, message).in_file(folder);
-    let names = disk::here().names(folder).map_err(|error| source::unreadable(folder, &error, EXPECTED))?;
-    let mut found: BTreeMap<u64, String> = BTreeMap::new();
-    let mut is_bag = false;
-    for name in names {
-        let Ok(name) = name.into_string() else { continue };
-        is_bag |= name == "metadata.yaml" || name.ends_with(".db3");
-        let ending = Path::new(&name).extension().map_or("", |it| it.to_str().unwrap_or("?"));
+    let unreadable = |error| source::unreadable(folder, &error, EXPECTED);
+    let is_of_bag = |name: &String| name == "metadata.yaml" || name.ends_with(".db3");
+    let is_bag = folder::names(folder).map_err(unreadable)?.0.iter().any(is_of_bag);
+    let is_wanted = |name: &str| {
+        let ending = Path::new(name).extension().map_or("", |it| it.to_str().unwrap_or("?"));
         let is_text = ENDINGS.iter().any(|it| ending.eq_ignore_ascii_case(it));
-        let Some(number) = number_at_end(&name).filter(|_| is_text && disk::is_file(&folder.join(&name)))
-        else {
-            continue;
-        };
+        is_text && number_at_end(name).is_some()
+    };
+    let (names, left) = folder::files(folder, is_wanted).map_err(unreadable)?;
+    let mut found: BTreeMap<u64, String> = BTreeMap::new();
+    for name in names {
+        let Some(number) = number_at_end(&name) else { continue };
         if let Some(other) = found.get(&number) {
             return Err(error(format!(
                 "found two files with the number {number}, `{}` and `{}`, expected one with the joint readings of each picture: move the other one away",
@@ -130,7 +132,7 @@ fn numbered(folder: &Path) -> Result<Vec<String>> {
             "found a directory without text files whose names end in a number, expected a table (CSV), or {EXPECTED}"
         )));
     }
-    Ok(found.into_values().collect())
+    Ok((found.into_values().collect(), left))
 }
 
 impl Readings {

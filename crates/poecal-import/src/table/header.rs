@@ -10,6 +10,7 @@ use super::places::Sheet;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
+use poecal_storage::limits::Limit;
 
 /// A column of the header: `name[unit]` or `name (unit)`.
 #[derive(Clone, Debug)]
@@ -120,6 +121,10 @@ impl<'a> Header<'a> {
     pub(crate) fn new(path: &'a Path, line: usize, text: &str, separator: Separator) -> Result<Self> {
         let mut cells = Vec::new();
         split_line(path, line, text, separator, &mut cells)?;
+        if cells.len() > Limit::Columns.most_held() {
+            let found = format!("{} columns", cells.len());
+            return Err(ErrorKind::Syntax.error(Limit::Columns.sentence(&found)).at_line(path, line));
+        }
         if cells.iter().all(|cell| is_number(&cell.text())) {
             return Err(ErrorKind::Syntax
                 .error(format!(
@@ -166,7 +171,8 @@ impl<'a> Header<'a> {
         let mut taken = Vec::new();
         for (index, (header, cell)) in self.cells.iter().zip(cells).enumerate() {
             let Some(position) = beside_name(&header.text) else { continue };
-            let at = self.cells.iter().position(|other| other.text == position);
+            let at = self.named.get(&position).map(|it| it.0);
+            let at = at.filter(|at| self.cells.get(*at).is_some_and(|it| it.text == position));
             let name = cell.text().trim().to_owned();
             if let Some(at) = at.filter(|_| !name.is_empty() && !is_number(&name)) {
                 taken.push((index, at, name));

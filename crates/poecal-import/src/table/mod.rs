@@ -37,6 +37,7 @@ use crate::table::mapping::ColumnMap;
 use crate::table::places::Places;
 use crate::table::text::{Blocks, Lines, Said};
 use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::limits::Limit;
 use poecal_storage::looks_like::model_for_table;
 
 /// Most lines in which the header is sought.
@@ -355,17 +356,12 @@ fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separ
     }
 }
 
-/// Most rows of a file: they are held in memory, and a pipe may be endless.
-pub(crate) const MOST_ROWS: usize = 10_000_000;
-
-/// Refuses rows beyond the limit.
+/// Refuses rows beyond the limit: they are held in memory, and a pipe may be endless.
 pub(crate) fn refuse_more_rows(read: usize, row: &Row<'_>) -> Result<()> {
-    if read <= MOST_ROWS {
+    if read <= Limit::Rows.most_held() {
         return Ok(());
     }
-    Err(ErrorKind::Measurement
-        .error("found more than 10,000,000 measurements, expected fewer: leave some out")
-        .at_line(row.path, row.line))
+    Err(ErrorKind::Measurement.error(Limit::Rows.exceeded("one file")).at_line(row.path, row.line))
 }
 
 impl Row<'_> {
@@ -388,13 +384,19 @@ impl Row<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use poecal_storage::limits;
 
     #[test]
     fn a_row_too_many_is_refused() {
         let row = Row { path: Path::new(PATH), line: 7, text: "", cells: &[], places: None };
-        assert!(refuse_more_rows(MOST_ROWS, &row).is_ok());
-        let error = refuse_more_rows(MOST_ROWS + 1, &row).unwrap_err().to_string();
-        assert!(error.starts_with("x.csv:7: found more than 10,000,000 measurements"), "{error}");
+        limits::on(limits::here().with(Limit::Rows, 3), || {
+            assert!(refuse_more_rows(3, &row).is_ok());
+            let error = refuse_more_rows(4, &row).unwrap_err().to_string();
+            assert!(
+                error.starts_with("x.csv:7: found more than 3 rows in one file, expected at most"),
+                "{error}"
+            );
+        });
     }
 
     const PATH: &str = "x.csv";

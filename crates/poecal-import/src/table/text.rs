@@ -8,7 +8,8 @@ use super::encodings::{is_utf16, of_utf16, of_windows_1252};
 use super::places::Places;
 use poecal_numerics::error::{Error, ErrorKind, Result, position};
 use poecal_storage::hashes::Hashing;
-use poecal_storage::source::{self, Input, LARGEST_TABLE, LARGEST_TEXT, unreadable};
+use poecal_storage::limits::Limit;
+use poecal_storage::source::{self, Input, unreadable};
 
 /// Approximate number of bytes held at a time.
 const BLOCK: usize = 1 << 18;
@@ -65,7 +66,7 @@ pub(crate) struct Said {
 impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` describes it in messages.
     pub(crate) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
-        let source = TextSource::File(Hashing::new(source::open(path, expected, LARGEST_TABLE)?));
+        let source = TextSource::File(Hashing::new(source::open(path, expected, Limit::Table)?));
         Ok(Blocks::of(path, expected, source, BLOCK))
     }
 
@@ -74,8 +75,10 @@ impl<'a> Blocks<'a> {
         if !configurations::is_folder(path) {
             return Blocks::open(path, expected);
         }
-        let Configurations { text, sha256 } = configurations::read(path)?;
-        Ok(Blocks::made(path, expected, text, Some(sha256)))
+        let Configurations { text, sha256, left } = configurations::read(path)?;
+        let mut blocks = Blocks::made(path, expected, text, Some(sha256));
+        blocks.said.warnings.extend(left.iter().map(ToString::to_string));
+        Ok(blocks)
     }
 
     /// The blocks of a text that was made of a file or a folder, with the checksum of its bytes.
@@ -224,7 +227,7 @@ impl<'a> Blocks<'a> {
     /// The whole text of UTF-16 as UTF-8; it becomes the source, without its first block, which is returned.
     fn decoded(&mut self, mut bytes: Vec<u8>) -> Result<Vec<u8>> {
         bytes.append(&mut self.rest);
-        let most = LARGEST_TEXT;
+        let most = Limit::Text.most();
         let more = match &mut self.source {
             TextSource::File(file) => file.take(most).read_to_end(&mut bytes),
             TextSource::Text(text) => text.take(most).read_to_end(&mut bytes),
@@ -232,8 +235,7 @@ impl<'a> Blocks<'a> {
         };
         more.map_err(|error| unreadable(self.path, &error, self.expected))?;
         if bytes.len() as u64 > most {
-            let message = format!("found UTF-16 text of more than {} MiB, expected UTF-8", most >> 20);
-            return Err(ErrorKind::File.error(message).in_file(self.path));
+            return Err(ErrorKind::File.error(Limit::Text.exceeded("UTF-16")).in_file(self.path));
         }
         let text = of_utf16(&bytes).map_err(|(line, found)| {
             let message = format!("found {found}, expected UTF-16 text as before, or UTF-8");
@@ -256,9 +258,8 @@ impl<'a> Blocks<'a> {
         let mut all = String::new();
         loop {
             all.push_str(&self.text);
-            if all.len() as u64 > LARGEST_TEXT {
-                let message =
-                    format!("found more than {} MiB, expected {}", LARGEST_TEXT >> 20, self.expected);
+            if all.len() as u64 > Limit::Text.most() {
+                let message = Limit::Text.exceeded("a file of this form");
                 return Err(ErrorKind::File.error(message).in_file(self.path));
             }
             if !self.advance()? {

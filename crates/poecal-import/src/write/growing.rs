@@ -1,12 +1,16 @@
 //! A measurement file that grows while it is read.
 
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use crate::read::parse;
 use crate::{MeasurementFile, ReadOptions};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
-use poecal_storage::source_text;
+use poecal_storage::{disk, source_text};
+
+/// Bytes that show whether a file has text.
+const HEAD: u64 = 4096;
 
 /// A measurement file that is read again and again while lines are added to it.
 ///
@@ -21,7 +25,14 @@ use poecal_storage::source_text;
 pub struct GrowingFile {
     path: PathBuf,
     known: String,
+    /// Whether a file that is missing, empty or shorter is waited for.
+    is_waited_for: bool,
+    /// How often in a row it was shorter than what is known of it.
+    shorter: u32,
 }
+
+/// A file that has so often been a beginning of what is known of it was cut, and is not written again at the moment.
+const LOOKS: u32 = 20;
 
 /// What a file has become.
 #[derive(Clone, Debug)]
@@ -36,7 +47,27 @@ impl GrowingFile {
     /// A file of which nothing is read yet.
     #[must_use]
     pub fn new(path: impl AsRef<Path>) -> Self {
-        GrowingFile { path: path.as_ref().to_path_buf(), known: String::new() }
+        let path = path.as_ref().to_path_buf();
+        GrowingFile { path, known: String::new(), is_waited_for: false, shorter: 0 }
+    }
+
+    /// The same of a file that is looked at again and again: where it is missing or empty, or for some looks shorter, there are no news.
+    #[must_use]
+    pub fn waited_for(self) -> Self {
+        GrowingFile { is_waited_for: true, ..self }
+    }
+
+    /// Whether there is no file, or one without text.
+    #[must_use]
+    pub fn is_absent(&self) -> bool {
+        let mut head = Vec::new();
+        match disk::here().open(&self.path) {
+            Err(error) => error.kind() == io::ErrorKind::NotFound,
+            Ok(file) => {
+                let read = file.take(HEAD).read_to_end(&mut head);
+                read.is_ok() && (head.len() as u64) < HEAD && head.iter().all(u8::is_ascii_whitespace)
+            }
+        }
     }
 
     /// All rows, if there are other complete lines than before; a last line without an end is waited for.
@@ -44,19 +75,27 @@ impl GrowingFile {
     /// # Errors
     /// As [`crate::read()`].
     pub fn news(&mut self, robot: &Robot, options: &ReadOptions) -> Result<Option<News>> {
+        if self.is_waited_for && self.is_absent() {
+            return Ok(None);
+        }
         let text = source_text::read(&self.path, "a measurement file (CSV)")?;
         let complete = text.rfind('\n').map_or("", |end| &text[..=end]);
         if complete == self.known {
             return Ok(None);
         }
+        if self.is_waited_for && self.known.starts_with(complete) && self.shorter < LOOKS {
+            self.shorter += 1;
+            return Ok(None);
+        }
+        self.shorter = 0;
         let is_again = !complete.starts_with(&self.known);
-        complete.clone_into(&mut self.known);
         let is_row = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
         // Names of columns, and a row.
         if complete.lines().filter(is_row).nth(1).is_none() {
             return Ok(None);
         }
         let file = parse(complete, &self.path, robot, options)?;
+        complete.clone_into(&mut self.known);
         Ok(Some(News { file, is_again }))
     }
 }

@@ -57,7 +57,7 @@ impl Session {
     }
 
     /// A table of all corners.
-    fn corners(&self, header: &str, row: impl Fn(usize, &Corner) -> String) -> String {
+    pub(crate) fn corners(&self, header: &str, row: impl Fn(usize, &Corner) -> String) -> String {
         let rows = self.pictures().flat_map(|(at, picture)| {
             picture.corners.iter().map(|corner| row(at, corner)).collect::<Vec<_>>()
         });
@@ -106,7 +106,7 @@ impl Session {
     }
 
     /// The files in our own form.
-    fn ours(&self) -> [(&'static str, String); 2] {
+    pub(crate) fn ours(&self) -> [(&'static str, String); 2] {
         let corners = self.corners("image,target,u[px],v[px]", |at, corner| {
             format!("{at:03}.png,corner{},{:.4},{:.4}", corner.point, corner.pixel.x, corner.pixel.y)
         });
@@ -114,7 +114,7 @@ impl Session {
     }
 }
 
-fn as_texts<'a>(files: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a str)> {
+pub(crate) fn as_texts<'a>(files: &'a [(&'a str, String)]) -> Vec<(&'a str, &'a str)> {
     files.iter().map(|(name, text)| (*name, text.as_str())).collect()
 }
 

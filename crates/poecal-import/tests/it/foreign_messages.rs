@@ -256,7 +256,8 @@ fn boards_and_lenses_of_other_programs_are_read() {
         println!("{}", folder.without_path(&error));
         assert!(error.contains(part) && error.contains("board.yaml"), "{error}");
     }
-    let camera = read_cameras(folder.write("cal_data.yaml", CAL_DATA).to_str().unwrap()).unwrap().remove(0);
+    let path = folder.write("cal_data.yaml", CAL_DATA);
+    let camera = read_cameras(path.to_str().unwrap()).unwrap().cameras.remove(0);
     assert_eq!((camera.lens.focal_px, camera.lens.centre_px), ([550.0, 551.0], [320.0, 240.0]));
     let half = folder.write("half.yaml", "intrinsics:\n  fx: 550.0\n");
     assert!(

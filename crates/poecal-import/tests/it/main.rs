@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
+mod camera_keys;
 mod components;
 mod drawing;
 mod foreign_corners;

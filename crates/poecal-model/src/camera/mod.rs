@@ -29,5 +29,7 @@ pub use pnp::poses_of_rays;
 pub use search::{LensSearch, LensState};
 pub use shape::is_flat_sheet;
 pub use sighting::{Sighting, View, moved};
-pub use unknown::{OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns};
+pub use unknown::{
+    OTHER_LENS, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, changed_numbers,
+};
 pub use views::Views;

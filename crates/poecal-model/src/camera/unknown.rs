@@ -53,6 +53,23 @@ pub struct PictureNumber {
     pub deviation: f64,
 }
 
+/// How many times better another lens explains the corners of single pictures from where on the stated one is that of other pictures: "three times"
+/// to one digit.
+pub const OTHER_LENS: f64 = 2.5;
+
+/// The numbers that are farther than some standard deviations from what was given, in words.
+#[must_use]
+pub fn changed_numbers(numbers: &[PictureNumber], deviations: f64) -> String {
+    let changed = numbers.iter().filter(|it| (it.found - it.given).abs() > deviations * it.deviation);
+    let words = changed.map(|it| {
+        let own = it.name.rsplit('.').next().unwrap_or_default();
+        let digits = if it.unit == "px" { 1 } else { 4 };
+        format!("{own} {:.digits$} instead of {:.digits$}", it.found, it.given)
+    });
+    let words: Vec<String> = words.collect();
+    if words.is_empty() { "of several numbers".to_owned() } else { words.join(", ") }
+}
+
 /// Unknown numbers of cameras and boards as steps from what was given, in standard deviations of their prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureUnknowns {

@@ -80,6 +80,26 @@ impl Mass {
     }
 }
 
+/// Mass that programs write which export models and know none, kg; fewest links and their share with exactly it that say so.
+const PLACEHOLDER_KG: f64 = 1.0;
+const FEWEST_PLACEHOLDERS: usize = 2;
+
+impl Robot {
+    /// That most links of the model have a mass of exactly 1 kg, as models have that nobody weighed, a sentence; what sags is then judged by weights that
+    /// are none.
+    #[must_use]
+    pub fn placeholder_masses(&self) -> Option<String> {
+        let alike = self.masses.iter().filter(|it| it.kg == PLACEHOLDER_KG).count();
+        (alike >= FEWEST_PLACEHOLDERS && 2 * alike > self.masses.len()).then(|| {
+            format!(
+                "{alike} of the {} moving links with a mass have exactly 1 kg, which looks like a placeholder: sag is fitted with these masses; state the real \
+                 ones, or leave `<inertial>` out",
+                self.masses.len()
+            )
+        })
+    }
+}
+
 /// A weight on the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weight {

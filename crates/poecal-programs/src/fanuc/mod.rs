@@ -14,6 +14,7 @@ use std::collections::HashMap;
 pub(crate) use configuration::Configuration;
 use instructions::{Instructions, Move};
 use positions::{Group, PoseOf, Position, positions};
+pub(crate) use words::RULES;
 use words::{tokens, whole};
 
 use super::axes::{Axes, NO_EXTERNAL, OTHER_EXTERNAL};

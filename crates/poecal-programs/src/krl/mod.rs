@@ -13,7 +13,9 @@ use super::parsed::Parsed;
 use motions::Reader;
 use poecal_numerics::error::Result;
 use values::Variables;
-use words::{MOTIONS, RULES, Way};
+use words::{MOTIONS, Way};
+
+pub(crate) use words::RULES;
 
 /// Targets and motions of a program, or of a list of its data.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {

@@ -19,6 +19,7 @@ use going::{Held, Move, Moves};
 use modal::{Modal, Switch, leads_elsewhere};
 use moves::{Argument, Instruction, Layout, ToolAt, argument, layout};
 use outline::Statement;
+pub(crate) use tokens::RULES;
 use tokens::tokens;
 
 use super::axes::Axes;

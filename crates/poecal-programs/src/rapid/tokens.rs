@@ -4,7 +4,8 @@ use super::super::parsed::Number;
 use super::super::scan::{Kind, Rules, Scanner, Token, cut, signed};
 
 /// How RAPID is written.
-const RULES: Rules = Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
+pub(crate) const RULES: Rules =
+    Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
 
 /// The sign that stands for `:=`, which is one token.
 pub(crate) const ASSIGN: u8 = b'\x01';

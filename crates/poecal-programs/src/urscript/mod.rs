@@ -20,7 +20,8 @@ use poecal_numerics::error::Result;
 use step::{Aim, Frame, Step, Way};
 use values::{Value, Variables};
 
-const RULES: Rules = Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
+pub(crate) const RULES: Rules =
+    Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
 
 /// How poses are written.
 const FORM: PoseForm = PoseForm::RotationVector;

@@ -48,6 +48,7 @@ __all__ = [
     "reproduce",
     "run_program",
     "schema",
+    "set_limit",
     "set_threads",
     "simulate",
     "tcp",
@@ -2226,6 +2227,16 @@ def schema() -> str:
     -------
     str
         The schema, as a text.
+    """
+def set_limit(name: str, most: int | str) -> None:
+    """Sets what files may take, where that is less than they need.
+
+    Parameters
+    ----------
+    name
+        The limit: `rows`, `columns`, `text`, `cells`, `bag` and the others of SECURITY.md.
+    most
+        The number, of bytes also as a text such as `"2GiB"`. It holds for all calls from then on.
     """
 def set_threads(count: int) -> None:
     """Sets the number of threads that all work shares; results do not depend on it.

@@ -55,7 +55,7 @@ fn options(
         options.state_units(units)?;
     }
     for typed in cameras.unwrap_or_default() {
-        options.cameras.extend(measurements::read_cameras(typed)?);
+        options.add_cameras(typed)?;
     }
     for typed in markers.unwrap_or_default() {
         options.add_boards(typed)?;

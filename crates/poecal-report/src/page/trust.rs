@@ -147,6 +147,7 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
 fn coverage(file: &CalibrationFile) -> Markup {
     let head = ["joint", "sampled from", "to", "limits from", "to", "share"];
     let mut table = HtmlTable::new("Sampled range of each joint", 1, &head);
+    let mut is_of_a_turn = false;
     for (k, found) in file.coverage.iter().enumerate() {
         let (factor, unit) = unit_of(file, &found.joint);
         let end = |value: Option<f64>, name: &str| match value {
@@ -155,6 +156,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
         };
         let kind = file.joints.iter().find(|joint| joint.name == found.joint).map(|joint| joint.kind);
         let share = kind.and_then(|kind| found.share(kind));
+        is_of_a_turn |= kind.is_some_and(|kind| found.is_of_a_turn(kind));
         table.row(&[
             &quoted(&found.joint, format_args!("coverage.{k}.joint")),
             &end(Some(found.sampled_min), "sampled_min"),
@@ -168,6 +170,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
         h3 { "Sampled part of each joint's range" }
         (plots(&figures::coverage(file), "Bars: sampled by the fitted rows. Thin lines: the limits of the model."))
         (folded("The ranges as numbers", &table))
+        @if is_of_a_turn { p { "Share: of one turn where the limits span more." } }
     }
 }
 

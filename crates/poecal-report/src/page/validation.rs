@@ -7,7 +7,7 @@ use super::errors::{error_words, models_table};
 use super::html::{HtmlTable, capital, count, facts, figure, list, plots, quoted, section};
 use super::lead::{sign, spaced};
 use super::{head, joins, method};
-use crate::judgement::{confirmed_words, judged_models, refitted_parts};
+use crate::judgement::{before_factor, confirmed_words, judged_models, refitted_parts};
 use crate::plot::{Axis, Line, LinePlot, Scale};
 use poecal_calibrate::Level;
 use poecal_model::measurement::Quantity;
@@ -125,7 +125,15 @@ fn the_facts(found: &Validation) -> Vec<(&'static str, Markup)> {
         None => html! { "no row lies inside it" },
         Some(some) => html! { (some.count) " of " (found.judgement.count) " rows lie inside it" },
     };
-    vec![("Refitted", html! { (refitted) }), ("Sampled range", inside)]
+    let gain = found.judgement.improvement.map(|gain| {
+        let key = |name: &str| format!("improvement.{name}");
+        html! {
+            (before_factor(gain.gain())) "the error of the nominal model is " (figure(gain.factor, key("factor"))) " times this one's ("
+            (figure(gain.from, key("from"))) " to " (figure(gain.to, key("to"))) " with 95 % confidence), device frame and targets fitted for both"
+        }
+    });
+    let facts = [("Refitted", html! { (refitted) }), ("Sampled range", inside)];
+    facts.into_iter().chain(gain.map(|gain| ("Gain", gain))).collect()
 }
 
 /// Which quantity the picture and the list are of: the first that was measured.

@@ -219,6 +219,8 @@ fn known(out: &mut String, file: &CalibrationFile) {
         let open = found.parameters - found.rank;
         let of = if joints.is_empty() { String::new() } else { format!(" of {}", names(&joints)) };
         undetermined.push(format!("{}{of}", unknowns_words(open)));
+        let zeros = found.unidentifiable.iter().filter(|it| it.cause == Cause::JointOffsets);
+        undetermined.extend(zeros.map(|it| it.description.clone()));
     }
     let structural = found.structural.iter().filter(|it| it.cause == Cause::NoOrientation);
     undetermined.extend(structural.map(|direction| direction.description.clone()));
@@ -297,6 +299,7 @@ pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
                     (String::new(), " (not determined)")
                 }
                 Some(sigma) => (format!(" ± {}", number(unit.shown(sigma))), ""),
+                None if file.is_open(&name) => (String::new(), " (not determined)"),
                 None => (String::new(), ""),
             };
             let symbol = if unit.symbol().is_empty() { String::new() } else { format!(" {}", unit.symbol()) };

@@ -3,6 +3,7 @@
 use super::link::LinkPoints;
 use super::{CalibrationFile, PoseEntry, UncertaintyEntry};
 use poecal_arm::lie::Freedom;
+use poecal_fit::analysis::Cause;
 use poecal_fit::parameters::{
     Block, DeviceFrame, Names, Parameter, TargetFrame, TargetPlace, ValueTerm, screw_axes,
 };
@@ -51,9 +52,23 @@ impl CalibrationFile {
         self.uncertainty_from(targets, &self.robot()?, Body::Base)
     }
 
+    /// Whether a term of a joint, as `joint2.offset`, is not determined, since something else that is free has the same effect: what is written of it is
+    /// the value nearest to the model.
+    #[must_use]
+    pub fn is_open(&self, term: &str) -> bool {
+        let found = &self.identifiability;
+        let Some((joint, _)) = term.rsplit_once('.').filter(|(_, name)| *name == Term::OFFSET.to_string())
+        else {
+            return false;
+        };
+        let hidden =
+            found.unidentifiable.iter().chain(&found.structural).filter(|it| it.cause == Cause::JointOffsets);
+        hidden.flat_map(|it| &it.joints).any(|name| name == joint)
+    }
+
     /// Standard deviation of a joint's term by its name, radians, metres or by value; `None` if it is no unknown.
     pub fn sigma(&self, term: &str) -> Option<f64> {
-        let entry = self.uncertainty.as_ref()?;
+        let entry = self.uncertainty.as_ref().filter(|_| !self.is_open(term))?;
         let at = entry.unknowns.iter().position(|name| name == term)?;
         let (joint, name) = term.rsplit_once('.')?;
         let kind = self.joints.iter().find(|entry| entry.name == joint)?.kind;

@@ -61,6 +61,7 @@ use poecal_model::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::{json_text, source_text};
 pub use refusal::SCHEMA;
+pub(crate) use refusal::schema_of;
 use refusal::{EARLIER, refusal};
 use schemars::Schema;
 use schemars::generate::SchemaSettings;

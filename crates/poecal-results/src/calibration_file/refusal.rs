@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
 use poecal_numerics::error::{Error, ErrorKind};
 use poecal_storage::looks_like;
 
@@ -32,12 +35,12 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         );
         return ErrorKind::Syntax.error(message).in_file(path);
     }
-    let value: serde_json::Value = match serde_json::from_str(text) {
-        Ok(value) => value,
-        Err(error) => return syntax(&error),
-    };
+    if let Err(error) = serde_json::from_str::<IgnoredAny>(text) {
+        return syntax(&error);
+    }
+    let schema = schema_of(text.as_bytes());
     ErrorKind::Syntax
-        .error(match (value.get("schema").and_then(serde_json::Value::as_str), error) {
+        .error(match (schema.as_deref(), error) {
             (Some(SCHEMA | EARLIER), Some(error)) => return syntax(&error),
             (Some(other), _) => {
                 format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
@@ -47,4 +50,13 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
             }
         })
         .in_file(path)
+}
+
+/// The key `schema` of a text of JSON; nothing else of it is held.
+pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Head {
+        schema: Option<String>,
+    }
+    serde_json::from_slice::<Head>(text).ok()?.schema
 }

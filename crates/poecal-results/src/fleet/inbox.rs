@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::Station;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::disk::ObjectKind;
+use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::hashes::sha256;
 
 /// Most letters of a serial number.
@@ -67,35 +68,47 @@ impl Found {
     }
 }
 
-/// All files of the inbox, by serial number and date.
+/// All files of the inbox, by serial number and date, and what is none.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if the folder before the first braces cannot be read.
-pub fn newest(station: &Station) -> Result<Vec<Found>> {
+/// [`ErrorKind::File`] if the folder before the first braces cannot be read, or a folder has too many files.
+pub fn newest(station: &Station) -> Result<(Vec<Found>, Vec<LeftOut>)> {
     let parts: Vec<&str> = Path::new(&station.inbox).iter().filter_map(|part| part.to_str()).collect();
     let plain = parts.iter().take_while(|part| !part.contains('{')).count();
     let root: PathBuf = parts[..plain].iter().collect();
     let root = if root.as_os_str().is_empty() { PathBuf::from(".") } else { root };
-    let mut found = Vec::new();
+    let (mut found, mut left) = (Vec::new(), Vec::new());
     let none =
         Found { serial: String::new(), date: String::new(), of_type: String::new(), path: root.clone() };
     let cannot = |error: io::Error| {
         ErrorKind::File.error(format!("the inbox cannot be read ({error})")).in_file(&root)
     };
-    walk(&none, &parts[plain..], &mut found).map_err(cannot)?;
+    walk(&none, (&root, &parts[plain..]), &mut found, &mut left).map_err(cannot)?;
     found.sort();
-    Ok(found)
+    left.sort();
+    Ok((found, left))
 }
 
-/// Goes down the parts of a path.
-fn walk(at: &Found, parts: &[&str], found: &mut Vec<Found>) -> io::Result<()> {
+/// Goes down the parts of a path, from the folder `root`.
+fn walk(
+    at: &Found,
+    (root, parts): (&Path, &[&str]),
+    found: &mut Vec<Found>,
+    left: &mut Vec<LeftOut>,
+) -> io::Result<()> {
     let Some((part, rest)) = parts.split_first() else { return Ok(()) };
-    let disk = disk::here();
-    for name in disk.names(&at.path)? {
-        let Some(name) = name.to_str() else { continue };
-        let Some(own) = matched(part, name) else { continue };
-        let path = at.path.join(name);
-        let Ok(there) = disk.follow(&path) else { continue };
+    let (names, others) = folder::names(&at.path)?;
+    left.extend(others);
+    for name in names {
+        let Some(own) = matched(part, &name) else { continue };
+        let path = at.path.join(&name);
+        let kind = match folder::kind(root, &path) {
+            Ok(kind) => kind,
+            Err(other) => {
+                left.push(other);
+                continue;
+            }
+        };
         let pick = |key: &str, before: &String| {
             own.iter().find(|it| it.0 == key).map_or_else(|| before.clone(), |it| it.1.clone())
         };
@@ -105,9 +118,9 @@ fn walk(at: &Found, parts: &[&str], found: &mut Vec<Found>) -> io::Result<()> {
             of_type: pick("type", &at.of_type),
             path,
         };
-        match (rest.is_empty(), there.kind) {
+        match (rest.is_empty(), kind) {
             (true, ObjectKind::File) => found.push(next),
-            (false, ObjectKind::Folder) => walk(&next, rest, found)?,
+            (false, ObjectKind::Folder) => walk(&next, (root, rest), found, left)?,
             _ => {}
         }
     }

@@ -4,20 +4,18 @@ use std::collections::BTreeMap;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
-
 use super::LedgerRow;
+use crate::calibration_file::schema_of;
 use crate::output::{Existing, FilePlace};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::limits::Limit;
 
 /// Usual name of the file.
 pub const LEDGER: &str = "fleet.jsonl";
 /// Name and version of its lines.
 const SCHEMA: &str = "poecal-fleet-1";
 const FAMILY: &str = "poecal-fleet-";
-/// Most bytes that are read.
-const MOST: u64 = 1 << 32;
 
 /// What was done, line by line.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,6 +49,12 @@ impl Ledger {
             FilePlace::reserve(path, Existing::forced(true), &[], &mut |_| ())?.write(vec![kept.into()])?;
         }
         Ok(ledger)
+    }
+
+    /// The lines, in their order.
+    #[must_use]
+    pub fn rows(&self) -> &[LedgerRow] {
+        &self.rows
     }
 
     fn add(&mut self, row: LedgerRow) {
@@ -132,7 +136,11 @@ fn bytes(path: &Path) -> Result<Option<Vec<u8>>> {
         Ok(_) => {}
     }
     let mut text = Vec::new();
-    disk.open(path).and_then(|file| file.take(MOST).read_to_end(&mut text)).map_err(failed)?;
+    let most = Limit::Ledger.most();
+    disk.open(path).and_then(|file| file.take(most + 1).read_to_end(&mut text)).map_err(failed)?;
+    if text.len() as u64 > most {
+        return Err(refused(path, Limit::Ledger.exceeded("a ledger")));
+    }
     Ok(Some(text))
 }
 
@@ -140,9 +148,7 @@ fn rows(text: &[u8], path: &Path) -> Result<Vec<LedgerRow>> {
     let lines = text.split(|byte| *byte == b'\n').enumerate().filter(|(_, line)| !line.is_empty());
     let row = |(at, line): (usize, &[u8])| {
         let refuse = |message: String| Err(ErrorKind::Syntax.error(message).at_line(path, at + 1));
-        let schema = serde_json::from_slice::<Value>(line)
-            .ok()
-            .and_then(|it| it.get("schema")?.as_str().map(str::to_owned));
+        let schema = schema_of(line);
         match schema.as_deref() {
             Some(SCHEMA) => serde_json::from_slice(line).or_else(|error| {
                 refuse(format!("found a row that is none ({error}), expected one of {SCHEMA}"))

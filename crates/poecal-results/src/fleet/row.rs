@@ -119,6 +119,9 @@ pub struct LedgerRow {
     /// Sizes of the terms; none without terms.
     #[serde(default)]
     pub sizes: Vec<SizeRow>,
+    /// That the measurements are of another robot of the line, a sentence; absent where nothing says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of_another: Option<String>,
 }
 
 /// A figure without digits that say nothing.

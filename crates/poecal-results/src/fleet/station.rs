@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::hashes::sha256_of;
+use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
 /// The keys of the file.
@@ -144,7 +145,8 @@ impl Station {
     /// # Errors
     /// [`ErrorKind::File`] if it cannot be read; [`ErrorKind::Syntax`], with line and column, if it is no station.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = source_text::read(path, "a station (TOML: inbox, results and model)")?;
+        let text =
+            source_text::read_up_to(path, "a station (TOML: inbox, results and model)", Limit::Settings)?;
         let refused =
             |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, &text, offset);
         let refuse = |offset: usize, message: String| Err(refused(offset, message));

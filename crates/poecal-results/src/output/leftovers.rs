@@ -8,6 +8,7 @@ use super::contents::Contents;
 use super::journal::Journal;
 use super::{interrupted, staging};
 use poecal_storage::disk::{Disk, Lock, ObjectKind, SystemDisk};
+use poecal_storage::held;
 
 /// Attempts to remove a folder that another thread may be writing into.
 const ATTEMPTS: usize = 100;
@@ -111,4 +112,5 @@ pub fn clean_up() {
             }
         }
     }
+    held::give_back_all();
 }

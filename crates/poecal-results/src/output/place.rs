@@ -10,6 +10,7 @@ use super::staging::{self, Staging};
 use super::{FilePlace, leftovers};
 use poecal_numerics::error::{Error, Result};
 use poecal_storage::disk::{self, Disk, ObjectKind};
+use poecal_storage::held::{self, HeldPlace};
 
 /// A reserved place for files. Nothing in it has changed yet, and nothing will unless all is written.
 pub struct FolderPlace {
@@ -22,6 +23,8 @@ pub struct FolderPlace {
     /// Whether the folder existed.
     pub(crate) was_there: bool,
     pub(crate) staging: Staging,
+    /// No other run writes to the folder meanwhile.
+    _held: Option<HeldPlace>,
 }
 
 impl std::fmt::Debug for FolderPlace {
@@ -66,15 +69,18 @@ impl FolderPlace {
                 return Err(refused(folder, message));
             }
         };
+        let held = held::hold(&actual, "the folder", held::patience(), say)
+            .map_err(|error| error.with_path(folder))?;
         leftovers::settle(disk.as_ref(), &actual, say);
         if there.is_some() {
             let names = own_names(disk.as_ref(), &actual, contents).map_err(cannot)?;
             check_existing(disk.as_ref(), folder, &actual, (contents, existing), &names)?;
+            refuse_foreign(disk.as_ref(), folder, &names)?;
             names.iter().try_for_each(|name| check_own(disk.as_ref(), &folder.join(name), inputs))?;
         }
         let staging = Staging::new(&disk, &parent, &prefix).map_err(cannot)?;
         let (named, was_there) = (folder.to_owned(), there.is_some());
-        Ok(FolderPlace { named, folder: actual, contents, existing, was_there, staging })
+        Ok(FolderPlace { named, folder: actual, contents, existing, was_there, staging, _held: held })
     }
 
     /// The place of a report outside these results; `None` if its path is that among them.
@@ -173,7 +179,7 @@ pub(crate) fn check_existing(
     }
     match existing {
         Existing::Replaced => Ok(()),
-        Existing::Own if is_of_poecal(disk, &actual.join("calibration.json"), SCHEMA) => Ok(()),
+        Existing::Own if is_of_poecal(disk, &actual.join(CALIBRATION), SCHEMA) => Ok(()),
         Existing::Own => Err(refused(
             folder,
             "found a folder without results of poecal, which `force` in the settings does not let it write to, expected a new folder or \
@@ -185,6 +191,22 @@ pub(crate) fn check_existing(
         )),
     }
 }
+
+/// Refuses to replace a `calibration.json` that is none of poecal, whatever was typed.
+fn refuse_foreign(disk: &dyn Disk, folder: &Path, names: &[String]) -> Result<()> {
+    let path = folder.join(CALIBRATION);
+    let is_foreign = names.iter().any(|name| name == CALIBRATION)
+        && disk.look(&path).is_ok_and(|found| found.kind == ObjectKind::File)
+        && !is_of_poecal(disk, &path, SCHEMA);
+    if !is_foreign {
+        return Ok(());
+    }
+    let message = "found a file that poecal did not write, expected an earlier calibration or nothing: move it away, or choose another folder with --out";
+    Err(refused(&path, message))
+}
+
+/// Name of the file of a calibration.
+const CALIBRATION: &str = "calibration.json";
 
 /// Refuses to replace an input, or an object that is no regular file.
 pub(crate) fn check_own(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {

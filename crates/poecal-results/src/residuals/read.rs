@@ -11,7 +11,7 @@ use poecal_import::{Cell, Separator, split};
 use poecal_model::measurement::{ByQuantity, Measured, Quantity};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::source::LARGEST_TABLE;
+use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
 /// Advice for a file of another kind.
@@ -24,7 +24,7 @@ impl Residuals {
     /// [`ErrorKind::File`] if it cannot be read, [`ErrorKind::Syntax`] if it is no `residuals.csv` of this version.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        Self::parse(&source_text::read_up_to(path, EXPECTED, LARGEST_TABLE)?, path)
+        Self::parse(&source_text::read_up_to(path, EXPECTED, Limit::Table)?, path)
     }
 
     /// Reads the text of a file.

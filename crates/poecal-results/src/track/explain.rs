@@ -10,7 +10,7 @@ use poecal_numerics::linalg;
 /// Probability to call an unchanged robot changed, of all explanations together.
 const CHANCE: f64 = 0.01;
 /// Degrees of freedom that stand for a level that is known.
-const KNOWN: f64 = 1e6;
+pub(crate) const KNOWN: f64 = 1e6;
 /// Share of a motion's own effect below which, beside what is free, nothing is left of it.
 const NOTHING: f64 = 1e-10;
 /// Gain, in variances, by which an explanation may be worse than the best and still explain the changes nearly as well.
@@ -40,6 +40,8 @@ pub enum Kind {
     Give,
     /// The zeros of two joints.
     TwoZeros,
+    /// The zeros of three joints or more.
+    Zeros,
 }
 
 /// An unknown of an explanation.
@@ -248,6 +250,11 @@ pub(crate) fn ratio(evidence: &Evidence, hypotheses: &[Hypothesis], tests: &Test
     tried.map(|it| it.gain / tests.quantile(it.at, it.rank, KNOWN)).fold(0.0, f64::max)
 }
 
+/// Whether squares that are left are no more than noise of a variance.
+pub(crate) fn is_noise(squares: f64, freedom: f64, variance: f64) -> bool {
+    freedom >= 1.0 && squares / freedom / variance <= mean_square_quantile(freedom, ALLOWED)
+}
+
 /// The simplest explanation that suffices.
 pub(crate) fn explain(
     evidence: &Evidence,
@@ -266,7 +273,7 @@ pub(crate) fn explain(
         .map(|it| (it.gain, it.rank))
         .fold((0.0, 0), |most, it| if it.0 > most.0 { it } else { most });
     let (squares, freedom) = (squares - gain, freedom - rank as f64);
-    if freedom < 1.0 || squares / freedom / stated <= mean_square_quantile(freedom, ALLOWED) {
+    if freedom < 1.0 || is_noise(squares, freedom, stated) {
         return first;
     }
     Verdict { is_wider: true, ..judged(evidence, hypotheses, tests, Level::Found(0.0, 0.0), &tried) }

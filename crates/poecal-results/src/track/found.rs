@@ -49,7 +49,7 @@ pub struct Tracked {
     pub change_m: f64,
     /// The same of what the explanation leaves.
     pub left_m: f64,
-    /// Standard deviation of each coordinate that the tests used, metres.
+    /// Standard deviation of each coordinate, metres: the stated repeatability, or what was found.
     pub noise_m: f64,
     /// Degrees of freedom of that.
     pub freedom: f64,
@@ -76,7 +76,7 @@ impl Explanation {
     /// Whether it is too far for what is linear.
     #[must_use]
     pub fn is_far(&self) -> bool {
-        matches!(self.kind, Kind::Zero | Kind::TwoZeros | Kind::Axis)
+        matches!(self.kind, Kind::Zero | Kind::TwoZeros | Kind::Zeros | Kind::Axis)
             && self.sizes.iter().any(|it| it.turns && it.value.abs() > MOST_RAD)
     }
 }

@@ -15,6 +15,7 @@ mod options;
 mod pairs;
 mod repair;
 mod run;
+mod several;
 mod sight;
 mod visit;
 mod witness;

@@ -5,8 +5,9 @@ use super::found::{Explanation, Tracked, explanation};
 use super::hypotheses::{free, hypotheses};
 use super::judged::{Earlier, Judged};
 use super::model::Model;
-use super::options::{State, TrackOptions};
+use super::options::{JudgedBy, State, TrackOptions};
 use super::pairs::Changes;
+use super::several::several_zeros;
 use super::sight::JointSight;
 use super::visit::Visit;
 use super::{sight, words};
@@ -58,11 +59,10 @@ pub fn track(
     let mut hypotheses = hypotheses(&changes.jacobian, visit, options);
     leave_unseen_out(&mut hypotheses, &evidence, *level);
     let tests = Tests::new(&hypotheses);
-    let verdict = explain(&evidence, &hypotheses, &tests, *level);
+    let stated = stated(*level, judged.judged_by);
+    let verdict =
+        completed(explain(&evidence, &hypotheses, &tests, *level), stated, (&evidence, &mut hypotheses));
     let mut notes = judged.notes.clone();
-    if verdict.is_wider {
-        notes.push(words::wider(options.repeatability_m.is_some(), verdict.variance.sqrt()));
-    }
     if judged.repeated == data.len() && changes.residual.iter().all(|it| it.abs() < ROUNDING) {
         notes.push(words::copied());
     }
@@ -70,16 +70,18 @@ pub fn track(
     let mut explanation = verdict.best.as_ref().map(named);
     let mut alternatives: Vec<Explanation> = verdict.nearly.iter().map(named).collect();
     let is_far = explanation.as_ref().is_some_and(Explanation::is_far);
-    let (change_m, noise_m) = in_metres(changes, &verdict, verdict.left);
-    let gain = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
-    let (left_m, _) = in_metres(changes, &verdict, (verdict.left.0 - gain.0, verdict.left.1 - gain.1 as f64));
+    let (change_m, own_noise_m) = in_metres(changes, &verdict, verdict.left);
+    let noise_m = stated.map_or(own_noise_m, |variance| changes.largest_sigma() * variance.sqrt());
+    let left_m = left_m(changes, &verdict);
     let usual_m = usual_m(changes, *level, model);
     // Of a zero far off, what is not linear is left.
     let is_nearly = is_far && left_m < NEARLY * change_m;
-    let is_unexplained = !is_nearly && noise_m > BEYOND * usual_m;
+    let is_unexplained = !is_nearly && own_noise_m > BEYOND * usual_m;
     if is_unexplained {
         (explanation, alternatives) = (None, Vec::new());
         notes.push(words::unexplained(change_m, usual_m, visit.device_is_known));
+    } else if verdict.is_wider {
+        notes.push(words::wider(stated.is_some(), explanation.is_some(), verdict.variance.sqrt()));
     }
     notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
     let joints = sights(&judged, (&hypotheses, &tests), &verdict, options);
@@ -125,6 +127,35 @@ fn ranges(model: &Model, data: &Dataset) -> Vec<JointCoverage> {
     let gives = |name: &str| model.robot.joints.iter().any(|it| it.name == name && it.give_of.is_some());
     all.retain(|it| !gives(&it.joint));
     all
+}
+
+/// The variance of a number where it was stated: by repeats.
+fn stated(level: Level, judged_by: JudgedBy) -> Option<f64> {
+    match level {
+        Level::Known(variance) if judged_by == JudgedBy::Repeats => Some(variance),
+        Level::Known(_) | Level::Found(..) => None,
+    }
+}
+
+/// Root mean square change of places that the best explanation leaves, metres.
+fn left_m(changes: &Changes, verdict: &Verdict) -> f64 {
+    let (gain, rank) = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
+    in_metres(changes, verdict, (verdict.left.0 - gain, verdict.left.1 - rank as f64)).0
+}
+
+/// The verdict, or where it leaves more than the stated noise (variance) the zeros of several joints that do not: what was stated is kept, and more than it
+/// is a change that is not named yet.
+fn completed(
+    verdict: Verdict,
+    stated: Option<f64>,
+    (evidence, hypotheses): (&Evidence, &mut Vec<Hypothesis>),
+) -> Verdict {
+    let several = stated
+        .filter(|_| verdict.is_wider)
+        .and_then(|variance| several_zeros(evidence, hypotheses, variance));
+    let Some((several, complete)) = several else { return verdict };
+    hypotheses.push(several);
+    complete
 }
 
 /// Standard deviation of a coordinate, metres, that noise and errors of the model explain.

@@ -30,11 +30,17 @@ pub(crate) fn geometry_alone() -> String {
     "the calibration has geometry alone: what the joints do beyond it looks like changes where configurations do not repeat".to_owned()
 }
 
-/// That the rows scatter more than was stated.
-pub(crate) fn wider(is_stated: bool, times: f64) -> String {
-    if is_stated {
+/// That the rows scatter more than was stated, beside an explanation if there is one.
+pub(crate) fn wider(is_stated: bool, is_explained: bool, times: f64) -> String {
+    if is_stated && is_explained {
         format!(
-            "the rows scatter {times:.1} times as much as the stated repeatability: judged by their own scatter"
+            "the explanation is not complete: what it leaves scatters {times:.1} times as much as the stated repeatability, and no zeros of several joints \
+             explain it; something else changed too, or the rows are noisier than stated: calibrate anew, or all zeros by `poecal calibrate` with \
+             --fix joints --free '*.offset'"
+        )
+    } else if is_stated {
+        format!(
+            "the rows scatter {times:.1} times as much as the stated repeatability, and no change explains it: judged by their own scatter"
         )
     } else {
         format!(

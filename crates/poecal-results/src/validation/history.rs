@@ -2,18 +2,22 @@
 
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{SCHEMA, TRACK, Validation, ValidationVerdict};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::held;
+use poecal_storage::limits::Limit;
 
 /// Name of the file beside a calibration.
 pub const HISTORY: &str = "history.jsonl";
-/// Most bytes that are read.
-const MOST: u64 = 1 << 28;
+/// How long another run that appends is waited for: it takes as long as a line does.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A check of the history.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -53,7 +57,7 @@ pub fn now() -> Option<String> {
 
 impl History {
     /// Reads the history at a path; an empty one if there is no file. Lines that are none of ours, such as one that a killed run left half
-    /// written, are passed over.
+    /// written, are passed over, also if it is the only one.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if the path is no file, the file cannot be read, or no line of it is a check.
@@ -70,14 +74,21 @@ impl History {
             return Err(refused(path, "found no file, expected the history of checks or nothing".to_owned()));
         }
         let mut text = Vec::new();
-        disk.open(path).and_then(|file| file.take(MOST).read_to_end(&mut text)).map_err(failed)?;
+        disk.open(path)
+            .and_then(|file| file.take(Limit::History.most() + 1).read_to_end(&mut text))
+            .map_err(failed)?;
+        if text.len() as u64 > Limit::History.most() {
+            return Err(refused(path, Limit::History.exceeded("a history")));
+        }
         let is_torn = text.last().is_some_and(|last| *last != b'\n');
         let lines = text.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
         let is_check = |line: &Value| {
             line.get("schema").and_then(Value::as_str).is_some_and(|it| [SCHEMA, TRACK].contains(&it))
         };
         let lines: Vec<Value> = lines.filter(is_check).collect();
-        if lines.is_empty() && !text.is_empty() {
+        // A run that was killed while it wrote the first line leaves the beginning of one.
+        let begins_one = text.first() == Some(&b'{') && serde_json::from_slice::<IgnoredAny>(&text).is_err();
+        if lines.is_empty() && !text.is_empty() && !(is_torn && begins_one && !text.contains(&b'\n')) {
             let message =
                 "found a file without a check, expected the history of checks or nothing".to_owned();
             return Err(refused(path, message));
@@ -104,6 +115,10 @@ impl History {
     /// # Errors
     /// [`ErrorKind::File`] if the file cannot be written, [`ErrorKind::Export`] if the check cannot be written as JSON.
     pub fn append(&mut self, check: &impl Serialize, time: &str) -> Result<()> {
+        let patience = held::patience().max(PATIENCE);
+        let _held = held::hold(&self.path, "the history", patience, &mut |_| ())?;
+        // Another run may have appended since it was read.
+        *self = History::read(&self.path)?;
         let (text, line) = line_of(check, time)?;
         let own = without_run(line.clone());
         if self.lines.iter().any(|other| without_run(other.clone()) == own) {

@@ -13,6 +13,7 @@ mod masses;
 mod mixed_cell;
 mod model_convert;
 mod model_errors;
+mod open_zeros;
 mod optics;
 mod pictures;
 mod refit_promise;

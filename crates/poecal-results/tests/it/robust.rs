@@ -1,7 +1,9 @@
 //! Grossly wrong rows: what they do to a fit, whether they are found, and that clean data are left alone.
 
 use nalgebra::Vector3;
-use poecal_calibrate::{Calibration, CalibrationOptions, Loss, Robust, calibrate, delivered, row_influence};
+use poecal_calibrate::{
+    Calibration, CalibrationOptions, Level, Loss, Repairs, Robust, calibrate, delivered, row_influence,
+};
 use poecal_fit::parameters::screw_axes;
 use poecal_fit::problem::Problem;
 use poecal_fit::start::{Registration, register, register_robustly};
@@ -421,4 +423,29 @@ fn rows_that_alone_tell_something_are_kept() {
         1e3 * errors[1]
     );
     assert!(errors[0] < (1.05 + sessions.more(0.2)) * errors[1]);
+}
+
+/// A stale row among so few that no row is judged: it is named, and the model is compared with the nominal one on the others.
+#[test]
+fn a_stale_row_that_was_held_out_does_not_decide_the_verdict() {
+    let simulation = Simulation {
+        count: 27,
+        seed: 5,
+        error_rotation_rad: 0.2f64.to_radians(),
+        error_position_m: 1e-3,
+        ..Simulation::default()
+    };
+    let made = simulation.run(&elbow(), Kind::POINT).unwrap();
+    let usual = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    assert!(usual.verdict.level > Level::DoNotUse);
+    for &row in usual.held_out_rows.iter().filter(|row| **row > 0) {
+        let mut data = made.data.clone();
+        data.observations[row as usize].measurement = data.observations[row as usize - 1].measurement;
+        let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
+        let found = calibrate(&made.nominal, &data, &options).unwrap();
+        println!("row {row}: {:?}", found.verdict.reasons);
+        assert!(found.robustness.suspects().any(|it| it == row), "row {row}");
+        assert_eq!(found.robustness.suspects().count(), 1);
+        assert!(found.verdict.level > Level::DoNotUse, "row {row}: {:?}", found.verdict.reasons);
+    }
 }

@@ -327,3 +327,43 @@ fn points_repeat_the_places_of_poses() {
         }
     }
 }
+
+/// Axes that were mastered by eye: all zeros that are seen are named, with the stated repeatability; what zeros do not explain is said.
+#[test]
+fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so() {
+    let cell = Cell::new(&elbow(), 9);
+    let mut generator = ChaCha8Rng::seed_from_u64(2);
+    let options = cell.options(false);
+    let chosen = witnesses(&cell.file, &cell.first, None, 14, None, &options).unwrap();
+    let zeros = [0.0, 0.12, -0.2, 0.25, -0.15, 0.3].map(f64::to_radians);
+    let actual = into_screws(&cell.actual, &zeros).unwrap();
+    let earlier = Earlier { data: &cell.first, is_own: true };
+    let data = cell.visit(&actual, &chosen, None, &mut generator);
+    let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
+    let explanation = found.explanation.unwrap();
+    println!("{:?} {:?}", explanation.names, explanation.sizes);
+    assert_eq!(explanation.kind, poecal_results::track::Kind::Zeros);
+    assert_eq!(explanation.names, ["joint2", "joint3", "joint4", "joint5", "joint6"]);
+    for (size, zero) in explanation.sizes.iter().zip(&zeros[1..]) {
+        assert!((size.value - zero).abs() < 5.0 * size.sigma, "{size:?} {zero}");
+    }
+    // The noise of a difference of two visits, as it is stated.
+    assert!((found.noise_m / (NOISE_M * 2f64.sqrt()) - 1.0).abs() < 0.05, "{}", found.noise_m);
+    assert!(found.notes.is_empty(), "{:?}", found.notes);
+    // An axis that is bent beside a zero that slipped is no set of zeros.
+    let mut bent = cell.with_zero(2, 0.2f64.to_radians());
+    let frame = Pose::from_xyz_rpy([1e-3, -5e-4, 8e-4], [2e-3, -1e-3, 1.5e-3]);
+    bent = bent.with_screws(
+        &bent
+            .joints
+            .iter()
+            .enumerate()
+            .map(|(at, it)| if at == 4 { it.screw.transformed(&frame) } else { it.screw })
+            .collect::<Vec<_>>(),
+    );
+    let data = cell.visit(&bent, &chosen, None, &mut generator);
+    let found = track(&cell.file, &data, Some(earlier), &options).unwrap();
+    println!("{:?} {:?}", found.explanation, found.notes);
+    assert_eq!(found.state, State::Changed);
+    assert!(found.notes.iter().any(|it| it.contains("the explanation is not complete") || it.contains("no change of one joint")), "{:?}", found.notes);
+}

@@ -44,6 +44,19 @@ pub struct Object {
 /// Holds a lock until it is dropped.
 pub type Lock = Box<dyn Any + Send>;
 
+/// What became of a lock that was asked for.
+pub enum Held {
+    /// It is held until it is dropped. `before` names a run that held it and was killed.
+    Mine {
+        /// The lock.
+        lock: Lock,
+        /// Who held it, as it was named.
+        before: Option<String>,
+    },
+    /// Another run holds it: as it was named, or empty where the system does not let others read that.
+    Other(String),
+}
+
 /// A file being written.
 pub trait Output: Write + Send {
     /// Waits until what was written is on the disk.
@@ -97,6 +110,12 @@ pub trait Disk: Send + Sync {
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
     /// Locks a file, creating it if necessary; `None` if another process holds it. [`io::ErrorKind::Unsupported`] without locks.
     fn lock(&self, path: &Path) -> io::Result<Option<Lock>>;
+    /// Locks a file that is there for this alone, for a run that is named by a line. The file is gone when the lock is dropped.
+    /// [`io::ErrorKind::Unsupported`] without locks. A disk of one process needs none.
+    fn hold(&self, path: &Path, holder: &str) -> io::Result<Held> {
+        let _ = (path, holder);
+        Ok(Held::Mine { lock: Box::new(()), before: None })
+    }
     /// Locks a folder, waiting some seconds for another holder; without a lock where there are none.
     fn lock_folder(&self, path: &Path) -> io::Result<Lock>;
 }

@@ -2,13 +2,13 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-use super::{Disk, Lock, Object, ObjectKind, Output};
+use super::{Disk, Held, Lock, Object, ObjectKind, Output};
 
 /// The machine's disk.
 #[derive(Clone, Copy, Debug, Default)]
@@ -126,6 +126,42 @@ fn rename_in_one_step(from: &Path, to: &Path, is_exchange: bool) -> io::Result<(
 fn rename_in_one_step(_: &Path, _: &Path, _: bool) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
+
+/// A file that is locked, and removed before the lock is given back.
+struct HeldFile {
+    file: File,
+    path: PathBuf,
+}
+
+impl Drop for HeldFile {
+    fn drop(&mut self) {
+        // Where an open file cannot be removed, it is empty: nobody was killed.
+        let _ = self.file.set_len(0);
+        if is_at(&self.file, &self.path) {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Whether an open file is the one at a path.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt as _;
+        let (own, there) = (file.metadata(), fs::symlink_metadata(path));
+        own.and_then(|own| Ok((own, there?)))
+            .is_ok_and(|(own, there)| (own.dev(), own.ino()) == (there.dev(), there.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
+    }
+}
+
+/// Most attempts to lock a file that others remove, and longest name of a holder, bytes.
+const ATTEMPTS: usize = 100;
+const LONGEST_HOLDER: u64 = 500;
 
 impl Disk for SystemDisk {
     fn look(&self, path: &Path) -> io::Result<Object> {
@@ -259,6 +295,37 @@ impl Disk for SystemDisk {
         }
     }
 
+    fn hold(&self, path: &Path, holder: &str) -> io::Result<Held> {
+        for _ in 0..ATTEMPTS {
+            let mut file =
+                OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let mut other = String::new();
+                    let _ = file.take(LONGEST_HOLDER).read_to_string(&mut other);
+                    return Ok(Held::Other(other.trim().to_owned()));
+                }
+                Err(TryLockError::Error(error)) if has_no_locks(&error) => {
+                    return Err(io::ErrorKind::Unsupported.into());
+                }
+                Err(TryLockError::Error(error)) => return Err(error),
+            }
+            // Its holder may have removed it in between.
+            if !is_at(&file, path) {
+                continue;
+            }
+            let mut before = String::new();
+            let _ = Read::by_ref(&mut file).take(LONGEST_HOLDER).read_to_string(&mut before);
+            file.set_len(0)?;
+            file.rewind()?;
+            file.write_all(holder.as_bytes())?;
+            let before = Some(before.trim().to_owned()).filter(|it| !it.is_empty());
+            return Ok(Held::Mine { lock: Box::new(HeldFile { file, path: path.to_owned() }), before });
+        }
+        Ok(Held::Other(String::new()))
+    }
+
     #[cfg(unix)]
     fn lock_folder(&self, path: &Path) -> io::Result<Lock> {
         let folder = File::open(path)?;
@@ -286,6 +353,23 @@ impl Disk for SystemDisk {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_lock_names_its_holder_and_is_taken_over_of_a_run_that_was_killed() {
+        let path = std::env::temp_dir().join(format!("poecal_lock_{}", std::process::id()));
+        let hold = |holder: &str| SystemDisk.hold(&path, holder).unwrap();
+        let Held::Mine { lock, before: None } = hold("first") else { panic!("held by another") };
+        assert!(matches!(hold("second"), Held::Other(name) if name == "first"));
+        drop(lock);
+        assert!(!path.exists());
+        // A killed run leaves its name behind.
+        fs::write(&path, "killed").unwrap();
+        let Held::Mine { lock, before } = hold("third") else { panic!("held by another") };
+        assert_eq!(before.as_deref(), Some("killed"));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "third");
+        drop(lock);
+        assert!(!path.exists());
+    }
 
     #[test]
     fn files_are_made_moved_and_removed() {

@@ -5,11 +5,14 @@ use std::fmt::Write as _;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use poecal_detect::{Detector, Found, Gray, Picture, Rejected, Spec, Turned, preview};
+use poecal_detect::{Detector, Found, Gray, Picture, Rejected, Spec, Turned, Undecodable, preview};
 use poecal_import::board_of_file;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_results::output::{Existing, FilePlace};
+use poecal_storage::csv_text::cell;
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::folder;
+use poecal_storage::limits::{self, Limit};
 use rayon::prelude::*;
 
 use crate::DONE;
@@ -18,8 +21,6 @@ use crate::console::Console;
 
 /// Endings of the names of pictures in folders.
 const ENDINGS: [&str; 3] = ["png", "jpg", "jpeg"];
-/// Largest file that is read as a picture, bytes.
-const LARGEST: u64 = 1 << 30;
 /// Pictures in which another board is looked for.
 const TRIED: usize = 3;
 /// Pictures that a sentence names at most.
@@ -44,18 +45,20 @@ pub(crate) fn detect(arguments: &Detect, console: &Console) -> Result<u8> {
     if let Some(board) = &of_file {
         console.remark(&board.said);
     }
-    let paths = pictures(&arguments.pictures)?;
+    let paths = pictures(&arguments.pictures, console)?;
     let board = of_file.as_ref().map(|_| Path::new(&arguments.board));
     let inputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).chain(board).collect();
     let place = arguments.place.reserve(&inputs, console)?;
     let names = names(&paths)?;
     let previews = previews(arguments, &names, (&inputs, console))?;
-    let detector = Detector::new(&spec);
+    let detector = Detector::new(&spec).with_most_dots(Limit::Dots.most_held());
+    // Pictures are read by other threads.
+    let limits = limits::here();
     let keeps = !previews.is_empty();
     let all: Vec<Seen> = paths
         .par_iter()
         .zip(&names)
-        .map(|(path, name)| seen(&detector, path, name, keeps))
+        .map(|(path, name)| limits::on(limits, || seen(&detector, path, name, keeps)))
         .collect::<Result<_>>()?;
     refuse_sizes(&all)?;
     warn(&all, console);
@@ -78,7 +81,7 @@ fn refused(error: &impl std::fmt::Display) -> Error {
 }
 
 /// The files that were named, and the pictures of folders in the order of their names.
-fn pictures(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
+fn pictures(named: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
     let disk = disk::here();
     let mut found = Vec::new();
     for path in named {
@@ -87,17 +90,13 @@ fn pictures(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
             found.push(path.clone());
             continue;
         }
-        let unread = |error: &std::io::Error| {
+        let unread = |error: std::io::Error| {
             Error::new(ErrorKind::File, format!("cannot be read ({error}), expected a folder of pictures"))
                 .in_file(path)
         };
-        let mut own: Vec<PathBuf> = disk
-            .names(path)
-            .map_err(|error| unread(&error))?
-            .into_iter()
-            .map(|name| path.join(name))
-            .filter(|path| is_picture(path))
-            .collect();
+        let (names, left) = folder::files(path, is_picture).map_err(unread)?;
+        left.iter().for_each(|other| console.warning(other));
+        let mut own: Vec<PathBuf> = names.into_iter().map(|name| path.join(name)).collect();
         if own.is_empty() {
             let message = "found no picture in this folder, expected files that end in .png, .jpg or .jpeg";
             return Err(Error::new(ErrorKind::File, message).in_file(path));
@@ -108,8 +107,8 @@ fn pictures(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-fn is_picture(path: &Path) -> bool {
-    let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
+fn is_picture(name: &str) -> bool {
+    let ending = Path::new(name).extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
     ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
 }
 
@@ -174,12 +173,19 @@ fn seen(detector: &Detector, path: &Path, name: &str, keeps: bool) -> Result<See
     let unread = |message: String| Error::new(ErrorKind::File, message).in_file(path);
     let mut bytes = Vec::new();
     let file = disk::here().open(path).map_err(|error| unread(format!("cannot be read: {error}")))?;
-    let read = file.take(LARGEST + 1).read_to_end(&mut bytes);
+    let read = file.take(Limit::Picture.most() + 1).read_to_end(&mut bytes);
     read.map_err(|error| unread(format!("cannot be read: {error}")))?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(unread("found more than 1 GiB, expected a picture".to_owned()));
+    if bytes.len() as u64 > Limit::Picture.most() {
+        return Err(unread(Limit::Picture.exceeded("one picture")));
     }
-    let Picture { gray, turned } = Picture::decode(&bytes, path).map_err(|error| refused(&error))?;
+    let decoded = Picture::decode_up_to(&bytes, path, Limit::Pixels.most());
+    let Picture { gray, turned } = decoded.map_err(|Undecodable { error, too_large }| match too_large {
+        Some([width, height]) => {
+            unread(Limit::Pixels.sentence(&format!("a picture of {width} x {height} pixels")))
+        }
+        None => refused(&error),
+    })?;
+    drop(bytes);
     let found = detector.detect(&gray);
     let size_px = [gray.width(), gray.height()];
     let gray = (keeps || found.is_err()).then_some(gray);
@@ -289,7 +295,7 @@ fn table(spec: &Spec, all: &[Seen]) -> String {
     );
     for one in all {
         let Ok(found) = &one.found else { continue };
-        let image = quoted(&one.name);
+        let image = cell(&one.name);
         for corner in &found.corners {
             // Writing to a String cannot fail.
             let _ = writeln!(
@@ -303,15 +309,6 @@ fn table(spec: &Spec, all: &[Seen]) -> String {
         }
     }
     text
-}
-
-/// A cell of a table.
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
-    } else {
-        name.to_owned()
-    }
 }
 
 /// What was found, and what comes next.

@@ -1,5 +1,7 @@
 //! Bodies that the messages of a topic say the poses of.
 
+use std::collections::HashMap;
+
 use super::super::bodies::moved_m;
 use super::super::maker::{Made, Value};
 use super::clock::{Clock, Stamp, seconds};
@@ -28,12 +30,16 @@ pub(crate) struct Body {
 pub(crate) struct Bodies {
     kind: Kind,
     pub(crate) all: Vec<Body>,
+    /// Places of bodies by their frames.
+    places: HashMap<(String, String), usize>,
+    /// Number of poses of all.
+    pub(crate) held: usize,
 }
 
 impl Bodies {
     /// None, of messages of a kind.
     pub(crate) fn new(kind: Kind) -> Self {
-        Bodies { kind, all: Vec::new() }
+        Bodies { kind, all: Vec::new(), places: HashMap::new(), held: 0 }
     }
 
     /// Whether these are transforms of any frames, such as the robot's own.
@@ -48,12 +54,13 @@ impl Bodies {
 
     /// Takes a pose.
     pub(crate) fn take(&mut self, pose: &Pose<'_>, log_ns: u64) {
-        let is_it = |it: &Body| it.child == pose.child && it.parent == pose.parent;
-        let at = self.all.iter().position(is_it).unwrap_or_else(|| {
-            let (parent, child) = (pose.parent.to_owned(), pose.child.to_owned());
+        let frames = (pose.parent.to_owned(), pose.child.to_owned());
+        let at = *self.places.entry(frames).or_insert_with_key(|(parent, child)| {
+            let (parent, child) = (parent.clone(), child.clone());
             self.all.push(Body { parent, child, seen: Vec::new() });
             self.all.len() - 1
         });
+        self.held += 1;
         if let Some(body) = self.all.get_mut(at) {
             body.take(pose, log_ns);
         }

@@ -3,6 +3,9 @@
 /// Bytes before the first value, from behind which values are aligned.
 const HEAD: usize = 4;
 
+/// Longest name, bytes: those of frames are held.
+pub(crate) const LONGEST_NAME: usize = 4096;
+
 /// A message, read from its beginning on.
 #[derive(Clone, Debug)]
 pub(crate) struct Cdr<'m> {
@@ -75,11 +78,14 @@ impl<'m> Cdr<'m> {
         (0..self.count(8)?).map(|_| self.f64()).collect()
     }
 
-    /// A text, without the zero at its end.
+    /// A text, without the zero at its end: the name of a frame or joint.
     pub(crate) fn text(&mut self) -> Result<&'m str, String> {
         let size = self.u32()? as usize;
         let own = self.at.checked_add(size).and_then(|end| self.bytes.get(self.at..end));
         let own = own.ok_or_else(|| self.end())?;
+        if size > LONGEST_NAME {
+            return Err(format!("a name of {size} bytes"));
+        }
         self.at += size;
         let text = own.strip_suffix(&[0]).unwrap_or(own);
         std::str::from_utf8(text).map_err(|_| "a text that is no UTF-8".to_owned())

@@ -2,8 +2,10 @@
 
 use std::io::{self, BufReader, Read};
 
+use super::cdr::LONGEST_NAME;
 use super::topics::Topics;
-use super::unpack::{LARGEST, unpack};
+use super::unpack::unpack;
+use poecal_storage::limits::{Limit, amount};
 
 /// Bytes that files begin with.
 pub(crate) const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
@@ -36,8 +38,55 @@ const CUT: &str = "it is cut off";
 pub(crate) struct Damage {
     /// Where it ends before its end, or from where on nothing can be read, and why.
     pub(crate) end: Option<(u64, String)>,
-    /// Chunks that were left out: where each begins, why, and the times of its messages.
+    /// The first chunks that were left out: where each begins, why, and the times of its messages.
     pub(crate) chunks: Vec<(u64, String, (u64, u64))>,
+    /// Number of the others.
+    pub(crate) others: usize,
+}
+
+/// Most damaged places that are named.
+const NAMED: usize = 5;
+
+impl Damage {
+    /// Something is left out.
+    fn add(&mut self, at: u64, why: String, times: (u64, u64)) {
+        if self.chunks.len() < NAMED {
+            self.chunks.push((at, why, times));
+        } else {
+            self.others += 1;
+        }
+    }
+}
+
+/// Bytes that the records of a file have after they are unpacked, as their heads state: nothing is unpacked, and a chunk is held to it later.
+pub(crate) fn stated_size(input: &mut impl Read) -> io::Result<u64> {
+    let mut input = BufReader::with_capacity(STEP, input);
+    let mut data = Vec::new();
+    let mut sum = 0_u64;
+    if !fill(&mut input, MAGIC.len(), &mut data)? || data != MAGIC {
+        return Ok(0);
+    }
+    while fill(&mut input, HEAD, &mut data)? {
+        let mut head = Fields(&data);
+        let (Some(opcode), Some(mut rest)) = (head.u8(), head.u64()) else { break };
+        if matches!(opcode, op::DATA_END | op::FOOTER) {
+            break;
+        }
+        let mut unpacked = rest;
+        // Two times, then the size.
+        if opcode == op::CHUNK && rest >= 24 {
+            if !fill(&mut input, 24, &mut data)? {
+                break;
+            }
+            rest -= 24;
+            unpacked = Fields(data.get(16..).unwrap_or_default()).u64().unwrap_or_default();
+        }
+        sum = sum.saturating_add(unpacked);
+        if io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
+            break;
+        }
+    }
+    Ok(sum)
 }
 
 /// Reads a file up to the end of its messages, or as far as that goes.
@@ -50,7 +99,7 @@ pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
         damage.end = Some((at, if is_whole { "Bad magic number" } else { CUT }.to_owned()));
         return Ok(damage);
     }
-    loop {
+    while topics.refused.is_none() {
         let opcode = match next(&mut input, &mut data)? {
             Ok(opcode) => opcode,
             Err(why) => {
@@ -63,17 +112,18 @@ pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
             // Chunks are unpacked here: one that is damaged is left out as a whole.
             op::CHUNK => {
                 if let Err((why, times)) = chunk(&data, &mut unpacked, topics) {
-                    damage.chunks.push((at, why, times));
+                    damage.add(at, why, times);
                 }
             }
             _ => {
                 if let Err(why) = record(opcode, &data, topics) {
-                    damage.chunks.push((at, why, (0, 0)));
+                    damage.add(at, why, (0, 0));
                 }
             }
         }
         at = at.saturating_add((HEAD + data.len()) as u64);
     }
+    Ok(damage)
 }
 
 /// Reads the next record: its kind, and into `data` what it holds. The error within says why there is none.
@@ -83,8 +133,8 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
     }
     let mut head = Fields(data);
     let (Some(opcode), Some(stated)) = (head.u8(), head.u64()) else { return Ok(Err(CUT.to_owned())) };
-    let Some(size) = usize::try_from(stated).ok().filter(|it| *it <= LARGEST) else {
-        return Ok(Err(format!("record with opcode {opcode:02x} length exceeds limit: `{stated}`")));
+    let Some(size) = usize::try_from(stated).ok().filter(|_| stated <= Limit::Chunk.most()) else {
+        return Ok(Err(too_large("a record", stated)));
     };
     if !fill(input, size, data)? {
         return Ok(Err(CUT.to_owned()));
@@ -96,6 +146,11 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
         _ => 0,
     };
     Ok(if size < least { Err("Record parse failed".to_owned()) } else { Ok(opcode) })
+}
+
+/// What is found where a record or chunk is beyond the limit.
+fn too_large(what: &str, bytes: u64) -> String {
+    Limit::Chunk.sentence(&format!("{what} of {}", amount(bytes, Limit::Chunk.row().unit)))
 }
 
 /// Reads so many bytes, and takes memory for no more than there are; false if there are fewer.
@@ -119,7 +174,10 @@ fn chunk(data: &[u8], unpacked: &mut Vec<u8>, topics: &mut Topics<'_>) -> Result
     let packed = fields.u64().and_then(|size| fields.bytes(usize::try_from(size).ok()?)).ok_or_else(short)?;
     let mut records = packed;
     if !how.is_empty() {
-        unpack(packed, how, unpacked).map_err(with_times)?;
+        if size > Limit::Chunk.most() {
+            return Err(with_times(too_large("a chunk", size)));
+        }
+        unpack(packed, how, size, unpacked).map_err(with_times)?;
         records = unpacked;
     }
     if records.len() as u64 != size {
@@ -129,7 +187,7 @@ fn chunk(data: &[u8], unpacked: &mut Vec<u8>, topics: &mut Topics<'_>) -> Result
         return Err(with_times("another checksum than stated".to_owned()));
     }
     let mut rest = Fields(records);
-    while !rest.0.is_empty() {
+    while !rest.0.is_empty() && topics.refused.is_none() {
         let (Some(opcode), Some(size)) = (rest.u8(), rest.u64()) else { return Err(short()) };
         let own = usize::try_from(size).ok().and_then(|size| rest.bytes(size)).ok_or_else(short)?;
         record(opcode, own, topics).map_err(with_times)?;
@@ -142,10 +200,10 @@ fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String
     let mut fields = Fields(data);
     let mut take = || -> Option<()> {
         match opcode {
-            op::SCHEMA => topics.schema(fields.u16()?, fields.text()?),
+            op::SCHEMA => topics.schema(fields.u16()?, fields.name()?),
             op::CHANNEL => {
                 let (id, schema) = (fields.u16()?, fields.u16()?);
-                topics.channel(id, schema, fields.text()?, fields.text()?);
+                topics.channel(id, schema, fields.name()?, fields.name()?);
             }
             op::MESSAGE => {
                 let (channel, _, log_ns, _) = (fields.u16()?, fields.u32()?, fields.u64()?, fields.u64()?);
@@ -189,6 +247,11 @@ impl<'b> Fields<'b> {
 
     fn u64(&mut self) -> Option<u64> {
         self.take().map(u64::from_le_bytes)
+    }
+
+    /// A text that is held.
+    fn name(&mut self) -> Option<&'b str> {
+        self.text().filter(|it| it.len() <= LONGEST_NAME)
     }
 
     fn text(&mut self) -> Option<&'b str> {

@@ -63,6 +63,11 @@ impl Readings {
         }
     }
 
+    /// Number of readings that are held.
+    pub(crate) fn held(&self) -> usize {
+        self.rows.len()
+    }
+
     /// Whether some message has all joints.
     pub(crate) fn is_whole(&self) -> bool {
         !self.rows.is_empty()

@@ -24,25 +24,28 @@ use super::{BAG, Opening};
 use crate::GivenBag;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::hashes::Hashing;
+use poecal_storage::limits::{Limit, amount};
 use poecal_storage::source;
 
 pub(crate) use self::parts::is_bag;
 
 const EXPECTED: &str = "a ROS 2 bag (MCAP)";
-/// Largest file, bytes.
-const LARGEST: u64 = 1 << 40;
-/// Most damaged places that are named.
-const DAMAGE_NAMED: usize = 5;
 
 /// Reads a bag.
 pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
-    let parts = parts::of(path)?;
-    let mut warned = Vec::new();
+    let (parts, left) = parts::of(path)?;
+    let mut warned: Vec<String> = left.iter().map(ToString::to_string).collect();
     let mut hashing = Hashing::new(Box::new(io::empty()) as Box<dyn io::Read>);
+    let mut unpacked = 0_u64;
     for part in &parts {
-        let (input, head) = source::open_any(part, EXPECTED, LARGEST)?;
+        let (mut input, _) = source::open_any(part, EXPECTED, Limit::Bag)?;
+        let stated = container::stated_size(&mut input);
+        let stated = stated.map_err(|error| source::unreadable(part, &error, EXPECTED))?;
+        unpacked = unpacked.saturating_add(stated);
+        refuse_large(unpacked).map_err(|error| error.in_file(path))?;
+        let (input, head) = source::open_any(part, EXPECTED, Limit::Bag)?;
         if !head.starts_with(container::MAGIC) {
             let message = format!("found a file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));
@@ -51,11 +54,15 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
         topics.begin_file();
         let mut through = || {
             let damage = container::read(&mut hashing, &mut topics)?;
+            if topics.refused.is_some() {
+                return Ok(damage);
+            }
             // The checksum is of all bytes.
             io::copy(&mut hashing, &mut io::sink())?;
             Ok(damage)
         };
         let damage = through().map_err(|error| source::unreadable(part, &error, EXPECTED))?;
+        refuse_many(&topics).map_err(|error| error.in_file(part))?;
         let name = if parts.len() > 1 { part.file_name().map(PathBuf::from) } else { None };
         warned.extend(warnings(&damage, name.as_deref(), &topics));
     }
@@ -70,10 +77,24 @@ pub(crate) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Reco
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
     topics.begin_file();
-    let damage = container::read(&mut given.mcap.as_ref(), &mut topics)
-        .map_err(|error| source::unreadable(&given.path, &error, EXPECTED))?;
+    let unreadable = |error: io::Error| source::unreadable(&given.path, &error, EXPECTED);
+    let stated = container::stated_size(&mut given.mcap.as_ref()).map_err(unreadable)?;
+    refuse_large(stated).map_err(|error| error.in_file(&given.path))?;
+    let damage = container::read(&mut given.mcap.as_ref(), &mut topics).map_err(unreadable)?;
+    refuse_many(&topics).map_err(|error| error.in_file(&given.path))?;
     let warned = warnings(&damage, None, &topics);
     Ok(recording(&topics, opening, &given.sha256, warned))
+}
+
+/// Refuses a bag of more bytes than there may be after it is unpacked.
+fn refuse_large(unpacked: u64) -> Result<()> {
+    let size = amount(unpacked, Limit::Bag.row().unit);
+    Limit::Bag.refuse(unpacked, format_args!("a bag that states {size} unpacked"))
+}
+
+/// Refuses a bag with more topics, frames or poses than there may be.
+fn refuse_many(topics: &Topics<'_>) -> Result<()> {
+    topics.refused.as_ref().map_or(Ok(()), |sentence| Err(ErrorKind::Measurement.error(sentence.clone())))
 }
 
 /// The tables of the topics.
@@ -117,7 +138,7 @@ fn warnings(damage: &Damage, part: Option<&Path>, topics: &Topics<'_>) -> Vec<St
     let name = part.map_or(String::new(), |it| format!("`{}`: ", it.display()));
     let mut found = Vec::new();
     let (first, last) = topics.span_ns.unwrap_or_default();
-    for (at, why, (begin, end)) in damage.chunks.iter().take(DAMAGE_NAMED) {
+    for (at, why, (begin, end)) in &damage.chunks {
         let is_known = first <= *begin && begin <= end && *end <= last;
         let times = if is_known {
             let (begin, end) = (topics.since_first_s(*begin), topics.since_first_s(*end));
@@ -127,8 +148,8 @@ fn warnings(damage: &Damage, part: Option<&Path>, topics: &Topics<'_>) -> Vec<St
         };
         found.push(format!("{name}left out what is damaged from byte {at} on{times}: found {why}"));
     }
-    if let Some(more) = damage.chunks.len().checked_sub(DAMAGE_NAMED).filter(|it| *it > 0) {
-        found.push(format!("{name}left out {more} more damaged places"));
+    if damage.others > 0 {
+        found.push(format!("{name}left out {} more damaged places", damage.others));
     }
     if let Some((at, why)) = &damage.end {
         found.push(format!(

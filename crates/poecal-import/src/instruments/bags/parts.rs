@@ -9,6 +9,7 @@ use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::{self, is_file};
+use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::source;
 
 /// Ending of the names of files.
@@ -17,7 +18,7 @@ const ENDING: &str = "mcap";
 /// Whether a path is a bag, by the first bytes of the file, or by the names in the folder.
 pub(crate) fn is_bag(path: &Path) -> bool {
     if is_folder(path) {
-        return names(path).is_ok_and(|it| !it.is_empty());
+        return names(path).is_ok_and(|it| !it.0.is_empty());
     }
     // A pipe is read once.
     if source::is_standard_input(path) || !is_file(path) {
@@ -28,22 +29,21 @@ pub(crate) fn is_bag(path: &Path) -> bool {
     read.is_ok() && head == MAGIC
 }
 
-/// Names of files of a folder that are parts of a bag.
-fn names(folder: &Path) -> std::io::Result<Vec<String>> {
-    let names = disk::here().names(folder)?;
-    let is_part = |name: &String| {
+/// Names of files of a folder that are parts of a bag, and what has such a name and is none.
+fn names(folder: &Path) -> std::io::Result<(Vec<String>, Vec<LeftOut>)> {
+    let is_part = |name: &str| {
         let ending = Path::new(name).extension();
-        ending.is_some_and(|it| it.eq_ignore_ascii_case(ENDING)) && is_file(&folder.join(name))
+        ending.is_some_and(|it| it.eq_ignore_ascii_case(ENDING))
     };
-    Ok(names.into_iter().filter_map(|it| it.into_string().ok()).filter(is_part).collect())
+    folder::files(folder, is_part)
 }
 
-/// The files of a bag by their numbers.
-pub(crate) fn of(path: &Path) -> Result<Vec<PathBuf>> {
+/// The files of a bag by their numbers, and what is left out of its folder.
+pub(crate) fn of(path: &Path) -> Result<(Vec<PathBuf>, Vec<LeftOut>)> {
     if !is_folder(path) {
-        return Ok(vec![path.to_path_buf()]);
+        return Ok((vec![path.to_path_buf()], Vec::new()));
     }
-    let mut names = names(path).map_err(|error| source::unreadable(path, &error, EXPECTED))?;
+    let (mut names, left) = names(path).map_err(|error| source::unreadable(path, &error, EXPECTED))?;
     // Names without their numbers, which are the same for all parts of a bag.
     let stem = |name: &String| {
         let stem = Path::new(name).file_stem().map(|it| it.to_string_lossy().into_owned());
@@ -57,5 +57,5 @@ pub(crate) fn of(path: &Path) -> Result<Vec<PathBuf>> {
         return Err(ErrorKind::Measurement.error(message).in_file(path));
     }
     names.sort_by_cached_key(|name| (number_at_end(name), name.clone()));
-    Ok(names.into_iter().map(|name| path.join(name)).collect())
+    Ok((names.into_iter().map(|name| path.join(name)).collect(), left))
 }

@@ -13,6 +13,7 @@ use crate::{MeasurementFile, ReadOptions, read};
 use poecal_arm::lie::rotation;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::elbow;
+use poecal_storage::limits::{self, Limit};
 
 const JOINTS: &str = "sensor_msgs/msg/JointState";
 const POSE: &str = "geometry_msgs/msg/PoseStamped";
@@ -391,7 +392,10 @@ fn what_ends_a_file_is_said() {
         ([&begun[..], &header[..12]].concat(), Some((behind, cut))),
         (
             [&begun[..], &large].concat(),
-            Some((behind, "record with opcode 80 length exceeds limit: `1099511627776`")),
+            Some((
+                behind,
+                "found a record of 1024 GiB, expected at most 128 MiB (limit `chunk`): write the bag again with smaller chunks, or allow more by --limit chunk=N",
+            )),
         ),
         ([&begun[..], &record(op::DATA_END, &[&[0; 3]])].concat(), Some((behind, "Record parse failed"))),
         ([&begun[..], &record(op::FOOTER, &[&[0; 19]])].concat(), Some((behind, "Record parse failed"))),
@@ -413,17 +417,68 @@ fn chunks_are_unpacked_and_damaged_ones_are_errors() {
     let lz4 = lz4.finish().unwrap();
     let mut into = Vec::new();
     // Two frames are one after the other.
-    unpack(&[zstd.clone(), zstd.clone()].concat(), "zstd", &mut into).unwrap();
+    unpack(&[zstd.clone(), zstd.clone()].concat(), "zstd", 2 * bytes.len() as u64, &mut into).unwrap();
     assert_eq!(into, [bytes.clone(), bytes.clone()].concat());
     for (packed, how) in [(&zstd, "zstd"), (&lz4, "lz4")] {
-        unpack(packed, how, &mut into).unwrap();
+        unpack(packed, how, bytes.len() as u64, &mut into).unwrap();
         assert_eq!(into, bytes);
         for at in (0..packed.len()).step_by(packed.len() / 200 + 1) {
-            let _ = unpack(&packed[..at], how, &mut into);
+            let _ = unpack(&packed[..at], how, 400_000, &mut into);
             let mut flipped = packed.clone();
             flipped[at] ^= 0x41;
-            let _ = unpack(&flipped, how, &mut into);
+            let _ = unpack(&flipped, how, 400_000, &mut into);
         }
     }
-    assert!(unpack(&zstd, "brotli", &mut into).unwrap_err().contains("the compression `brotli`"));
+    assert!(unpack(&zstd, "brotli", 400_000, &mut into).unwrap_err().contains("the compression `brotli`"));
+}
+
+#[test]
+fn a_bag_beyond_a_limit_is_refused_by_its_name() {
+    let (robot, folder) = (elbow(), Folder::new("limits"));
+    let path = folder.write("a.mcap", bag(&session(&robot)));
+    for (limit, most, part) in [
+        (Limit::Bag, 1000, "it is larger than 1,000 bytes"),
+        (Limit::Topics, 1, "found more than 1 topics in a bag"),
+        (Limit::Poses, 10, "found more than 10 poses in the messages of a bag"),
+    ] {
+        let limits = limits::here().with(limit, most);
+        let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
+        assert!(
+            error.contains(part) && error.contains(&format!("--limit {}=N", limit.row().name)),
+            "{error}"
+        );
+    }
+    // The parts of a bag count together.
+    let whole = bag(&session(&robot));
+    let parts = folder.0.join("parts");
+    (0..2).for_each(|at| drop(folder.write(&format!("parts/b_{at}.mcap"), &whole)));
+    let limits = limits::here().with(Limit::Bag, whole.len() as u64);
+    let error = limits::on(limits, || read_all(&[&parts], &ReadOptions::default())).unwrap_err();
+    assert!(error.contains("found a bag that states") && error.contains("--limit bag=N"), "{error}");
+    // A chunk beyond it is left out as one that is damaged is.
+    let limits = limits::here().with(Limit::Chunk, 100);
+    let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
+    assert!(error.contains("(limit `chunk`)"), "{error}");
+}
+
+/// Topics and frames are found by their names at once: so many took minutes.
+#[test]
+fn very_many_topics_and_frames_take_no_time() {
+    let mut topics = Topics::new(&[]);
+    let start = std::time::Instant::now();
+    for at in 0..60_000_u32 {
+        topics.channel((at % 60_000) as u16, 0, &format!("/topic{at}"), "cdr");
+    }
+    assert_eq!((topics.all.len(), topics.refused.clone()), (60_000, None));
+    let frames: Vec<String> = (0..60_000).map(|at| format!("frame{at}")).collect();
+    topics.schema(1, FRAMES);
+    topics.channel(1, 1, "/tf", "cdr");
+    for part in frames.chunks(1000) {
+        let pose = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        let all: Vec<(&str, [f64; 7])> = part.iter().map(|name| (name.as_str(), pose)).collect();
+        topics.message(1, 5, &Cdr::transforms(5, &all));
+    }
+    // A search through all of them for each would take a minute.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+    assert_eq!(topics.refused, None);
 }

@@ -6,6 +6,7 @@ use super::bodies::Bodies;
 use super::joints::Readings;
 use super::messages::{Kind, joint_state, poses};
 use poecal_numerics::error::shown;
+use poecal_storage::limits::Limit;
 
 /// Most topics in a list.
 const LISTED: usize = 30;
@@ -17,6 +18,22 @@ pub(crate) enum Content {
     Bodies(Bodies),
     /// Messages of another type.
     Other,
+}
+
+impl Content {
+    /// Number of readings or poses that are held.
+    fn held(&self) -> usize {
+        match self {
+            Content::Joints(readings) => readings.held(),
+            Content::Bodies(bodies) => bodies.held,
+            Content::Other => 0,
+        }
+    }
+
+    /// Number of bodies.
+    fn frames(&self) -> usize {
+        if let Content::Bodies(bodies) = self { bodies.all.len() } else { 0 }
+    }
 }
 
 /// A topic.
@@ -94,8 +111,14 @@ pub(crate) struct Topics<'a> {
     /// Topics of the channels of the file that is read.
     channels: HashMap<u16, usize>,
     pub(crate) all: Vec<Topic>,
+    /// Places of topics by name and title.
+    places: HashMap<(String, String), usize>,
+    /// The limit that is exceeded, in a sentence: nothing is taken from then on.
+    pub(crate) refused: Option<String>,
     /// First and last time in the log, nanoseconds.
     pub(crate) span_ns: Option<(u64, u64)>,
+    /// Number of readings and poses that are held.
+    held: usize,
     /// Number of messages of channels that are nowhere described.
     pub(crate) unknown: u64,
 }
@@ -108,7 +131,10 @@ impl<'a> Topics<'a> {
             schemas: HashMap::new(),
             channels: HashMap::new(),
             all: Vec::new(),
+            places: HashMap::new(),
+            refused: None,
             span_ns: None,
+            held: 0,
             unknown: 0,
         }
     }
@@ -129,8 +155,14 @@ impl<'a> Topics<'a> {
         let of = self.schemas.get(&schema).map_or("no type", String::as_str);
         let is_cdr = encoding == "cdr";
         let title = if is_cdr { of.to_owned() } else { format!("{of} in {encoding}") };
-        let known = self.all.iter().position(|it| it.name == name && it.title == title);
+        let key = (name.to_owned(), title.clone());
+        let known = self.places.get(&key).copied();
+        if known.is_none() && self.all.len() >= Limit::Topics.most_held() {
+            self.refused = Some(Limit::Topics.exceeded("a bag"));
+            return;
+        }
         let at = known.unwrap_or_else(|| {
+            self.places.insert(key, self.all.len());
             let kind = Kind::of(of).filter(|_| is_cdr);
             let content = match kind {
                 Some(Kind::Joints) => Content::Joints(Readings::new(self.joints)),
@@ -156,7 +188,16 @@ impl<'a> Topics<'a> {
         let (first, last) = self.span_ns.unwrap_or((log_ns, log_ns));
         self.span_ns = Some((first.min(log_ns), last.max(log_ns)));
         match self.channels.get(&channel).and_then(|at| self.all.get_mut(*at)) {
-            Some(topic) => topic.take(log_ns, message),
+            Some(topic) => {
+                let before = topic.content.held();
+                topic.take(log_ns, message);
+                self.held += topic.content.held() - before;
+                if topic.content.frames() > Limit::Topics.most_held() {
+                    self.refused = Some(Limit::Topics.exceeded("one topic"));
+                } else if self.held > Limit::Poses.most_held() {
+                    self.refused = Some(Limit::Poses.exceeded("the messages of a bag"));
+                }
+            }
             None => self.unknown += 1,
         }
     }

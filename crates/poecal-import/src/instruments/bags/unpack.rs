@@ -5,20 +5,17 @@ use std::io::Read;
 use lz4_flex::frame::FrameDecoder as Lz4;
 use ruzstd::decoding::StreamingDecoder as Zstd;
 
-/// Largest record and largest chunk after it is unpacked, bytes.
-pub(crate) const LARGEST: usize = 512 << 20;
-
-/// Puts the bytes of a chunk that is packed in this way into `into`; an error says what was found.
-pub(crate) fn unpack(packed: &[u8], how: &str, into: &mut Vec<u8>) -> Result<(), String> {
+/// Puts the bytes of a chunk that is packed in this way into `into`, up to one beyond the size that it states; an error says what was found.
+pub(crate) fn unpack(packed: &[u8], how: &str, stated: u64, into: &mut Vec<u8>) -> Result<(), String> {
     into.clear();
-    let most = LARGEST as u64 + 1;
+    let most = stated.saturating_add(1);
     let read = match how {
         "lz4" => Lz4::new(packed).take(most).read_to_end(into).map_err(|error| error.to_string()),
         "zstd" => frames(packed, most, into),
         other => Err(format!("the compression `{other}`, expected zstd, lz4 or none")),
     };
-    if into.len() > LARGEST {
-        return Err(format!("more than {} MiB", LARGEST >> 20));
+    if into.len() as u64 > stated {
+        return Err(format!("more than {stated} bytes, expected as many"));
     }
     read.map(|_| ())
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::super::cells::Separator;
-use super::super::column_names::{column_name, column_names, some_columns, three_columns};
+use super::super::column_names::{column_name, column_names, number_of_column, some_columns, three_columns};
 use super::super::column_spec::ColumnSpec;
 use super::super::mapping_values::{
     angle_unit, decimal_sign, length_unit, orientation_form, separator, third_axis,
@@ -19,6 +19,7 @@ use poecal_model::robot::ThirdAxis;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
+use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
 /// A mapping of a file's columns to ours, as TOML (docs/file-formats.md, "Mapping file").
@@ -139,7 +140,7 @@ impl ColumnMap {
     /// [`ErrorKind::File`] if it cannot be read, else as [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        ColumnMap::parse(&source_text::read(path, "a column mapping (TOML)")?, path)
+        ColumnMap::parse(&source_text::read_up_to(path, "a column mapping (TOML)", Limit::Settings)?, path)
     }
 
     /// A mapping from its TOML text; messages call it `path`.
@@ -215,6 +216,24 @@ impl ColumnMap {
             || self.skip_lines > 0
             || self.id.is_some()
             || self.target.is_some()
+    }
+
+    /// Whether it names columns of joints.
+    pub(crate) fn names_joints(&self) -> bool {
+        self.joints.values().any(|spec| spec.column.is_some() || spec.columns.is_some())
+    }
+
+    /// The largest number of a column, where it names the columns of what was measured by their numbers alone.
+    pub(crate) fn measured_numbers(&self) -> Option<usize> {
+        let targets = self.targets.iter().map(|it| (Some(&it.position), it.orientation.as_ref()));
+        let lists = std::iter::once((self.position.as_ref(), self.orientation.as_ref())).chain(targets);
+        let names = lists.flat_map(|(position, orientation)| {
+            let position = position.and_then(|it| it.columns.as_ref()).map(|it| it.as_slice());
+            let orientation = orientation.map(|it| it.columns.as_slice());
+            [position, orientation].into_iter().flatten().flatten()
+        });
+        let numbers: Option<Vec<usize>> = names.map(|name| number_of_column(name)).collect();
+        numbers?.into_iter().max()
     }
 
     fn check(&self) -> Result<()> {

@@ -1,18 +1,27 @@
 //! Workbooks of spreadsheets (.xlsx, .xlsm, .xlsb, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
+//!
+//! The sizes of an archive are bounded before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read here
+//! (`old.rs`, from their container, `container.rs`), since no other reader bounds them.
+
+mod archive;
+mod cells;
+mod container;
+mod old;
 
 use std::io::Cursor;
 
-use calamine::{Data, Range, Reader as _, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Range, Reader as _, open_workbook_auto_from_rs};
 
+use self::archive::Parts;
+use self::cells::{Book, Left};
+use self::old::Sheet as OldSheet;
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
+use super::workbook_cells::{no_number, refuse_uncomputed};
 use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
 
-/// Largest workbook, bytes, and largest size of its parts unpacked.
-pub(crate) const LARGEST: u64 = 256 << 20;
-const LARGEST_UNPACKED: u64 = 1 << 30;
 /// Rows in which the header is sought.
 const FIRST: usize = 60;
 /// Fewest columns of a table, and fewest rows of numbers.
@@ -33,34 +42,56 @@ struct Found {
     columns: usize,
 }
 
+/// A workbook whose sheets are read one by one.
+enum Workbook<'b> {
+    Archive(Box<Book<'b>>, Left),
+    Old(Vec<OldSheet>),
+}
+
+impl<'b> Workbook<'b> {
+    fn open(bytes: &'b [u8]) -> Result<Self, String> {
+        if bytes.starts_with(container::MAGIC) {
+            return old::sheets(bytes).map(Workbook::Old);
+        }
+        let parts = Parts::of(bytes)?;
+        let book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| {
+            "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
+             save the table as `CSV UTF-8`"
+        })?;
+        parts.refuse_sheets(book.sheet_names().len())?;
+        Ok(Workbook::Archive(Box::new(book), Left::of_workbook()))
+    }
+
+    fn names(&self) -> Vec<String> {
+        match self {
+            Workbook::Archive(book, _) => book.sheet_names(),
+            Workbook::Old(sheets) => sheets.iter().map(|it| it.0.clone()).collect(),
+        }
+    }
+
+    /// The cells of a sheet, once.
+    fn range(&mut self, name: &str) -> Result<Range<Data>, String> {
+        match self {
+            Workbook::Archive(book, left) => cells::range(book, name, left),
+            Workbook::Old(sheets) => {
+                let own = sheets.iter_mut().find(|it| it.0 == name);
+                Ok(own.map(|it| std::mem::take(&mut it.1)).unwrap_or_default())
+            }
+        }
+    }
+}
+
 /// The table of a workbook.
-pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refused> {
-    if bytes.len() as u64 > LARGEST {
-        return Refused::whole(format!(
-            "found a workbook of more than {} MiB, expected less: write its table as CSV",
-            LARGEST >> 20
-        ));
-    }
-    if unpacked(&bytes).is_some_and(|it| it > LARGEST_UNPACKED) {
-        return Refused::whole(format!(
-            "found an archive of more than {} MiB unpacked, expected a workbook of less: write its table as CSV",
-            LARGEST_UNPACKED >> 20
-        ));
-    }
-    let Ok(mut book) = open_workbook_auto_from_rs(Cursor::new(bytes)) else {
-        return Refused::whole(
-            "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: save the table as \
-             `CSV UTF-8`",
-        );
-    };
-    let names = book.sheet_names();
+pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused> {
+    let mut book = Workbook::open(bytes).or_else(Refused::whole)?;
+    let names = book.names();
     if let Some(wanted) = &opening.options.sheet {
         let Some(name) = names.iter().find(|it| *it == wanted) else {
             return Refused::whole(format!("found no sheet `{wanted}`, expected one of {}", quoted(&names)));
         };
-        let range = range(&mut book, name)?;
+        let range = book.range(name).or_else(Refused::whole)?;
         return match found(&range) {
-            Some(table) => made(&range, &table, name),
+            Some(table) => made(&mut book, &range, &table, name),
             None => Refused::whole(format!(
                 "found no table in sheet `{name}`, expected a row that names the columns and rows of numbers below it"
             )),
@@ -68,13 +99,13 @@ pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
     }
     let mut tables = Vec::new();
     for name in &names {
-        let range = range(&mut book, name)?;
+        let range = book.range(name).or_else(Refused::whole)?;
         if let Some(table) = found(&range) {
             tables.push((name.clone(), range, table));
         }
     }
     match tables.as_slice() {
-        [(name, range, table)] => made(range, table, name),
+        [(name, range, table)] => made(&mut book, range, table, name),
         [] => Refused::whole(format!(
             "found no table in {}, expected a sheet with a row that names the columns and rows of numbers below it",
             if names.len() == 1 {
@@ -91,14 +122,6 @@ pub(crate) fn table(bytes: Vec<u8>, opening: &Opening<'_>) -> Result<Made, Refus
             ))
         }
     }
-}
-
-fn range(book: &mut Sheets<Cursor<Vec<u8>>>, name: &str) -> Result<Range<Data>, Refused> {
-    book.worksheet_range(name).or_else(|error| {
-        Refused::whole(format!(
-            "the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again"
-        ))
-    })
 }
 
 /// A number of a cell.
@@ -156,7 +179,12 @@ fn text(cell: &Data) -> String {
     if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
-fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused> {
+fn made(
+    book: &mut Sheets<Cursor<Vec<u8>>>,
+    range: &Range<Data>,
+    table: &Found,
+    name: &str,
+) -> Result<Made, Refused> {
     let (first_row, first_column) = range.start().unwrap_or_default();
     let line = |at: usize| first_row as usize + at + 1;
     let sheet = Sheet { name: name.to_owned(), first_column: first_column as usize };
@@ -166,6 +194,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         (0..table.columns).map(|column| row(at).get(column).map(text).unwrap_or_default()).collect()
     };
     let header = texts(table.header);
+    refuse_uncomputed(book, range, &sheet, (&table.rows, &header))?;
     let mut made = Made::new(line(table.header), header.iter().map(String::as_str));
     if let Some(units) = table.units {
         let units_of = texts(units);
@@ -182,7 +211,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
         .collect();
     let mut stored = Vec::new();
     for &at in &table.rows {
-        let cells = cells_of_row(row(at), &numeric, (&sheet, line(at)), &mut stored)?;
+        let cells = cells_of_row(row(at), (&numeric, &header), (&sheet, line(at)), &mut stored)?;
         let values = cells.iter().map(|(text, value)| match value {
             Some(value) => Value::Number(*value),
             None if text.is_empty() => Value::Empty,
@@ -204,7 +233,7 @@ fn made(range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused>
 /// The cells of a row, as texts or numbers; numbers that are stored as text in a column of numbers are told.
 fn cells_of_row(
     row: &[Data],
-    numeric: &[bool],
+    (numeric, header): (&[bool], &[String]),
     (sheet, line): (&Sheet, usize),
     stored: &mut Vec<String>,
 ) -> Result<Vec<(String, Option<f64>)>, Refused> {
@@ -212,6 +241,10 @@ fn cells_of_row(
     for (column, is_numeric) in numeric.iter().enumerate() {
         let cell = row.get(column).unwrap_or(&Data::Empty);
         let is_text = matches!(cell, Data::String(_));
+        if let Some(shown) = no_number(cell, header.get(column).map_or("", String::as_str)) {
+            cells.push((shown, None));
+            continue;
+        }
         if *is_numeric && is_text && !is_empty(cell) {
             let written = text(cell);
             let place = sheet.cell(column, line);
@@ -243,24 +276,4 @@ fn is_ambiguous(text: &str) -> bool {
     let Some((before, behind)) = text.trim().split_once(',') else { return false };
     let before = before.trim_start_matches(['-', '+']);
     behind.len() == 3 && (1..=3).contains(&before.len()) && before != "0"
-}
-
-/// The size of all parts of an archive, unpacked, as its list says.
-fn unpacked(bytes: &[u8]) -> Option<u64> {
-    let number = |at: usize, size: usize| -> Option<u64> {
-        let own = bytes.get(at..at + size)?;
-        Some(own.iter().rev().fold(0, |sum, it| sum << 8 | u64::from(*it)))
-    };
-    let end = bytes.windows(4).rposition(|it| it == b"PK\x05\x06")?;
-    let (count, mut at) = (number(end + 10, 2)?, usize::try_from(number(end + 16, 4)?).ok()?);
-    let mut sum: u64 = 0;
-    for _ in 0..count {
-        if bytes.get(at..at + 4)? != b"PK\x01\x02" {
-            return None;
-        }
-        sum = sum.saturating_add(number(at + 24, 4)?);
-        let lengths = number(at + 28, 2)? + number(at + 30, 2)? + number(at + 32, 2)?;
-        at += 46 + usize::try_from(lengths).ok()?;
-    }
-    Some(sum)
 }

@@ -1,0 +1,135 @@
+//! Zeros of joints whose axes are held, where a free target, a free device or other free zeros have the same effect.
+
+use nalgebra::DMatrix;
+
+use super::direction::{Cause, Direction};
+use super::setup::Setup;
+use super::subspace;
+use crate::parameters::{Block, Names, Parameter, Subject};
+use poecal_model::robot::Term;
+
+/// Share of an unknown (as a cosine) in directions without effect from which on it is not determined.
+const OPEN: f64 = 0.01;
+/// Singular value of exact directions above which knowing something says something of them.
+const EXACT: f64 = 1e-5;
+
+/// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with its place in a step.
+fn own_offsets(setup: &Setup<'_>) -> Vec<(usize, usize)> {
+    let is_held = |joint: usize| {
+        !setup
+            .layout
+            .parameters()
+            .any(|(it, _)| it.value_term().is_none() && it.model().subject() == Subject::Joint(joint))
+    };
+    let offset = |(parameter, places): (&Parameter, &[(usize, f64)])| {
+        let term = parameter.value_term().filter(|it| it.term == Term::OFFSET && is_held(it.joint))?;
+        Some((term.joint, places.first()?.0))
+    };
+    setup.layout.parameters().filter_map(offset).collect()
+}
+
+/// Whether a parameter is the offset of a joint whose axis is held.
+pub(crate) fn is_own(setup: &Setup<'_>, parameter: &Parameter) -> bool {
+    let term = parameter.value_term().filter(|it| it.term == Term::OFFSET);
+    term.is_some_and(|term| own_offsets(setup).iter().any(|(joint, _)| *joint == term.joint))
+}
+
+/// The offsets that are not determined by directions without effect (orthonormal), grouped by what hides them, with what to hold.
+pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Direction> {
+    let n = setup.layout.dim();
+    if directions.is_empty() {
+        return Vec::new();
+    }
+    let space = DMatrix::from_fn(n, directions.len(), |row, column| directions[column][row]);
+    let is_open = |space: &DMatrix<f64>, place: usize| space.row(place).norm() > OPEN;
+    let open: Vec<(usize, usize)> =
+        own_offsets(setup).into_iter().filter(|(_, place)| is_open(&space, *place)).collect();
+    let mut groups: Vec<(Vec<Block>, Vec<(usize, usize)>)> = Vec::new();
+    for &(joint, place) in &open {
+        let hidden = hiding(setup, &open, joint);
+        let known = |blocks: &[Block]| subspace::without_beyond(&space, &units(setup, blocks), EXACT).0;
+        let by = hidden.into_iter().find(|blocks| !is_open(&known(blocks), place));
+        let by = by.unwrap_or_default();
+        match groups.iter_mut().find(|(known, _)| *known == by) {
+            Some((_, joints)) => joints.push((joint, place)),
+            None => groups.push((by, vec![(joint, place)])),
+        }
+    }
+    let mut left = space;
+    let mut found = Vec::new();
+    for (by, joints) in &groups {
+        let unit = |place: usize| (0..n).map(|k| f64::from(u8::from(k == place))).collect::<Vec<f64>>();
+        let own: Vec<Vec<f64>> = joints.iter().map(|(_, place)| unit(*place)).collect();
+        let (rest, taken) = subspace::without_beyond(&left, &own, OPEN);
+        left = rest;
+        found.push(direction(setup, by, joints, taken));
+    }
+    found
+}
+
+/// What may hide the offset of a joint, the simplest first.
+fn hiding(setup: &Setup<'_>, open: &[(usize, usize)], joint: usize) -> Vec<Vec<Block>> {
+    let of = |wanted: &dyn Fn(Block) -> bool| -> Vec<Block> {
+        setup.layout.parameters().map(|(it, _)| it.block()).filter(|it| wanted(*it)).collect()
+    };
+    let frames = of(&|it| matches!(it, Block::Frame(_)));
+    let targets = of(&|it| matches!(it, Block::Target(_)));
+    let others: Vec<Block> = open
+        .iter()
+        .filter(|(other, _)| *other != joint)
+        .map(|(other, _)| Block::Term(*other, Term::OFFSET))
+        .collect();
+    let both = [frames.clone(), targets.clone()].concat();
+    let mut sets = vec![frames, targets, both];
+    sets.extend(others.iter().map(|it| vec![*it]));
+    sets.push(others);
+    sets.retain(|it| !it.is_empty());
+    sets
+}
+
+/// Unit vectors of the unknowns of some blocks.
+fn units(setup: &Setup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
+    let n = setup.layout.dim();
+    let own = setup.layout.parameters().filter(|(it, _)| blocks.contains(&it.block()));
+    own.flat_map(|(_, places)| places.iter().map(|(place, _)| *place))
+        .map(|place| (0..n).map(|k| f64::from(u8::from(k == place))).collect())
+        .collect()
+}
+
+/// The description of offsets that some blocks hide.
+fn direction(setup: &Setup<'_>, by: &[Block], joints: &[(usize, usize)], directions: usize) -> Direction {
+    let session = &setup.session;
+    let all = Names {
+        joints: session.robot.joints.iter().map(|it| it.name.clone()).collect(),
+        targets: session.data.targets.clone(),
+        stations: session.data.stations.clone(),
+    };
+    let zeros: Vec<String> =
+        joints.iter().map(|(joint, _)| all.of(Block::Term(*joint, Term::OFFSET))).collect();
+    let hidden: Vec<String> = by.iter().map(|it| all.of(*it)).collect();
+    let has = |wanted: &dyn Fn(&Block) -> bool| by.iter().any(wanted);
+    let frame = has(&|it| matches!(it, Block::Frame(_))).then_some("the place of the device");
+    let target = has(&|it| matches!(it, Block::Target(_))).then_some("the place of the target");
+    let what: Vec<&str> = [frame, target].into_iter().flatten().collect();
+    let what = if what.is_empty() { hidden.join(" and ") } else { what.join(" and ") };
+    let held: Vec<String> = hidden.iter().map(|name| format!("--fix {name}")).collect();
+    let description = if by.is_empty() {
+        format!(
+            "{}: other unknowns have the same effect: hold the device and the target (--fix frames --fix targets), or these zeros",
+            zeros.join(" and ")
+        )
+    } else {
+        format!(
+            "{} and {what} can change together: hold what has not moved ({}), where the calibration.json that is the model has it, or free fewer zeros",
+            zeros.join(" and "),
+            held.join(" ")
+        )
+    };
+    let joints = joints.iter().filter_map(|(joint, _)| session.robot.joints.get(*joint));
+    Direction {
+        description,
+        joints: joints.map(|it| it.name.clone()).collect(),
+        cause: Cause::JointOffsets,
+        directions,
+    }
+}

@@ -1,0 +1,50 @@
+//! Corners of single pictures that another lens than the stated one explains much better.
+
+use nalgebra::DMatrix;
+
+use poecal_model::camera::{LensSearch, LensState, OTHER_LENS, Pictures, changed_numbers};
+use poecal_numerics::linalg;
+
+/// Fewest pictures, and corners in them, that say something of a lens.
+const FEWEST: usize = 5;
+const FEWEST_CORNERS: usize = 100;
+/// Standard deviations beyond which a number is another than stated.
+const FAR: f64 = 5.0;
+
+/// That the pictures by themselves contradict their lens, with what to do; none where they do not, or are too few to say it.
+pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
+    let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
+    if pictures.all.len() < FEWEST || corners < FEWEST_CORNERS {
+        return None;
+    }
+    let (search, start) = LensSearch::of(pictures)?;
+    let before = off_px(pictures, &start)?;
+    let found = search.alone(&start)?;
+    let after = off_px(&found.pictures, &found)?;
+    if before <= OTHER_LENS * after {
+        return None;
+    }
+    let count = found.step.len();
+    let factor = linalg::cholesky(found.information.as_slice(), count, 0.0)?;
+    let covariance = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
+    let deviations: Vec<f64> = covariance.diagonal().iter().map(|it| it.max(0.0).sqrt()).collect();
+    let numbers: Vec<_> =
+        search.numbers(&found, &deviations).into_iter().filter(|it| it.name.starts_with("lens.")).collect();
+    let size = pictures.all.first().and_then(|it| pictures.cameras.get(it.camera)?.lens.size_px);
+    let size = size.map_or("WIDTHxHEIGHT".to_owned(), |[width, height]| format!("{width}x{height}"));
+    Some(format!(
+        "the corners are {before:.2} px off the best pose of their picture, {after:.2} px with another lens ({}): state the lens of these pictures, or \
+         find it with --lens unknown:{size}",
+        changed_numbers(&numbers, FAR)
+    ))
+}
+
+/// Root mean square by which coordinates of corners are off the best pose of each picture, pixels.
+fn off_px(pictures: &Pictures, state: &LensState) -> Option<f64> {
+    let (mut squares, mut freedom) = (0.0, 0.0);
+    for (picture, pose) in pictures.all.iter().zip(&state.poses) {
+        let sighting = pictures.view(picture)?.sighting(pose, true)?;
+        (squares, freedom) = (squares + sighting.cost_px2, freedom + sighting.freedom);
+    }
+    (freedom > 0.0).then(|| (squares / freedom).sqrt())
+}

@@ -1,0 +1,101 @@
+//! Lengths of the camera beside those of the arm: a board whose size is stated wrongly, or another focal length.
+
+use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
+use super::fit::{Fit, variance_along};
+use poecal_arm::lie::Pose;
+use poecal_numerics::distributions::f_quantile;
+
+/// Noise of orientations, radians, that no camera has.
+pub(crate) const NO_CAMERA: f64 = 0.1;
+/// Smallest difference of scales that is said.
+const OTHER_SCALE: f64 = 3e-3;
+/// Probability by chance at which scales differ.
+const CHANCE: f64 = 1e-4;
+/// Scales that are looked for where poses do not fit.
+const FARTHEST: f64 = 20.0;
+/// Rounds in which a gross scale is found, and the change at which it is.
+const ROUNDS: usize = 8;
+const FOUND: f64 = 1e-3;
+/// How much less the places of poses are off with a gross scale that explains them.
+const EXPLAINS: f64 = 0.2;
+
+/// By which share of what is seen the lengths that are seen are too long, with the information of it; `None` where nothing is known of it.
+fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
+    let weights = fit.noise.weights();
+    let known = normal(rows.iter().map(|it| (it, weights)), &fit.frames).covariance()?;
+    let (mut size, mut along, mut mixed) = (0.0, 0.0, [0.0; UNKNOWNS]);
+    for pair in rows {
+        // Without the point's share, which is of the same scale.
+        let seen = sight_axes(&pair.seen) * pair.seen.translation;
+        let numbers = [seen.x, seen.y, seen.z];
+        let derivatives = derivatives(pair, &fit.frames);
+        for (k, error) in errors(pair, &fit.frames).iter().take(NUMBERS / 2).enumerate() {
+            size += weights[k] * numbers[k] * numbers[k];
+            along += weights[k] * numbers[k] * error;
+            mixed.iter_mut().zip(derivatives[k]).for_each(|(sum, it)| *sum += weights[k] * numbers[k] * it);
+        }
+    }
+    let left = size - variance_along(&known, &mixed);
+    (left > 1e-9 * size).then_some((along / left, left))
+}
+
+/// How many times as long as the arm's lengths the camera's are, if it is said: of all rows, those that count, and whether they fit together.
+pub(crate) fn of((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
+    if fits { found(kept, fit) } else { explaining(rows, fit) }
+}
+
+/// The same where it is more than chance; of the rows that count.
+fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
+    let (share, information) = share(kept, fit)?;
+    let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
+    let is_evident = share * share * information > f_quantile(CHANCE, 1.0, freedom);
+    (is_evident && share.abs() > OTHER_SCALE && share < 1.0).then(|| 1.0 / (1.0 - share))
+}
+
+/// The same of poses that do not fit together, where it is why: lengths that are many times too long or too short.
+fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
+    let mut times = 1.0;
+    for _ in 0..ROUNDS {
+        let scaled = shortened(rows, times);
+        let now = Fit::of(&scaled)?;
+        let (share, _) = share(&now.seen_about(&scaled), &now)?;
+        if share.abs() < FOUND {
+            let places = |fit: &Fit| fit.noise.sigma(0).max(fit.noise.sigma(2));
+            let turns = now.noise.sigma(3).max(now.noise.sigma(5));
+            let is_explained = times * places(&now) < EXPLAINS * places(fit) && turns < NO_CAMERA;
+            return is_explained.then_some(times);
+        }
+        times /= (1.0 - share).clamp(1.0 / FARTHEST, FARTHEST);
+        if !(1.0 / FARTHEST..FARTHEST).contains(&times) {
+            return None;
+        }
+    }
+    None
+}
+
+/// Rows whose places were seen so many times too far.
+fn shortened(rows: &[Pair], times: f64) -> Vec<Pair> {
+    let of = |pair: &Pair| {
+        let seen = Pose::new(pair.seen.rotation, pair.seen.translation / times);
+        Pair { seen, ..*pair }
+    };
+    rows.iter().map(of).collect()
+}
+
+/// Whether lengths are so many times as long that no place that follows from them is one.
+pub(crate) fn is_gross(times: f64) -> bool {
+    !(2.0 / 3.0..=1.505).contains(&times)
+}
+
+/// What another scale is, and what to do.
+pub(crate) fn words(times: f64) -> String {
+    let size = if !is_gross(times) {
+        let share = 100.0 * (times - 1.0);
+        format!("{:.1} % {} than the arm's", share.abs(), if share > 0.0 { "longer" } else { "shorter" })
+    } else {
+        format!("{times:.3} times the arm's")
+    };
+    format!(
+        "the camera's lengths are {size}: check the size of the board's squares or markers (divided by {times:.4} it fits), and the camera's focal length"
+    )
+}

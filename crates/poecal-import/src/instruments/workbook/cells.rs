@@ -1,0 +1,147 @@
+//! The cells of a sheet as a range, once it is known that the range can be held.
+
+use std::io::Cursor;
+
+use calamine::{Cell, Data, DataRef, Range, Reader as _, Sheets};
+
+use poecal_storage::limits::Limit;
+
+/// A workbook of bytes.
+pub(crate) type Book<'b> = Sheets<Cursor<&'b [u8]>>;
+
+/// What the sheets of a workbook may still take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Left {
+    /// Cells of their ranges.
+    cells: u64,
+    /// Bytes of their texts, each as often as a cell has it.
+    texts: u64,
+}
+
+impl Left {
+    /// All that a workbook may take.
+    pub(crate) fn of_workbook() -> Self {
+        Left { cells: Limit::Cells.most(), texts: Limit::Unpacked.most() }
+    }
+}
+
+/// The cells of one sheet and their extent.
+#[derive(Default)]
+pub(crate) struct Found {
+    cells: Vec<Cell<Data>>,
+    /// First and last row and column.
+    extent: Option<[u32; 4]>,
+}
+
+impl Found {
+    /// Takes a cell, unless the range or the texts are then more than what is left.
+    ///
+    /// # Errors
+    /// The sentence of the limit.
+    pub(crate) fn add(
+        &mut self,
+        (row, column): (u32, u32),
+        value: Data,
+        left: &mut Left,
+    ) -> Result<(), String> {
+        if matches!(value, Data::Empty) {
+            return Ok(());
+        }
+        let [top, bottom, first, last] = self.extent.unwrap_or([row, row, column, column]);
+        let extent = [top.min(row), bottom.max(row), first.min(column), last.max(column)];
+        self.extent = Some(extent);
+        // A cell may be stated again and again.
+        if self.area() > left.cells || self.cells.len() as u64 >= left.cells {
+            let [top, bottom, first, last] = extent.map(u64::from);
+            let (rows, columns) = (bottom - top + 1, last - first + 1);
+            return Err(Limit::Cells.sentence(&format!("a sheet of {rows} rows and {columns} columns")));
+        }
+        if let Data::String(text) = &value {
+            let rest = left.texts.checked_sub(text.len() as u64);
+            left.texts = rest.ok_or_else(|| Limit::Unpacked.exceeded("the texts of the cells"))?;
+        }
+        self.cells.push(Cell::new((row, column), value));
+        Ok(())
+    }
+
+    /// The number of cells of the range, empty ones among them.
+    fn area(&self) -> u64 {
+        let [top, bottom, first, last] = self.extent.map(|it| it.map(u64::from)).unwrap_or([1, 0, 1, 0]);
+        (bottom + 1 - top).saturating_mul(last + 1 - first)
+    }
+
+    /// The range, whose cells are left no more.
+    pub(crate) fn range(self, left: &mut Left) -> Range<Data> {
+        left.cells = left.cells.saturating_sub(self.area());
+        Range::from_sparse(self.cells)
+    }
+}
+
+/// The cells of a sheet.
+///
+/// # Errors
+/// What is wrong, in a sentence.
+pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<Range<Data>, String> {
+    let broken = |error: &dyn std::fmt::Display| {
+        format!(
+            "the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again"
+        )
+    };
+    let mut found = Found::default();
+    match book {
+        Sheets::Xlsx(book) => {
+            let mut reader = match book.worksheet_cells_reader(name) {
+                Ok(reader) => reader,
+                // A chart or a macro.
+                Err(calamine::XlsxError::NotAWorksheet(_)) => return Ok(Range::default()),
+                Err(error) => return Err(broken(&error)),
+            };
+            while let Some(cell) = reader.next_cell().map_err(|error| broken(&error))? {
+                found.add(cell.get_position(), owned(cell.get_value()), left)?;
+            }
+        }
+        Sheets::Xlsb(book) => {
+            let mut reader = book.worksheet_cells_reader(name).map_err(|error| broken(&error))?;
+            while let Some(cell) = reader.next_cell().map_err(|error| broken(&error))? {
+                found.add(cell.get_position(), owned(cell.get_value()), left)?;
+            }
+        }
+        // Their cells were counted before the workbook was opened.
+        Sheets::Ods(_) | Sheets::Xls(_) => return book.worksheet_range(name).map_err(|error| broken(&error)),
+    }
+    Ok(found.range(left))
+}
+
+fn owned(value: &DataRef<'_>) -> Data {
+    Data::from(value.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_extent_is_held_up_to_its_limit() {
+        let mut left = Left { cells: 6, texts: 5 };
+        let mut found = Found::default();
+        assert_eq!(found.area(), 0);
+        for place in [(1, 1), (2, 3), (2, 3)] {
+            found.add(place, Data::Int(1), &mut left).unwrap();
+        }
+        assert_eq!(found.area(), 6);
+        found.add((1 << 31, 1 << 31), Data::Empty, &mut left).unwrap();
+        let error = found.add((1_048_575, 1), Data::Int(1), &mut left).unwrap_err();
+        assert!(
+            error.starts_with("found a sheet of 1048575 rows and 3 columns, expected at most"),
+            "{error}"
+        );
+        let mut same = Found::default();
+        assert!((0..7).map(|_| same.add((0, 0), Data::Int(1), &mut left)).any(|it| it.is_err()));
+        let text = || Data::String("abc".to_owned());
+        let mut texts = Found::default();
+        texts.add((0, 0), text(), &mut left).unwrap();
+        assert!(texts.add((0, 1), text(), &mut left).is_err());
+        texts.range(&mut left);
+        assert_eq!(left.cells, 4);
+    }
+}

@@ -1,0 +1,63 @@
+//! Cells of workbooks whose number is none: formulas that no program computed, and numbers that are shown as dates or times.
+
+use std::io::Cursor;
+
+use calamine::{Data, Range, Reader as _, Sheets};
+
+use super::maker::Refused;
+use crate::table::places::Sheet;
+use crate::table::times::seconds_of;
+
+/// What is to be done about formulas without results.
+const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
+
+/// Refuses formulas of a table that have no result, or 0 in the whole column, as programs write them that do not compute: its rows, and its
+/// columns with their names.
+pub(crate) fn refuse_uncomputed(
+    book: &mut Sheets<Cursor<Vec<u8>>>,
+    range: &Range<Data>,
+    sheet: &Sheet,
+    (rows, columns): (&[usize], &[String]),
+) -> Result<(), Refused> {
+    // A form of workbook whose formulas cannot be read has results.
+    let Ok(formulas) = book.worksheet_formula(&sheet.name) else { return Ok(()) };
+    let (first_row, first_column) = range.start().unwrap_or_default();
+    let place = |row: usize, column: usize| (first_row + row as u32, first_column + column as u32);
+    let formula = |row: usize, column: usize| {
+        formulas.get_value(place(row, column)).map(String::as_str).filter(|it| !it.is_empty())
+    };
+    for (column, name) in columns.iter().enumerate() {
+        let mut zeros = 0;
+        for &row in rows {
+            let Some(text) = formula(row, column) else { continue };
+            let cell = range.get((row, column)).unwrap_or(&Data::Empty);
+            if matches!(cell, Data::Empty) {
+                let at = sheet.cell(column, first_row as usize + row + 1);
+                return Refused::whole(format!(
+                    "sheet `{}`, cell {at}: found the formula `={text}` without a result, expected one: {REMEDY}",
+                    sheet.name
+                ));
+            }
+            let is_zero = matches!(cell, Data::Float(value) if *value == 0.0) || matches!(cell, Data::Int(0));
+            zeros += usize::from(is_zero && text.trim() != "0");
+        }
+        if zeros == rows.len() && zeros > 1 {
+            return Refused::whole(format!(
+                "sheet `{}`: found formulas in the column `{name}` whose results are all 0, as programs store them that do not compute, expected their \
+                 numbers: {REMEDY}",
+                sheet.name
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The text of a cell that is shown as a date or a time, in a column that is none of times: its number counts days, and is no length or angle.
+pub(crate) fn no_number(cell: &Data, column: &str) -> Option<String> {
+    let name = column.split(['[', '(']).next().unwrap_or_default();
+    let is_time = seconds_of(name, None).is_some() || seconds_of(column, None).is_some();
+    match cell {
+        Data::DateTime(time) if !is_time => Some(format!("{} (formatted as a date or time)", time.as_f64())),
+        _ => None,
+    }
+}

@@ -1,0 +1,103 @@
+//! Sizes of pictures that lenses state, beside the corners that were seen.
+
+use std::path::Path;
+
+use super::gathering::Gathered;
+use poecal_model::camera::{Camera, Corner};
+use poecal_numerics::error::{Error, ErrorKind, Result, shown};
+
+/// Pixels beyond the edge of a picture at which a corner may be found: detectors refine corners that they find at the edge.
+const BEYOND: f64 = 2.0;
+/// Fewest corners of which the part of the picture that they fill is looked at.
+const FEWEST: usize = 100;
+/// Corners of pictures of a smaller size begin within this share of it, and reach this share.
+const BEGIN: f64 = 0.1;
+const REACH: f64 = 0.9;
+
+/// Refuses corners outside the pictures that the lenses state; gives a sentence for each camera whose corners fill one part of its pictures, as
+/// those of smaller pictures do.
+pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Gathered]) -> Result<Vec<String>> {
+    let mut said = Vec::new();
+    for (at, camera) in cameras.iter().enumerate() {
+        let Some(size) = camera.lens.size_px.map(|size| size.map(f64::from)) else { continue };
+        let corners: Vec<&Corner> =
+            gathered.iter().filter(|it| it.camera == at).flat_map(|it| &it.corners).collect();
+        let is_outside = |corner: &&&Corner| {
+            (0..2).any(|k| corner.pixel[k] < -0.5 - BEYOND || corner.pixel[k] > size[k] - 0.5 + BEYOND)
+        };
+        if let Some(first) = corners.iter().find(is_outside) {
+            let count = corners.iter().filter(is_outside).count();
+            return Err(outside(camera, size, &corners, (first, count)).at_line(path, first.line as usize));
+        }
+        if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
+            let smaller = size.map(|it| it / f64::from(part));
+            said.push(format!(
+                "{}: all corners{} are in the upper left {} × {} pixels of the {} × {} that its lens states, as those of pictures of \
+                 a {} of the size: if the pictures are so small, divide fx, fy, cx, cy and the size by {part}",
+                path.display(),
+                of(camera),
+                smaller[0],
+                smaller[1],
+                size[0],
+                size[1],
+                ["half", "third", "quarter"][part as usize - 2]
+            ));
+        }
+    }
+    Ok(said)
+}
+
+/// Whose corners or lens it is, of a camera that has a name.
+fn of(camera: &Camera) -> String {
+    if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shown(&camera.name)) }
+}
+
+/// Least and largest pixel of corners along an axis.
+fn extent(corners: &[&Corner], axis: usize) -> (f64, f64) {
+    let pixels = corners.iter().map(|it| it.pixel[axis]);
+    pixels.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), it| (least.min(it), most.max(it)))
+}
+
+/// Whether corners fill pictures of a size.
+fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
+    corners.len() >= FEWEST
+        && (0..2).all(|axis| {
+            let (least, most) = extent(corners, axis);
+            least < BEGIN * size[axis] && (REACH * size[axis]..=size[axis]).contains(&most)
+        })
+}
+
+/// The error of a corner that is outside, with how the sizes are related.
+fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> Error {
+    let most = [0, 1].map(|axis| extent(corners, axis).1);
+    let times = [0, 1].map(|axis| most[axis] / size[axis]);
+    let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;
+    let is_exchanged = most[0] <= size[1] + BEYOND && most[1] <= size[0] + BEYOND;
+    let advice = if is_like {
+        let times = if times[0] > 1.7 {
+            format!("{:.0} times as large", times[0].max(times[1]))
+        } else {
+            "larger".to_owned()
+        };
+        format!(
+            "the pictures are about {times} in both directions, so the lens is that of another resolution: state it at that of the pictures (fx, fy, \
+             cx, cy and the size grow alike)"
+        )
+    } else if is_exchanged {
+        "width and height are exchanged, or the pictures were turned by 90 deg: state the lens of the pictures as they are".to_owned()
+    } else {
+        "the lens is that of cropped pictures, or of another mode of the camera: state the lens of the pictures as they are".to_owned()
+    };
+    ErrorKind::Measurement.error(format!(
+        "found the corner ({:.1}, {:.1}), and {count} of {} corners, outside the {} × {} pixels of the pictures that the lens{} states; \
+         they reach to ({:.1}, {:.1}), expected corners in the picture: {advice}",
+        first.pixel.x,
+        first.pixel.y,
+        corners.len(),
+        size[0],
+        size[1],
+        of(camera),
+        most[0],
+        most[1]
+    ))
+}

@@ -1,0 +1,92 @@
+//! The part of a sensor that its pictures show, as `camera_info` of ROS states it beside the lens of the whole sensor.
+
+use poecal_model::camera::Lens;
+
+/// A region of a sensor whose pixels are joined in rectangles. The matrix `K` is that of the whole sensor, as `sensor_msgs/CameraInfo` has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Region {
+    /// The first pixel of the region.
+    offset_px: [f64; 2],
+    /// Width and height of the region; 0 where it is the whole sensor.
+    size_px: [f64; 2],
+    /// Pixels that are joined to one along each axis.
+    binning: [f64; 2],
+}
+
+/// Keys of the numbers of a region.
+pub(crate) const KEYS: [&[&str]; 6] = [
+    &["roi", "x_offset"],
+    &["roi", "y_offset"],
+    &["roi", "width"],
+    &["roi", "height"],
+    &["binning_x"],
+    &["binning_y"],
+];
+
+impl Region {
+    /// A region by the numbers of its keys, in the order of [`KEYS`]; 0 of a key that is absent.
+    ///
+    /// # Errors
+    /// In words, if numbers are none of a region.
+    pub(crate) fn new(numbers: [f64; 6]) -> Result<Self, String> {
+        let is_wrong = |it: &f64| *it < 0.0 || it.fract() != 0.0 || *it > f64::from(u32::MAX);
+        if let Some((keys, number)) = KEYS.iter().zip(numbers).find(|(_, number)| is_wrong(number)) {
+            return Err(format!("found {number} for `{}`, expected a count of pixels", keys.join(".")));
+        }
+        let [x, y, width, height, by_x, by_y] = numbers;
+        if (width == 0.0) != (height == 0.0) {
+            return Err(format!(
+                "found a region `roi` of {width} × {height} pixels, expected both above 0, or both 0 for all of the sensor"
+            ));
+        }
+        // 0 is the same as 1 in ROS.
+        Ok(Region { offset_px: [x, y], size_px: [width, height], binning: [by_x.max(1.0), by_y.max(1.0)] })
+    }
+
+    /// The lens of the pictures of the region, from that of the whole sensor, with what was done in words if it is another one.
+    ///
+    /// # Errors
+    /// In words, if the region is not on the sensor.
+    pub(crate) fn applied(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
+        let Region { offset_px, size_px, binning } = *self;
+        let is_part = size_px[0] > 0.0;
+        let whole = lens.size_px.map(|it| it.map(f64::from));
+        if let Some(whole) =
+            whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k]))
+        {
+            return Err(format!(
+                "found a region `roi` of {} × {} pixels from ({}, {}) on, expected one inside the sensor of {} × {}",
+                size_px[0], size_px[1], offset_px[0], offset_px[1], whole[0], whole[1]
+            ));
+        }
+        let size = if is_part { Some(size_px) } else { whole };
+        if offset_px == [0.0; 2] && binning == [1.0; 2] && (size == whole || whole.is_none()) {
+            return Ok((*lens, None));
+        }
+        let of = |k: usize| (lens.centre_px[k] - offset_px[k]) / binning[k];
+        let seen = Lens {
+            focal_px: [0, 1].map(|k| lens.focal_px[k] / binning[k]),
+            centre_px: [of(0), of(1)],
+            size_px: size.map(|size| [0, 1].map(|k| (size[k] / binning[k]) as u32)),
+            ..*lens
+        };
+        let mut done = Vec::new();
+        if is_part || offset_px != [0.0; 2] {
+            done.push(format!("the region `roi` from ({}, {}) on", offset_px[0], offset_px[1]));
+        }
+        if binning != [1.0; 2] {
+            done.push(format!("the binning {} × {}", binning[0], binning[1]));
+        }
+        let size =
+            seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
+        let words = format!(
+            "took the lens as that of pictures{size}, by {}: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px",
+            done.join(" and "),
+            seen.focal_px[0],
+            seen.focal_px[1],
+            seen.centre_px[0],
+            seen.centre_px[1]
+        );
+        Ok((seen, Some(words)))
+    }
+}

@@ -1,0 +1,57 @@
+//! Zeros of several joints at once: where one or two leave more than the stated repeatability explains.
+
+use nalgebra::DMatrix;
+
+use super::explain::{Evidence, Hypothesis, KNOWN, Kind, Tried, Verdict, is_noise};
+
+/// Most joints of which all sets are tried.
+const MOST: usize = 10;
+/// Standard deviations of the least zero of a set: one that is no more than noise explains nothing.
+const LEAST: f64 = 3.0;
+
+/// The fewest zeros that leave no more than noise of this variance, with what they are judged by; `None` where no set of them does.
+pub(crate) fn several_zeros(
+    evidence: &Evidence,
+    hypotheses: &[Hypothesis],
+    variance: f64,
+) -> Option<(Hypothesis, Verdict)> {
+    let zeros: Vec<&Hypothesis> =
+        hypotheses.iter().filter(|it| it.kind == Kind::Zero && it.is_candidate).take(MOST).collect();
+    let left = evidence.left();
+    for size in 3..=zeros.len() {
+        let sets = (0u32..1 << zeros.len()).filter(|set| set.count_ones() as usize == size);
+        let found = sets.filter_map(|set| {
+            let own: Vec<&Hypothesis> =
+                zeros.iter().enumerate().filter(|(at, _)| set & 1 << at != 0).map(|(_, it)| *it).collect();
+            let together = together(&own);
+            let tried = evidence.tried(hypotheses.len(), &together)?;
+            let squares = left.0 - tried.gain;
+            let freedom = left.1 - tried.rank as f64;
+            let is_each =
+                tried.step.iter().all(|(value, sigma)| value.abs() > LEAST * sigma * variance.sqrt());
+            (tried.rank == size && is_each && is_noise(squares, freedom, variance))
+                .then_some((together, tried))
+        });
+        let best = found.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        if let Some((together, tried)) = best {
+            return Some((together, verdict(tried, variance, left)));
+        }
+    }
+    None
+}
+
+fn verdict(best: Tried, variance: f64, left: (f64, f64)) -> Verdict {
+    Verdict { best: Some(best), nearly: Vec::new(), variance, freedom: KNOWN, is_wider: false, left }
+}
+
+/// Some zeros as one explanation.
+fn together(zeros: &[&Hypothesis]) -> Hypothesis {
+    let columns: Vec<_> = zeros.iter().map(|it| it.columns.column(0)).collect();
+    Hypothesis {
+        kind: Kind::Zeros,
+        of: zeros.iter().flat_map(|it| it.of.clone()).collect(),
+        columns: DMatrix::from_columns(&columns),
+        turns: zeros.iter().flat_map(|it| it.turns.clone()).collect(),
+        is_candidate: true,
+    }
+}
