@@ -233,6 +233,10 @@ pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
         Kind::TwoZeros => {
             (Use::None, format!("Look at the mastering of {named}; then calibrate again"))
         }
+        Kind::Zeros => {
+            let joints: Vec<_> = found.zeros.iter().map(|it| visible(&it.joint)).collect();
+            (Use::None, format!("Look at the mastering of {}; then calibrate again", joints.join(", ")))
+        }
     }
 }
 

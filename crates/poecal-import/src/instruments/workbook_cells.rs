@@ -1,8 +1,8 @@
 //! Cells of workbooks whose number is none: formulas that no program computed, and numbers that are shown as dates or times.
 
-use std::io::Cursor;
+use std::collections::BTreeMap;
 
-use calamine::{Data, Range, Reader as _, Sheets};
+use calamine::{Data, Range};
 
 use super::maker::Refused;
 use crate::table::places::Sheet;
@@ -12,20 +12,16 @@ use crate::table::times::seconds_of;
 const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
 /// Refuses formulas of a table that have no result, or 0 in the whole column, as programs write them that do not compute: its rows, and its
-/// columns with their names.
+/// columns with their names. A form of workbook whose formulas cannot be read has results.
 pub(crate) fn refuse_uncomputed(
-    book: &mut Sheets<Cursor<Vec<u8>>>,
+    formulas: &BTreeMap<(u32, u32), String>,
     range: &Range<Data>,
     sheet: &Sheet,
     (rows, columns): (&[usize], &[String]),
 ) -> Result<(), Refused> {
-    // A form of workbook whose formulas cannot be read has results.
-    let Ok(formulas) = book.worksheet_formula(&sheet.name) else { return Ok(()) };
     let (first_row, first_column) = range.start().unwrap_or_default();
     let place = |row: usize, column: usize| (first_row + row as u32, first_column + column as u32);
-    let formula = |row: usize, column: usize| {
-        formulas.get_value(place(row, column)).map(String::as_str).filter(|it| !it.is_empty())
-    };
+    let formula = |row: usize, column: usize| formulas.get(&place(row, column));
     for (column, name) in columns.iter().enumerate() {
         let mut zeros = 0;
         for &row in rows {

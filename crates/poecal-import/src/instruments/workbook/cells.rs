@@ -1,5 +1,6 @@
 //! The cells of a sheet as a range, once it is known that the range can be held.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use calamine::{Cell, Data, DataRef, Range, Reader as _, Sheets};
@@ -110,6 +111,50 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
         Sheets::Ods(_) | Sheets::Xls(_) => return book.worksheet_range(name).map_err(|error| broken(&error)),
     }
     Ok(found.range(left))
+}
+
+/// Formulas of a sheet within a range, by row and column; none of a form of workbook whose formulas cannot be read.
+pub(crate) fn formulas(
+    book: &mut Book<'_>,
+    name: &str,
+    within: &Range<Data>,
+) -> BTreeMap<(u32, u32), String> {
+    let mut found = BTreeMap::new();
+    let (Some(start), Some(end)) = (within.start(), within.end()) else { return found };
+    let mut take = |cell: Cell<String>| {
+        let (row, column) = cell.get_position();
+        let is_within = (start.0..=end.0).contains(&row) && (start.1..=end.1).contains(&column);
+        if is_within && !cell.get_value().is_empty() {
+            found.insert((row, column), cell.get_value().clone());
+        }
+    };
+    match book {
+        Sheets::Xlsx(book) => {
+            if let Ok(mut reader) = book.worksheet_cells_reader(name) {
+                while let Ok(Some(cell)) = reader.next_formula() {
+                    take(cell);
+                }
+            }
+        }
+        Sheets::Xlsb(book) => {
+            if let Ok(mut reader) = book.worksheet_cells_reader(name) {
+                while let Ok(Some(cell)) = reader.next_formula() {
+                    take(cell);
+                }
+            }
+        }
+        // Their cells were counted before the workbook was opened.
+        Sheets::Ods(_) | Sheets::Xls(_) => {
+            if let Ok(all) = book.worksheet_formula(name) {
+                let first = all.start().unwrap_or_default();
+                let cells = all.used_cells();
+                cells.for_each(|(row, column, text)| {
+                    take(Cell::new((first.0 + row as u32, first.1 + column as u32), text.clone()));
+                });
+            }
+        }
+    }
+    found
 }
 
 fn owned(value: &DataRef<'_>) -> Data {

@@ -8,6 +8,7 @@ mod cells;
 mod container;
 mod old;
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use calamine::{Data, Range, Reader as _, open_workbook_auto_from_rs};
@@ -77,6 +78,14 @@ impl<'b> Workbook<'b> {
                 let own = sheets.iter_mut().find(|it| it.0 == name);
                 Ok(own.map(|it| std::mem::take(&mut it.1)).unwrap_or_default())
             }
+        }
+    }
+
+    /// Formulas of a sheet within a range; of old workbooks none.
+    fn formulas(&mut self, name: &str, within: &Range<Data>) -> BTreeMap<(u32, u32), String> {
+        match self {
+            Workbook::Archive(book, _) => cells::formulas(book, name, within),
+            Workbook::Old(_) => BTreeMap::new(),
         }
     }
 }
@@ -179,12 +188,7 @@ fn text(cell: &Data) -> String {
     if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
-fn made(
-    book: &mut Sheets<Cursor<Vec<u8>>>,
-    range: &Range<Data>,
-    table: &Found,
-    name: &str,
-) -> Result<Made, Refused> {
+fn made(book: &mut Workbook<'_>, range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused> {
     let (first_row, first_column) = range.start().unwrap_or_default();
     let line = |at: usize| first_row as usize + at + 1;
     let sheet = Sheet { name: name.to_owned(), first_column: first_column as usize };
@@ -194,7 +198,7 @@ fn made(
         (0..table.columns).map(|column| row(at).get(column).map(text).unwrap_or_default()).collect()
     };
     let header = texts(table.header);
-    refuse_uncomputed(book, range, &sheet, (&table.rows, &header))?;
+    refuse_uncomputed(&book.formulas(name, range), range, &sheet, (&table.rows, &header))?;
     let mut made = Made::new(line(table.header), header.iter().map(String::as_str));
     if let Some(units) = table.units {
         let units_of = texts(units);
