@@ -46,7 +46,7 @@ def test_residuals_are_those_of_the_file(calibrations, kind):
 def test_arrays_of_residuals_fit_together(calibrations):
     calibration = calibrations["mixed"]
     residuals = calibration.residuals
-    assert np.allclose(np.linalg.norm(residuals.position_mm, axis=1), residuals.position_calibrated_mm)
+    assert np.allclose(np.linalg.norm(residuals.position_mm, axis=1), residuals.errors("position"))
     seen = residuals.rotation_calibrated_deg[~np.isnan(residuals.rotation_calibrated_deg)]
     assert len(seen) == 40 and np.isnan(residuals.rotation_deg).any(axis=1).sum() == 40
     of_set = calibration.accuracy.held_out

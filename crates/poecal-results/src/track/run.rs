@@ -86,10 +86,7 @@ pub fn track(
     notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
     let joints = sights(&judged, (&hypotheses, &tests), &verdict, options);
     // Beside a shift too far to be linear, others are not known.
-    let shifts = (!is_unexplained && !is_far).then(|| {
-        let best = verdict.best.as_ref().map(|it| &hypotheses[it.at]);
-        sight::shifts(&evidence, &hypotheses, best, verdict.variance)
-    });
+    let shifts = (!is_unexplained && !is_far).then(|| sight::shifts(&evidence, &hypotheses, &verdict));
     Ok(Tracked {
         options: *options,
         state: if is_unexplained || explanation.is_some() { State::Changed } else { State::Unchanged },

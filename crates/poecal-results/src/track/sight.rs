@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::explain::{Evidence, Hypothesis, Kind, Size, Tests};
+use super::explain::{Evidence, Hypothesis, Kind, Size, Tests, Verdict};
 use super::hypotheses::free;
 use super::model::Model;
 use super::options::{MOST_M, MOST_RAD, TrackOptions};
@@ -104,22 +104,17 @@ pub(crate) fn joints(
 }
 
 /// The shift of each joint's zero, in the order of [`joints`], beside the explanation of the changes; of a joint that the explanation names, the
-/// explanation's. `variance` is that of a number.
-pub(crate) fn shifts(
-    evidence: &Evidence,
-    hypotheses: &[Hypothesis],
-    best: Option<&Hypothesis>,
-    variance: f64,
-) -> Vec<Option<Size>> {
-    let is_of_zeros = best.is_some_and(|it| matches!(it.kind, Kind::Zero | Kind::TwoZeros));
+/// explanation's.
+pub(crate) fn shifts(evidence: &Evidence, hypotheses: &[Hypothesis], verdict: &Verdict) -> Vec<Option<Size>> {
+    let best = verdict.best.as_ref().and_then(|it| hypotheses.get(it.at));
     let shift = |zero: &Hypothesis| {
-        let named =
-            best.filter(|_| is_of_zeros).and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
+        // Each zero of an explanation is one of its columns.
+        let named = best.and_then(|it| it.of.iter().position(|of| zero.of.contains(of)));
         let beside = best.map_or_else(|| DMatrix::zeros(zero.columns.nrows(), 0), |it| it.columns.clone());
         let at = named.unwrap_or(beside.ncols());
         let columns = if named.is_some() { beside } else { joined(&beside, &zero.columns) };
         let &(value, sigma) = evidence.steps(&columns)?.get(at)?;
-        Some(Size { value, sigma: variance.sqrt() * sigma, turns: zero.turns.first() == Some(&true) })
+        Some(Size { value, sigma: verdict.variance.sqrt() * sigma, turns: zero.turns.first() == Some(&true) })
     };
     hypotheses.iter().filter(|it| it.kind == Kind::Zero).map(shift).collect()
 }
