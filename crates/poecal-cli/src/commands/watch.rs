@@ -40,11 +40,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     };
     let fit = fit(&arguments.fit, &model, Kind::POINT, 30)?;
     let options = WatchOptions { fit, candidates, workspace, seed: arguments.seed };
-    let file = GrowingFile::new(&arguments.measurements);
-    let mut file = if arguments.once { file } else { file.waited_for() };
-    if !arguments.once && file.is_absent() {
-        console.remark(format!("{}: waits for its first lines", arguments.measurements.display()));
-    }
+    let mut file = opened(arguments, console);
     let mut trouble = (String::new(), 0);
     let (mut watched, mut done, mut is_named, mut is_reached) = (None, 0, false, false);
     let is_corrected = arguments.fit.corrections != Corrections::Off;
@@ -68,11 +64,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
                 done += 1;
                 let line = report::Watched::new(&model.robot, data, &row);
                 is_named |= row.mistake.is_some();
-                if arguments.json {
-                    console.data(&line.json()?)?
-                } else {
-                    console.say(&line.text())?
-                }
+                console.json_or_table(arguments.json, || line.json(), || line.text())?;
                 let error =
                     row.now.map(|now| if is_corrected { now.corrected_m() } else { now.calibrated_m() });
                 is_reached |= arguments.until.zip(error).is_some_and(|(until, error)| error <= until);
@@ -87,6 +79,18 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
         }
         sleep(PAUSE);
     }
+}
+
+/// The file, which is waited for unless it is read once.
+fn opened(arguments: &Watch, console: &Console) -> GrowingFile {
+    let file = GrowingFile::new(&arguments.measurements);
+    if arguments.once {
+        return file;
+    }
+    if file.is_absent() {
+        console.remark(format!("{}: waits for its first lines", arguments.measurements.display()));
+    }
+    file.waited_for()
 }
 
 /// Whether a file may be wrong because it is being written: `trouble` is what was wrong at the last look, and how often in a row.

@@ -64,7 +64,7 @@ impl ProgramOptions {
 /// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
 ///
 /// # Errors
-/// as [`parse`] and
+/// As [`parse`] and
 /// [`Compensation::new`](super::Compensation::new).
 pub fn compensate_program(
     text: &[u8],

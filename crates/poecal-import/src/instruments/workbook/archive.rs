@@ -167,7 +167,15 @@ fn cells_of_ods(content: impl Read) -> Result<(), String> {
                 before = before.saturating_add(sheet.cells());
                 sheet = Sheet::default();
             }
-            _ => {}
+            Event::Start(_)
+            | Event::End(_)
+            | Event::Empty(_)
+            | Event::CData(_)
+            | Event::Comment(_)
+            | Event::Decl(_)
+            | Event::PI(_)
+            | Event::DocType(_)
+            | Event::GeneralRef(_) => {}
         }
         let cells = before.saturating_add(sheet.cells());
         if cells > Limit::Cells.most() {

@@ -39,7 +39,7 @@ pub(crate) fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
     let root = entries.first()?;
     let small = container.chain(u32_at(root, 116)?, u64::from(u32_at(root, 120)?))?;
     let table = container.chain(u32_at(bytes, 60)?, u64::MAX)?;
-    let next = table.chunks_exact(4).filter_map(|it| u32_at(it, 0)).collect();
+    let next: Vec<u32> = table.chunks_exact(4).filter_map(|it| u32_at(it, 0)).collect();
     followed(&next, start, size, |sector| {
         let at = usize::try_from(sector).ok()?.checked_mul(SMALL_SECTOR)?;
         small.get(at..at.checked_add(SMALL_SECTOR)?.min(small.len()))
@@ -99,7 +99,7 @@ impl<'b> Container<'b> {
 
 /// The bytes of a chain of sectors, at most so many; `None` if a sector is missing, or the chain is longer than there are sectors.
 fn followed<'s>(
-    next: &Vec<u32>,
+    next: &[u32],
     start: u32,
     size: u64,
     sector: impl Fn(u32) -> Option<&'s [u8]>,
