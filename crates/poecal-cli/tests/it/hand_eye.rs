@@ -310,7 +310,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         ),
     )
     .unwrap();
-    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,259.5,760,520\n")
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,259.5,720,520\n")
         .unwrap();
     let all = |turned: &dyn Fn(usize) -> bool| -> String {
         let lines = rows
@@ -345,7 +345,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     }
     assert_eq!(turned["findings"][0]["kind"], "other_pose", "{turned}");
     let unknown: serde_json::Value = serde_json::from_str(&folder.done(
-        &format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:760x520"),
+        &format!("hand-eye arm.csv corners.csv {run} --out found").replace("lens.csv", "unknown:720x520"),
     ))
     .unwrap();
     let numbers = unknown["lens"]["numbers"].as_array().unwrap();
@@ -361,7 +361,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         assert!((of(&unknown, k) - truth).abs() < 1.5e-3 * bound(&unknown), "{unknown}");
     }
     let said = folder.done(
-        "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:760x520 --markers chessboard:6x5:30mm",
+        "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:720x520 --markers chessboard:6x5:30mm",
     );
     assert!(said.contains("\nlens          fx ") && said.contains(": camera within "), "{said}");
     // The lens that was found is one that can be stated, and gives the same camera.
