@@ -13,8 +13,11 @@ const OPEN: f64 = 0.01;
 /// Singular value of exact directions above which knowing something says something of them.
 const EXACT: f64 = 1e-5;
 
+/// A joint, and the place of its offset in a step.
+type Zero = (usize, usize);
+
 /// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with its place in a step.
-fn own_offsets(setup: &Setup<'_>) -> Vec<(usize, usize)> {
+fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
     let is_held = |joint: usize| {
         !setup
             .layout
@@ -42,9 +45,9 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
     }
     let space = DMatrix::from_fn(n, directions.len(), |row, column| directions[column][row]);
     let is_open = |space: &DMatrix<f64>, place: usize| space.row(place).norm() > OPEN;
-    let open: Vec<(usize, usize)> =
+    let open: Vec<Zero> =
         own_offsets(setup).into_iter().filter(|(_, place)| is_open(&space, *place)).collect();
-    let mut groups: Vec<(Vec<Block>, Vec<(usize, usize)>)> = Vec::new();
+    let mut groups: Vec<(Vec<Block>, Vec<Zero>)> = Vec::new();
     for &(joint, place) in &open {
         let hidden = hiding(setup, &open, joint);
         let known = |blocks: &[Block]| subspace::without_beyond(&space, &units(setup, blocks), EXACT).0;
@@ -68,7 +71,7 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
 }
 
 /// What may hide the offset of a joint, the simplest first.
-fn hiding(setup: &Setup<'_>, open: &[(usize, usize)], joint: usize) -> Vec<Vec<Block>> {
+fn hiding(setup: &Setup<'_>, open: &[Zero], joint: usize) -> Vec<Vec<Block>> {
     let of = |wanted: &dyn Fn(Block) -> bool| -> Vec<Block> {
         setup.layout.parameters().map(|(it, _)| it.block()).filter(|it| wanted(*it)).collect()
     };
@@ -97,7 +100,7 @@ fn units(setup: &Setup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
 }
 
 /// The description of offsets that some blocks hide.
-fn direction(setup: &Setup<'_>, by: &[Block], joints: &[(usize, usize)], directions: usize) -> Direction {
+fn direction(setup: &Setup<'_>, by: &[Block], joints: &[Zero], directions: usize) -> Direction {
     let session = &setup.session;
     let all = Names {
         joints: session.robot.joints.iter().map(|it| it.name.clone()).collect(),

@@ -52,8 +52,6 @@ pub(crate) fn refuse_uncomputed(
 pub(crate) fn no_number(cell: &Data, column: &str) -> Option<String> {
     let name = column.split(['[', '(']).next().unwrap_or_default();
     let is_time = seconds_of(name, None).is_some() || seconds_of(column, None).is_some();
-    match cell {
-        Data::DateTime(time) if !is_time => Some(format!("{} (formatted as a date or time)", time.as_f64())),
-        _ => None,
-    }
+    let Data::DateTime(time) = cell else { return None };
+    (!is_time).then(|| format!("{} (formatted as a date or time)", time.as_f64()))
 }

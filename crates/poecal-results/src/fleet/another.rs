@@ -12,11 +12,11 @@ const BETTER: f64 = 4.0;
 const REFUSED: u8 = 2;
 
 /// Of each of some rows, in their order, the sentence of a file that is of another serial number too, byte for byte: by a row of a ledger that was not
-/// refused, or by an earlier one of these.
+/// refused or another robot's, or by an earlier one of these.
 #[must_use]
 pub fn doubled<'a>(open: &[&'a LedgerRow], ledger: &'a Ledger) -> Vec<Option<String>> {
     let mut known: BTreeMap<&str, &LedgerRow> = BTreeMap::new();
-    for row in ledger.rows().iter().filter(|row| row.exit != REFUSED) {
+    for row in ledger.rows().iter().filter(|row| row.exit != REFUSED && row.of_another.is_none()) {
         row.sha256(&row.file).map(|sha256| known.entry(sha256).or_insert(row));
     }
     let of = |row: &&'a LedgerRow| {
