@@ -9,6 +9,7 @@ use std::sync::{Mutex, mpsc};
 use std::thread;
 
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::threads::threads_now;
 use poecal_report as report;
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::fleet::{
@@ -103,7 +104,7 @@ fn work_off(
     let before = find_changed(&open, ledger, again);
     let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let (skipped, total) = (all.len() - open.len(), open.len());
-    let workers = rayon_threads().min(total.max(1));
+    let workers = threads_now().min(total.max(1));
     let next = AtomicUsize::new(0);
     let (send, receive) = mpsc::channel();
     let send = Mutex::new(send);
@@ -232,11 +233,6 @@ fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> 
 
 /// Code of a refused calibration.
 const REFUSED: u8 = 2;
-
-/// How many processes run at once.
-fn rayon_threads() -> usize {
-    poecal_numerics::threads::threads_now()
-}
 
 /// What all robots share.
 struct Shared {
