@@ -5,6 +5,10 @@ export type Value = string | number;
 
 /** Options of `poecal calibrate`, by their long names. */
 export interface CalibrateOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
@@ -149,6 +153,10 @@ export interface CalibrateOptions {
 
 /** Options of `poecal validate`, by their long names. */
 export interface ValidateOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
@@ -204,6 +212,11 @@ export interface ValidateOptions {
    */
   require?: "good" | "inside_sampled_range" | "measured_configurations" | "located";
   /**
+   * End with code 1 unless the calibration clearly predicts these measurements better than the nominal model, device frame and targets
+   * fitted for both, with 95 % confidence
+   */
+  requireGain?: boolean;
+  /**
    * Limits that the errors must meet, like 0.2mm or 0.2mm,max:0.5mm,0.05deg: rms (the default), p95 or max of all errors in a unit. End
    * with code 1 unless each is shown to be kept, with 95 % confidence
    */
@@ -220,6 +233,10 @@ export interface ValidateOptions {
 
 /** Options of `poecal predict`, by their long names. */
 export interface PredictOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several Measurement files: */
@@ -241,6 +258,10 @@ export interface PredictOptions {
 
 /** Options of `poecal check`, by their long names. */
 export interface CheckOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
@@ -306,6 +327,10 @@ export interface CheckOptions {
 
 /** Options of `poecal identify`, by their long names. */
 export interface IdentifyOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
@@ -351,6 +376,10 @@ export interface IdentifyOptions {
 
 /** Options of `poecal export`, by their long names. */
 export interface ExportOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
@@ -370,6 +399,10 @@ export interface ExportOptions {
 
 /** Options of `poecal simulate`, by their long names. */
 export interface SimulateOptions {
+  /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
+  limit?: Value | readonly Value[];
+  /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
+  wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
   /** Last link of the chain, where a URDF has several */
@@ -939,7 +972,7 @@ export type FrameEntry = {
 /** Knowledge of the device frame. */
 export type FrameWord = "unknown" | "base";
 
-/** Whether the delivered model predicts better than the nominal model anywhere inside the sampled range. */
+/** Whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it. */
 export type Gain = "clear" | "unclear" | "loss";
 
 /** Weights that a robot carries. How heavy they are is in the coefficients. */
@@ -1013,7 +1046,7 @@ export type ImageEntry = {
   distance_mm: number;
 };
 
-/** Root mean square error of the registered model over that of another, on the same rows. */
+/** Root mean square error of the nominal model, registered, over that of another, on the same rows. */
 export type Improvement = {
   /** The factor. */
   factor: number;

@@ -133,8 +133,7 @@ impl Prior {
     }
 
     /// The same of the axes alone, and of the terms alone: parts that have a size each.
-    #[must_use]
-    pub fn parts(&self) -> [Self; 2] {
+    pub(crate) fn parts(&self) -> [Self; 2] {
         let without = Prior { targets: Vec::new(), clocks_count: false, ..self.clone() };
         let terms = Prior { axes: Vec::new(), base_free: false, ..without.clone() };
         [without.without_terms(), terms]

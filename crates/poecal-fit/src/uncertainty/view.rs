@@ -28,7 +28,10 @@ impl PriorInformation {
     #[must_use]
     pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
         if let Some(prior) = prior {
-            return Self::of_weight((prior, 1.0 / prior.looseness(estimate)), estimate, layout);
+            let mut found = Self::of_weight((prior, 1.0 / prior.looseness(estimate)), estimate, layout);
+            // Terms that were freed one by one say nothing of each other.
+            found.parts.truncate(1);
+            return found;
         }
         let n = layout.dim();
         let mut normal = Normal::new(n);
