@@ -66,7 +66,7 @@ FOLLOWED = {
     "they are these, a mapping (--columns) with {} has them read so": HERE + "test_angles_of_makers",
     "if they are millimetres, write `[mm]` behind the names of their columns, or --units mm": HERE + "test_lengths_of_poses",
     "if they are metres, write `[m]` behind the names of their columns, or --units m": HERE + "test_lengths_of_poses",
-    "if the column is in degrees, write `[deg]` behind its name, or --units deg": HERE + "test_angles_of_poses",
+    "if the column is in degrees, write `[deg]` behind its name{option}": HERE + "test_angles_of_poses",
     "write `[{short}]` behind the names of these columns": HERE + "test_angles_of_poses",
 }
 

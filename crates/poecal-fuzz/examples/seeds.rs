@@ -252,7 +252,7 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let bag =
         [bag("sensor_msgs/msg/JointState", &joints), between.into_bytes(), points.into_bytes()].concat();
     let gray = |width: usize, height: usize| {
-        let level = |at: usize| if (at % width / 5 + at / width / 5) % 2 == 0 { 30.0 } else { 220.0 };
+        let level = |at: usize| if (at % width / 5 + at / width / 5).is_multiple_of(2) { 30.0 } else { 220.0 };
         poecal_detect::Gray::new(width, height, (0..width * height).map(level).collect()).unwrap()
     };
     vec![
@@ -612,7 +612,7 @@ fn messages() -> Vec<String> {
     let session = Simulation { count: 6, seed: 5, ..Simulation::default() };
     let usual = PictureSimulation::usual(session, true);
     let board = read_boards("chessboard:6x5:40mm").unwrap().remove(0);
-    let lens = Lens::pinhole([1400.0, 1400.0], [960.0, 600.0]);
+    let lens = Lens::pinhole([1400.0, 1400.0], [1920.0, 1200.0]);
     let made = usual.before(board.clone(), lens).run(&elbow()).unwrap();
     let list = |all: Vec<String>| all.join(", ");
     let point = |frame: &str, [x, y]: [f64; 2]| {
@@ -632,8 +632,8 @@ fn messages() -> Vec<String> {
         let own = list(picture.corners.iter().map(place).collect());
         format!(
             "{{\"joint_states\": {{\"name\": [\"head_pan\", {names}], \"position\": [0.5, {readings}]}}, \"observations\": [\
-             {{\"sensor_name\": \"eye\", \"features\": [{seen}], \"ext_camera_info\": {{\"camera_info\": {{\"width\": 1920, \"height\": 1200, \
-             \"distortion_model\": \"plumb_bob\", \"d\": [0.0, 0.0, 0.0, 0.0, 0.0], \"k\": [1400.0, 0, 960.0, 0, 1400.0, 600.0, 0, 0, 1]}}}}}}, \
+             {{\"sensor_name\": \"eye\", \"features\": [{seen}], \"ext_camera_info\": {{\"camera_info\": {{\"width\": 3840, \"height\": 2400, \
+             \"distortion_model\": \"plumb_bob\", \"d\": [0.0, 0.0, 0.0, 0.0, 0.0], \"k\": [1400.0, 0, 1920.0, 0, 1400.0, 1200.0, 0, 0, 1]}}}}}}, \
              {{\"sensor_name\": \"arm\", \"features\": [{own}]}}]}}"
         )
     };

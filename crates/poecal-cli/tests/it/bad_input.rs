@@ -192,7 +192,7 @@ fn bad_models_get_one_sentence_each() {
         case("calibrate results good.csv", "",
              "results: found a directory, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json)"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-1\",\n",
-             "bad.json:2:1: found broken JSON (EOF while parsing a value), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
+             "bad.json:2:1: found broken JSON (EOF while parsing an object), expected a calibration as written by `poecal calibrate`: name a calibration.json"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-9\"}",
              "bad.json: found schema `poecal-calibration-9`, expected `poecal-calibration-2`: calibrate again with this version"),
         case("predict bad.json joints.csv", "{\"schema\": \"poecal-calibration-1\"}",

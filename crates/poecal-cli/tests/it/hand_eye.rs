@@ -317,7 +317,7 @@ fn corners(image: &str, seen: &Pose, turned: bool) -> Vec<String> {
             let point = Pose::from_xyz_rpy([0.03 * (at % 5.0), 0.03 * (at / 5.0).floor(), 0.0], [0.0; 3]);
             let it = (*seen * point).translation;
             let name = if turned { 19 - k } else { k };
-            let (u, v) = (800.0 * it.x / it.z + 359.5, 800.0 * it.y / it.z + 299.5);
+            let (u, v) = (800.0 * it.x / it.z + 359.5, 800.0 * it.y / it.z + 339.5);
             let off = [
                 0.02 * (7.3 * at + seen.translation.x * 1e3).sin(),
                 0.02 * (5.1 * at + seen.translation.y * 1e3).cos(),
@@ -345,7 +345,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         ),
     )
     .unwrap();
-    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,299.5,720,600\n")
+    fs::write(folder.path("lens.csv"), "name,fx,fy,cx,cy,width,height\neye,800,800,359.5,339.5,720,640\n")
         .unwrap();
     let all = |turned: &dyn Fn(usize) -> bool| -> String {
         let lines = rows
@@ -385,7 +385,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
     .unwrap();
     let numbers = unknown["lens"]["numbers"].as_array().unwrap();
     let value = |number: &serde_json::Value, key: &str| number[key].as_f64().unwrap();
-    for (number, truth) in numbers.iter().zip([800.0, 800.0, 359.5, 299.5, 0.0, 0.0, 0.0, 0.0]) {
+    for (number, truth) in numbers.iter().zip([800.0, 800.0, 359.5, 339.5, 0.0, 0.0, 0.0, 0.0]) {
         let (off, sigma) = (value(number, "value") - truth, value(number, "sigma"));
         // One of eight is beyond 4 deviations once in 2,000.
         assert!(off.abs() < 4.0 * sigma && sigma > 0.0, "{number}");

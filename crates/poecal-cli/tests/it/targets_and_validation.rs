@@ -144,6 +144,6 @@ fn the_nominal_model_is_judged_where_all_it_cannot_know_is_found_anew() {
         ("anywhere", "--refit-frame --refit-tool", true),
     ] {
         let out = folder.done(&format!("validate {name}/calibration.json base.csv {refit}"));
-        assert_eq!(out.contains("nominal"), is_judged, "{name} {refit}\n{out}");
+        assert_eq!(out.contains(" nominal   calibrated"), is_judged, "{name} {refit}\n{out}");
     }
 }

@@ -195,10 +195,7 @@ fn a_head_that_lies_takes_no_memory() {
     jpeg[at + 5..at + 9].fill(0xff);
     for bytes in [lying, jpeg] {
         let message = Picture::decode(&bytes, &path("given")).unwrap_err().to_string();
-        assert!(
-            message.ends_with("found no picture, expected PNG or JPEG (Memory limit exceeded)"),
-            "{message}"
-        );
+        assert!(message.contains(" pixels, expected at most 50000000 in all"), "{message}");
     }
 }
 

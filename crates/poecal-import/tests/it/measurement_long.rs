@@ -72,8 +72,8 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
     }
 }
 
-/// Enough columns that whatever looks at all of them for each takes minutes.
-const COLUMNS: usize = 100_000;
+/// Nearly as many columns as a file may have: whatever looks at all of them for each takes seconds.
+const COLUMNS: usize = 16_000;
 
 fn with_columns(own: &str) -> String {
     let names: Vec<String> = (0..COLUMNS).map(|column| format!("c{column}")).collect();
@@ -88,7 +88,7 @@ fn very_many_columns_take_no_longer_each() {
     let wide = read(&with_columns(&format!("{joints},x,y,z"))).unwrap();
     assert_eq!((wide.data.len(), wide.understood[0].ignored.len()), (1, COLUMNS));
     assert_eq!(wide.warnings.len(), 1);
-    assert!(wide.warnings[0].ends_with("`c28`, `c29` and 99970 more"), "{}", wide.warnings[0]);
+    assert!(wide.warnings[0].ends_with("`c28`, `c29` and 15970 more"), "{}", wide.warnings[0]);
     let error = read(&with_columns("x,y,z")).unwrap_err().to_string();
     assert!(
         error.starts_with("wide.csv:1: found no column `joint1`, expected one for joint `joint1`;"),
@@ -98,13 +98,13 @@ fn very_many_columns_take_no_longer_each() {
     let error = read(&with_columns(&format!("{joints},x,y,z,z"))).unwrap_err().to_string();
     assert_eq!(
         error,
-        "wide.csv:1:688939: found a second column `z`, expected one; rename or remove one of them"
+        "wide.csv:1:100939: found a second column `z`, expected one; rename or remove one of them"
     );
 }
 
 #[test]
 fn very_many_targets_in_a_row_take_no_longer_each() {
-    const TARGETS: usize = 10_000;
+    const TARGETS: usize = 5_000;
     let (mut map, mut names) = (String::new(), Vec::new());
     for target in 0..TARGETS {
         let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{axis}{target}")).collect();

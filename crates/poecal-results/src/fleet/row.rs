@@ -119,9 +119,22 @@ pub struct LedgerRow {
     /// Sizes of the terms; none without terms.
     #[serde(default)]
     pub sizes: Vec<SizeRow>,
-    /// That the measurements are of another robot of the line, a sentence; absent where nothing says so.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// That the measurements are of another robot of the line, a sentence; empty where nothing says so.
+    #[serde(default, with = "sentence")]
     pub of_another: Option<String>,
+}
+
+/// A sentence that may be absent, as a text that is empty then: tables have one type for it.
+mod sentence {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(text: &Option<String>, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(text.as_deref().unwrap_or_default())
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+        Ok(Some(String::deserialize(from)?).filter(|text| !text.is_empty()))
+    }
 }
 
 /// A figure without digits that say nothing.
