@@ -252,7 +252,8 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let bag =
         [bag("sensor_msgs/msg/JointState", &joints), between.into_bytes(), points.into_bytes()].concat();
     let gray = |width: usize, height: usize| {
-        let level = |at: usize| if (at % width / 5 + at / width / 5).is_multiple_of(2) { 30.0 } else { 220.0 };
+        let level =
+            |at: usize| if (at % width / 5 + at / width / 5).is_multiple_of(2) { 30.0 } else { 220.0 };
         poecal_detect::Gray::new(width, height, (0..width * height).map(level).collect()).unwrap()
     };
     vec![

@@ -89,8 +89,7 @@ pub fn hold(
     if place.file_name().is_none() {
         return Ok(None);
     }
-    // A clock is needed by who waits alone.
-    let end = (!patience.is_zero()).then(Instant::now).and_then(|now| now.checked_add(patience));
+    let mut end = None;
     loop {
         let other = match disk.hold(&path, &holder) {
             Ok(Held::Mine { lock, before }) => {
@@ -107,9 +106,13 @@ pub fn hold(
                 return Err(ErrorKind::File.error(message).in_file(&path));
             }
         };
-        if end.is_some_and(|end| Instant::now() < end) {
-            std::thread::sleep(PAUSE);
-            continue;
+        // Not everywhere is a clock: it is asked where there is somebody to wait for.
+        if !patience.is_zero() {
+            let end = *end.get_or_insert_with(|| Instant::now().checked_add(patience));
+            if end.is_none_or(|end| Instant::now() < end) {
+                std::thread::sleep(PAUSE);
+                continue;
+            }
         }
         let other = if other.is_empty() { "another run".to_owned() } else { other };
         let message = format!(
