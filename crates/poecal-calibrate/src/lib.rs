@@ -55,7 +55,7 @@ pub use crate::trust::expected::{Expectations, Expected, RangePart};
 pub use crate::trust::nominal::NominalError;
 pub use crate::validate::arm_too::{ArmToo, arm_too, session_of};
 pub use crate::validate::judge::{
-    DeliveredModel, JudgedModel, Judgement, MovedDevice, Refitted, Subject, judge,
+    DeliveredModel, JudgedModel, Judgement, MovedDevice, Refitted, Subject, improvement, judge,
 };
 pub use acceptance::{
     Acceptance, AcceptanceLimits, AcceptedLimit, AcceptedModel, AcceptedRows, AcceptedStatistic, Decision,

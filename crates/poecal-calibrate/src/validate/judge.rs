@@ -92,8 +92,8 @@ pub struct Judgement {
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
     pub in_sampled_range: Option<InSampledRange>,
-    /// Error of the nominal model over that of the delivered one on these rows, device frame and targets fitted for both; `None` where the rows
-    /// are too few for it.
+    /// Error of the nominal model over that of the delivered one on these rows, device frame and targets fitted for both ([`improvement`]); `None`
+    /// where the rows are too few for it, or where nobody asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub improvement: Option<Improvement>,
     /// Whether the limits that were asked for are kept; `None` if none were.
@@ -204,7 +204,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         nominal,
         promised,
         in_sampled_range,
-        improvement: improvement(subject, data),
+        improvement: None,
         acceptance: None,
         moved_device: None,
         base_from_device: rows.estimate.device_from_base.inverse(),
@@ -213,7 +213,9 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
 }
 
 /// Error of the nominal robot over that of the calibrated one on the same rows, with device frame and targets refitted for both: theory.md §9 (50).
-fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement> {
+/// `None` where the rows are too few for it.
+#[must_use]
+pub fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement> {
     let both =
         Subject { refit_frame: subject.frame != DeviceFrameKnowledge::Base, refit_tool: true, ..*subject };
     check_count(&both, data).ok()?;

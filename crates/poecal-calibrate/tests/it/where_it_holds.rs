@@ -231,7 +231,9 @@ fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
         assert!(recommended as f64 >= (least - sessions.more_of_a_share(0.2)) * gains as f64);
         // Where few rows leave joint terms open, more is expected than is there, and never much less.
         assert!(all.iter().all(|it| it.ratios[1] > 0.4));
-        assert!((0.8..1.6).contains(&inside.0) && (0.8..2.2).contains(&measured.0));
+        // The ratios of single sessions scatter by a half.
+        let more = sessions.more(0.5);
+        assert!((0.8..1.6 + more).contains(&inside.0) && (0.8..2.2 + more).contains(&measured.0));
     }
 }
 

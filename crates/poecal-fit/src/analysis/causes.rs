@@ -5,12 +5,12 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::direction::{Cause, Direction};
 use super::excitation::{Excitation, Turning};
-use super::open_offsets;
+use super::open_offsets::own_offsets;
 use super::setup::Setup;
 use super::spectrum::Spectrum;
 use super::subspace;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, Unit};
-use poecal_model::robot::JointKind;
+use poecal_model::robot::{JointKind, Term};
 
 /// Largest range of a joint with small motion: 20°, or of a prismatic joint this share of the length that a radian counts.
 const LITTLE_RAD: f64 = 0.35;
@@ -46,8 +46,10 @@ pub(crate) fn explain(
     let space = spectrum.vectors.columns(first, count).into_owned();
     let mut rules = Rules { setup, excitation, spectrum, degree, unexplained: space, found: Vec::new() };
     // Offsets beside screws are a structural kernel, reported as such.
+    let own = own_offsets(setup);
     let offsets = rules.places(|parameter| {
-        matches!(parameter, Parameter::ValueTerm(_)) && !open_offsets::is_own(setup, parameter)
+        let term = parameter.value_term();
+        term.is_some_and(|it| it.term != Term::OFFSET || own.iter().all(|(joint, _)| *joint != it.joint))
     });
     rules.take(&offsets);
     rules.unseen();

@@ -14,10 +14,10 @@ const OPEN: f64 = 0.01;
 const EXACT: f64 = 1e-5;
 
 /// A joint, and the place of its offset in a step.
-type Zero = (usize, usize);
+pub(crate) type Zero = (usize, usize);
 
 /// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with its place in a step.
-fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
+pub(crate) fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
     let is_held = |joint: usize| {
         !setup
             .layout
@@ -29,12 +29,6 @@ fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
         Some((term.joint, places.first()?.0))
     };
     setup.layout.parameters().filter_map(offset).collect()
-}
-
-/// Whether a parameter is the offset of a joint whose axis is held.
-pub(crate) fn is_own(setup: &Setup<'_>, parameter: &Parameter) -> bool {
-    let term = parameter.value_term().filter(|it| it.term == Term::OFFSET);
-    term.is_some_and(|term| own_offsets(setup).iter().any(|(joint, _)| *joint == term.joint))
 }
 
 /// The offsets that are not determined by directions without effect (orthonormal), grouped by what hides them, with what to hold.
@@ -61,8 +55,7 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
     let mut left = space;
     let mut found = Vec::new();
     for (by, joints) in &groups {
-        let unit = |place: usize| (0..n).map(|k| f64::from(u8::from(k == place))).collect::<Vec<f64>>();
-        let own: Vec<Vec<f64>> = joints.iter().map(|(_, place)| unit(*place)).collect();
+        let own: Vec<Vec<f64>> = joints.iter().map(|(_, place)| unit(n, *place)).collect();
         let (rest, taken) = subspace::without_beyond(&left, &own, OPEN);
         left = rest;
         found.push(direction(setup, by, joints, taken));
@@ -94,9 +87,12 @@ fn hiding(setup: &Setup<'_>, open: &[Zero], joint: usize) -> Vec<Vec<Block>> {
 fn units(setup: &Setup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
     let n = setup.layout.dim();
     let own = setup.layout.parameters().filter(|(it, _)| blocks.contains(&it.block()));
-    own.flat_map(|(_, places)| places.iter().map(|(place, _)| *place))
-        .map(|place| (0..n).map(|k| f64::from(u8::from(k == place))).collect())
-        .collect()
+    own.flat_map(|(_, places)| places.iter().map(|(place, _)| unit(n, *place))).collect()
+}
+
+/// The unit vector of an unknown.
+fn unit(n: usize, place: usize) -> Vec<f64> {
+    (0..n).map(|k| f64::from(u8::from(k == place))).collect()
 }
 
 /// The description of offsets that some blocks hide.

@@ -66,8 +66,11 @@ impl Part {
 
     /// What deviations of the size of the prior make of the square that is found: the trace of `(I - P)²`.
     fn determined(&self, formal: &DMatrix<f64>) -> f64 {
-        let n = self.information.nrows();
-        let (values, _) = linalg::symmetric_eigen(self.information.as_slice(), n);
+        // Unknowns that the part says nothing of are no directions of it.
+        let own: Vec<usize> =
+            (0..self.information.nrows()).filter(|&at| self.information[(at, at)] > 0.0).collect();
+        let some = self.information.select_rows(&own).select_columns(&own);
+        let (values, _) = linalg::symmetric_eigen(some.as_slice(), own.len());
         let largest = values.iter().fold(0.0, |most: f64, value| most.max(*value));
         let directions = values.iter().filter(|value| **value > NONE * largest).count() as f64;
         let shares = formal * &self.information;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::CalibrationFile;
 use poecal_arm::lie::rotation;
 use poecal_calibrate::{
-    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, JudgedModel, Judgement, MovedDevice,
-    PartCoverage, PredictedUncertainty, Refitted, Subject, accepted_by, judge,
+    Acceptance, AcceptanceLimits, AcceptedModel, CoverageCheck, Improvement, JudgedModel, Judgement,
+    MovedDevice, PartCoverage, PredictedUncertainty, Refitted, Subject, accepted_by, improvement, judge,
 };
 use poecal_fit::start::faces_on_known_planes;
 use poecal_fit::state::Range;
@@ -37,10 +37,10 @@ impl CalibrationFile {
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let judgement = self.judged(data, refit_frame, refit_tool)?;
         let Some(file) = self.corrected() else { return Ok(judgement) };
-        let Judgement { calibrated: errors, promised, in_sampled_range, improvement, rows, .. } =
+        let Judgement { calibrated: errors, promised, in_sampled_range, rows, .. } =
             file.judged(data, refit_frame, refit_tool)?;
         let corrected = Some(JudgedModel { errors, promised, in_sampled_range });
-        Ok(Judgement { corrected, improvement, rows, ..judgement })
+        Ok(Judgement { corrected, rows, ..judgement })
     }
 
     /// [`CalibrationFile::judge`] with the device's frame refitted where that stands elsewhere than at the calibration, and the rows show it: the
@@ -75,6 +75,22 @@ impl CalibrationFile {
             refitted: refits,
         });
         Ok(Judgement { moved_device, ..if refits { again } else { found } })
+    }
+
+    /// Error of the nominal model over that of the delivered one on all rows of some measurements that were judged so, device frame and targets
+    /// fitted for both; `None` where these are too few for it.
+    ///
+    /// # Errors
+    /// As [`CalibrationFile::judge`].
+    pub fn improvement(
+        &self,
+        data: &Dataset,
+        refit_frame: bool,
+        refit_tool: bool,
+    ) -> Result<Option<Improvement>> {
+        let corrected = self.corrected();
+        let file = corrected.as_ref().unwrap_or(self);
+        file.with_subject(data, refit_frame, refit_tool, |subject, data| Ok(improvement(subject, data)))
     }
 
     /// Judges limits by all rows of some measurements, with device frame and targets refitted as asked: theory.md §9, *Acceptance*. `sha256`

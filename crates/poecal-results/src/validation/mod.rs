@@ -158,7 +158,8 @@ impl Validation {
         let accept = accept.map(|limits| file.accept(data, refit_frame, refit_tool, limits, &inputs.sha256));
         let acceptance = accept.transpose()?;
         let judged_at = (stages > 1).then_some(stage);
-        let found = Validation::new(file, Judgement { acceptance, ..judgement }, inputs);
+        let improvement = file.improvement(data, refit_frame, refit_tool)?;
+        let found = Validation::new(file, Judgement { acceptance, improvement, ..judgement }, inputs);
         Ok(Validation { stage: judged_at, ..found })
     }
 

@@ -8,7 +8,7 @@ use super::{self as paper, LISTED};
 use crate::acceptance::plain;
 use crate::summary::{delivered, expected, judged_on, leading, why_larger};
 use crate::table::number;
-use poecal_calibrate::{Acceptance, DeviceFrameKnowledge, Level};
+use poecal_calibrate::{Acceptance, AcceptedLimit, DeviceFrameKnowledge, Level};
 use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::JointKind;
@@ -145,13 +145,24 @@ fn limits(found: &Acceptance) -> Markup {
                     tr {
                         td { (limit.quantity) " " (limit.statistic.words()) " at most " (plain(limit.limit)) " " (limit.unit) }
                         td { (number(limit.found)) " " (limit.unit) }
-                        td { @if limit.from > 0.0 { (number(limit.from)) " to " } @else { "at most " } @if let Some(to) = limit.to { (number(to)) " " (limit.unit) } @else { "not shown" } }
+                        td { (between(limit)) }
                         td { b { (limit.decision.words()) } }
                     }
                 }
             }
         }
         @if found.limits.len() > LISTED { p { "and " (found.limits.len() - LISTED) " more in the report" } }
+    }
+}
+
+/// The bounds of what a limit is for; a lower one of zero says nothing.
+fn between(limit: &AcceptedLimit) -> String {
+    let unit = &limit.unit;
+    match limit.to {
+        Some(to) if limit.from > 0.0 => format!("{} to {} {unit}", number(limit.from), number(to)),
+        Some(to) => format!("at most {} {unit}", number(to)),
+        None if limit.from > 0.0 => format!("{} to not shown", number(limit.from)),
+        None => "not shown".to_owned(),
     }
 }
 
