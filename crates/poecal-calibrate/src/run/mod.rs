@@ -18,6 +18,7 @@ pub(crate) mod rounding;
 pub(crate) mod split;
 pub(crate) mod stage;
 pub(crate) mod stations;
+pub(crate) mod target_prior;
 pub(crate) mod task;
 
 use std::borrow::Cow;
@@ -57,6 +58,8 @@ pub(crate) struct Run<'a> {
     pub(crate) prior: Option<Prior>,
     pub(crate) fit_rows: Vec<u32>,
     pub(crate) held_out_rows: Vec<u32>,
+    /// Standard deviation of the places of targets by the rows, metres, where these leave them open and a narrower prior was taken.
+    pub(crate) open_targets_m: Option<f64>,
     /// Rows that are left out as suspected ones, in order.
     pub(crate) left_out: Vec<u32>,
     length_m: f64,
@@ -102,6 +105,7 @@ impl<'a> Run<'a> {
             delivered: started(&robot, &data, (options, &unknowns)),
             prior: options.prior(&session),
             length_m: session.length_m,
+            open_targets_m: None,
             options: options.clone(),
             fit_rows,
             held_out_rows,

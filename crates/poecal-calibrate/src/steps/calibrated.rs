@@ -34,6 +34,10 @@ impl<'a> Run<'a> {
     pub(crate) fn fit(mut self, mut start: Start) -> Result<CalibratedFit<'a>> {
         let mut ratios = Vec::new();
         let mut fit = self.fit_with(&ratios, &start, self.options.robust)?;
+        // A loop where the rows leave the places of targets open: the narrowest prior that they do not contradict.
+        if let Some(narrowed) = self.with_narrower_targets(&fit) {
+            (self, start, fit) = (narrowed.run, narrowed.start, narrowed.fit);
+        }
         let is_open = start.source == NoiseSource::Estimated && self.data.station_count() > 1;
         for _ in 0..if is_open { ROUNDS } else { 0 } {
             let Some(found) = noise_ratios(&self.session(&ratios), &self.fit_rows, &fit) else { break };
@@ -57,7 +61,7 @@ impl<'a> Run<'a> {
     }
 
     /// One fit of the screws.
-    fn fit_with(&self, ratios: &[Noise], start: &Start, robust: Robust) -> Result<RobustFit> {
+    pub(crate) fn fit_with(&self, ratios: &[Noise], start: &Start, robust: Robust) -> Result<RobustFit> {
         let (session, rows) = (self.session(ratios), &self.fit_rows);
         let options = CalibrationOptions { robust, ..self.options.clone() };
         let prior = self.prior.as_ref().map(|prior| (prior, 1.0));

@@ -63,7 +63,8 @@ impl Prior {
         };
         let bodies = nominal.tree.targets().iter().enumerate();
         let moving = bodies.filter(|(target, body)| body.joint().is_some() && !is_shared(*target));
-        let sigma_m = (TARGET_SHARE * robot.reach_m()).max(TARGET_LEAST_M);
+        let widest_m = (TARGET_SHARE * robot.reach_m()).max(TARGET_LEAST_M);
+        let sigma_m = unknowns.target_sigma_m.map_or(widest_m, |sigma| sigma.min(widest_m));
         let targets = moving
             .filter(|(target, _)| !unknowns.open_targets.contains(target))
             .filter_map(|(target, _)| {
@@ -130,6 +131,18 @@ impl Prior {
         let screws: usize = counted.map(|axis| if axis.turns { 4 } else { 2 }).sum();
         let free = screws.saturating_sub(if self.base_free { 6 } else { 0 }).max(1);
         (2.0 * self.at_best_base(estimate).0.cost_of_axes() / free as f64).max(1.0)
+    }
+
+    /// The same without a prior of targets.
+    #[must_use]
+    pub fn without_targets(&self) -> Self {
+        Prior { targets: Vec::new(), ..self.clone() }
+    }
+
+    /// Largest standard deviation of the places of targets, metres; `None` without a prior of targets.
+    #[must_use]
+    pub fn target_sigma_m(&self) -> Option<f64> {
+        self.targets.iter().map(|target| target.sigma_m).reduce(f64::max)
     }
 
     /// The same of the axes alone, and of the terms alone: parts that have a size each.

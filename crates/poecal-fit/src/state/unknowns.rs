@@ -6,7 +6,7 @@ use poecal_model::robot::Term;
 
 /// What a fit changes: the axes of all joints, all targets and all frames of instruments, but for what is held as in the model; and terms of
 /// joint values, of which none is unknown without being named.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unknowns {
     /// Joints whose axes are held.
     pub held_axes: Vec<usize>,
@@ -14,6 +14,8 @@ pub struct Unknowns {
     pub held_targets: Vec<usize>,
     /// Targets of whose places nothing is known before: no prior (theory.md §6 (27c)).
     pub open_targets: Vec<usize>,
+    /// Prior standard deviation of the places of the other targets that move with the robot, metres; `None` is the widest of (27c).
+    pub target_sigma_m: Option<f64>,
     /// Stations whose frames are held.
     pub held_frames: Vec<usize>,
     /// Terms of joint values that are unknown.
@@ -32,6 +34,7 @@ impl Unknowns {
         held_axes: Vec::new(),
         held_targets: Vec::new(),
         open_targets: Vec::new(),
+        target_sigma_m: None,
         held_frames: Vec::new(),
         terms: Vec::new(),
         ranges: Vec::new(),
@@ -42,7 +45,7 @@ impl Unknowns {
     /// Whether those of the robot, its targets and instruments are the usual ones; what is known of them before is another question.
     #[must_use]
     pub fn are_usual(&self) -> bool {
-        Unknowns { open_targets: Vec::new(), pictures: Vec::new(), ..self.clone() } == Unknowns::USUAL
+        Unknowns { open_targets: Vec::new(), target_sigma_m: None, pictures: Vec::new(), ..self.clone() } == Unknowns::USUAL
     }
 
     /// Whether the axis of a joint is unknown.

@@ -1,0 +1,88 @@
+//! How near the drawing targets are taken to be where the rows leave their places open: theory.md §6, *Targets*.
+
+use super::Run;
+use crate::robust::RobustFit;
+use crate::steps::found::{Fitted, Start};
+use poecal_fit::problem::{Prior, Problem};
+use poecal_model::measurement::Noise;
+use poecal_numerics::linalg;
+use poecal_numerics::solve::{LeastSquares as _, Normal};
+
+/// Prior standard deviations of targets' places that are tried before the widest, metres.
+const SIGMAS_M: [f64; 3] = [0.02, 0.06, 0.2];
+/// Standard deviation of the places by the rows and the axes' prior above which the prior of targets decides, metres.
+const OPEN_M: f64 = 0.005;
+/// Loss of twice the cost (27) by which the rows contradict a prior: 95 % of χ² with one degree of freedom.
+const CONTRADICTED: f64 = 3.84;
+/// Rounding of information, as a share of its largest diagonal element.
+const ROUNDING: f64 = 1e-14;
+
+/// A run with a narrower prior of its targets' places, and its fit.
+pub(crate) struct Narrowed<'a> {
+    pub(crate) run: Run<'a>,
+    pub(crate) start: Start,
+    pub(crate) fit: RobustFit,
+}
+
+impl<'a> Run<'a> {
+    /// The same with the narrowest prior of targets' places that the rows do not contradict; `None` where they determine the places, or
+    /// contradict all but the widest.
+    pub(crate) fn with_narrower_targets(&self, widest: &RobustFit) -> Option<Narrowed<'a>> {
+        let open_m = self.open_m(self.prior.as_ref()?, &widest.fitted).filter(|open| *open > OPEN_M)?;
+        let rows = widest.robustness.registrable(&self.fit_rows);
+        let noise = widest.fitted.noise;
+        let least = self.cost(&rows, noise, &widest.fitted)?;
+        SIGMAS_M.into_iter().find_map(|sigma_m| {
+            let mut run = self.clone();
+            run.unknowns.target_sigma_m = Some(sigma_m);
+            run.prior = run.options.prior(&run.session(&[]));
+            run.open_targets_m = Some(open_m);
+            let start = run.register();
+            let fit = run.fit_with(&[], &start, run.options.robust).ok()?;
+            let lost = 2.0 * (run.cost(&rows, noise, &fit.fitted)? - least);
+            (lost <= CONTRADICTED).then_some(Narrowed { run, start, fit })
+        })
+    }
+
+    /// The cost (27) of a fit by these rows, in units of the variance of their whitened residuals where that is above 1.
+    fn cost(&self, rows: &[u32], noise: Noise, fitted: &Fitted) -> Option<f64> {
+        let free = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
+        let of_rows = Problem::new(self.session(&[]), rows.to_vec(), free, noise).normal(&fitted.estimate);
+        let cost = of_rows.cost / of_rows.mean_square().max(1.0) + self.prior.as_ref()?.cost(&fitted.estimate);
+        cost.is_finite().then_some(cost)
+    }
+
+    /// Standard deviation of the places of targets by the rows and the axes' prior, metres, at most that of the targets' prior.
+    fn open_m(&self, prior: &Prior, fitted: &Fitted) -> Option<f64> {
+        let sigma_m = prior.target_sigma_m()?;
+        let n = fitted.layout.dim();
+        let of = |prior: &Prior| {
+            let mut normal = Normal::new(n);
+            prior.add(&fitted.estimate, &fitted.layout, 1.0, &mut normal);
+            normal.gram
+        };
+        let (all, of_axes) = (of(prior), of(&prior.without_targets()));
+        let both: Vec<f64> = fitted.normal.gram.iter().zip(&all).map(|(rows, prior)| rows + prior).collect();
+        let largest = (0..n).map(|at| both[at * n + at]).fold(0.0, f64::max);
+        let covariance = linalg::inverse(&linalg::cholesky(&both, n, ROUNDING * largest)?);
+        let share: f64 = (0..n * n)
+            .map(|at| {
+                let (i, j) = (at / n, at % n);
+                let at_upper = i.min(j) * n + i.max(j);
+                covariance[at] * (all[at_upper] - of_axes[at_upper])
+            })
+            .sum();
+        Some(sigma_m * share.max(0.0).sqrt())
+    }
+
+    /// That the rows leave the places of targets open, and what to measure.
+    pub(crate) fn open_targets(&self) -> Option<String> {
+        let (open_m, sigma_m) = self.open_targets_m.zip(self.unknowns.target_sigma_m)?;
+        Some(format!(
+            "the rows leave the place of the target on the last link open (standard deviation {:.0} mm), so it is taken to be within about {:.0} mm of the model's: \
+             if it may be farther, measure configurations that turn the tool about other axes, or put its place into the model",
+            1e3 * open_m,
+            2e3 * sigma_m
+        ))
+    }
+}
