@@ -4,7 +4,10 @@
 
 pub use crate::kernels::Factor;
 use crate::kernels::{self as lanes, SimdLevel};
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix6, U6, Vector3, Vector4};
+use nalgebra::allocator::Allocator;
+use nalgebra::{
+    Cholesky, DMatrix, DVector, DefaultAllocator, Dim, Dyn, Matrix4, Matrix6, OMatrix, U6, Vector3, Vector4,
+};
 
 /// Adds `Σ rᵀ r` over rows r to the upper triangle of a row-major `n × n` Gram matrix (theory.md §6 (28)). `rows` holds rows of `n`
 /// numbers, of which those before `start` are zero and are skipped.
@@ -91,7 +94,10 @@ pub fn inverse(factor: &Factor) -> Vec<f64> {
 }
 
 /// `A⁻¹ b` of a symmetric matrix; `None` unless it is positive definite.
-pub fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+pub fn solved<C: Dim>(matrix: DMatrix<f64>, right: &OMatrix<f64, Dyn, C>) -> Option<OMatrix<f64, Dyn, C>>
+where
+    DefaultAllocator: Allocator<Dyn, C>,
+{
     Some(Cholesky::new(matrix)?.solve(right))
 }
 

@@ -10,8 +10,10 @@ use poecal_numerics::solve::{LeastSquares as _, Normal};
 
 /// Prior standard deviations of targets' places that are tried before the widest, metres.
 const SIGMAS_M: [f64; 3] = [0.02, 0.06, 0.2];
-/// Standard deviation of the places by the rows and the axes' prior above which the prior of targets decides, metres.
-const OPEN_M: f64 = 0.005;
+/// Standard deviation of the places by the rows and the axes' prior, metres, from which on another prior of targets matters where rows are left
+/// out, and from which on it decides in the fit.
+const MATTERS_M: f64 = 3e-4;
+const OPEN_M: f64 = 5e-3;
 /// Loss of twice the cost (27) by which the rows contradict a prior: 95 % of χ² with one degree of freedom.
 const CONTRADICTED: f64 = 3.84;
 /// Rounding of information, as a share of its largest diagonal element.
@@ -28,7 +30,7 @@ impl<'a> Run<'a> {
     /// The same with the narrowest prior of targets' places that the rows do not contradict; `None` where they determine the places, or
     /// contradict all but the widest.
     pub(crate) fn with_narrower_targets(&self, widest: &RobustFit) -> Option<Narrowed<'a>> {
-        let open_m = self.open_m(self.prior.as_ref()?, &widest.fitted).filter(|open| *open > OPEN_M)?;
+        let open_m = self.open_m(self.prior.as_ref()?, &widest.fitted).filter(|open| *open > MATTERS_M)?;
         let rows = widest.robustness.registrable(&self.fit_rows);
         let noise = widest.fitted.noise;
         let least = self.cost(&rows, noise, &widest.fitted)?;
@@ -48,7 +50,8 @@ impl<'a> Run<'a> {
     fn cost(&self, rows: &[u32], noise: Noise, fitted: &Fitted) -> Option<f64> {
         let free = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let of_rows = Problem::new(self.session(&[]), rows.to_vec(), free, noise).normal(&fitted.estimate);
-        let cost = of_rows.cost / of_rows.mean_square().max(1.0) + self.prior.as_ref()?.cost(&fitted.estimate);
+        let cost =
+            of_rows.cost / of_rows.mean_square().max(1.0) + self.prior.as_ref()?.cost(&fitted.estimate);
         cost.is_finite().then_some(cost)
     }
 
@@ -77,7 +80,8 @@ impl<'a> Run<'a> {
 
     /// That the rows leave the places of targets open, and what to measure.
     pub(crate) fn open_targets(&self) -> Option<String> {
-        let (open_m, sigma_m) = self.open_targets_m.zip(self.unknowns.target_sigma_m)?;
+        let (open_m, sigma_m) =
+            self.open_targets_m.filter(|open| *open > OPEN_M).zip(self.unknowns.target_sigma_m)?;
         Some(format!(
             "the rows leave the place of the target on the last link open (standard deviation {:.0} mm), so it is taken to be within about {:.0} mm of the model's: \
              if it may be farther, measure configurations that turn the tool about other axes, or put its place into the model",

@@ -21,6 +21,13 @@ pub struct WithoutEffect {
     pub(crate) of_base: usize,
 }
 
+impl WithoutEffect {
+    /// The directions if all are motions of the base.
+    pub(crate) fn of_base(self) -> Vec<Vec<f64>> {
+        if self.of_base == self.directions.len() { self.directions } else { Vec::new() }
+    }
+}
+
 /// A motion of all that stands on some bodies: everything (the base), or what is beyond a joint, against its offset.
 struct Motion {
     twist: Twist,
@@ -55,13 +62,47 @@ impl Layout {
             // The first device frame holds the base.
             0
         } else {
-            self.unseen(estimate, data, rows, &base).len()
+            self.unseen(estimate, session, rows, &base).len()
         };
         if offsets.is_empty() && of_base == 0 {
             return WithoutEffect { directions: Vec::new(), of_base };
         }
         let all: Vec<Motion> = base.into_iter().chain(offsets).collect();
-        WithoutEffect { directions: self.unseen(estimate, data, rows, &all), of_base }
+        WithoutEffect { directions: self.unseen(estimate, session, rows, &all), of_base }
+    }
+
+    /// Growth of all that these rows see about the first station, of which no row sees anything where none has a length: a step in which a
+    /// point 1 m from there moves by 1 m.
+    pub(crate) fn growth(&self, estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<f64> {
+        let first = estimate.device(data.first_station(rows));
+        let mut step = vec![0.0; self.dim()];
+        for (parameter, places) in self.parameters() {
+            let local =
+                |frame: &Pose| frame.rotation.tr_mul(&(frame.translation - first.inverse().translation));
+            let (freedom, shift) = match parameter.model().subject() {
+                Subject::Joint(joint) if parameter.value_term().is_none() => {
+                    let is_revolute = estimate.kinds().get(joint) == Some(&JointKind::Revolute);
+                    let freedom = Freedom::of([0, 1].into_iter().filter(|_| is_revolute));
+                    (freedom, estimate.base_from_axis.get(joint).map(local))
+                }
+                Subject::Target(target) => {
+                    let freedom = self.freedom_of(target).unwrap_or(Freedom::PLACE);
+                    (freedom, estimate.base_from_target.get(target).map(local))
+                }
+                Subject::Instrument(station) => {
+                    let freedom = data.device_freedom(station, rows);
+                    let (device, centre) = (estimate.device(station), first.inverse().translation);
+                    (freedom, Some(device.rotation * centre + device.translation))
+                }
+                Subject::Joint(_) | Subject::Range(_) | Subject::Clock(_) => continue,
+            };
+            let shift = shift.unwrap_or_default();
+            let shifts = freedom.motions().iter().map(|&at| if at < 3 { shift[at] } else { 0.0 });
+            for (&(at, scale), shift) in places.iter().zip(shifts) {
+                step[at] = shift * scale;
+            }
+        }
+        step
     }
 
     /// The motions of unknown offsets.
@@ -78,7 +119,14 @@ impl Layout {
     }
 
     /// The combinations of motions that no held thing sees.
-    fn unseen(&self, estimate: &Estimate, data: &Dataset, rows: &[u32], motions: &[Motion]) -> Vec<Vec<f64>> {
+    fn unseen(
+        &self,
+        estimate: &Estimate,
+        session: &Session<'_>,
+        rows: &[u32],
+        motions: &[Motion],
+    ) -> Vec<Vec<f64>> {
+        let data = session.data;
         let count = motions.len();
         let mut moved = begin_steps(motions, self.dim());
         // Information that the held things give about the motions.
@@ -101,6 +149,10 @@ impl Layout {
         // Of a motion, in the axes of what stands at `frame`: places, then turns.
         let local = |frame: &Pose, twist: &Twist| frame.inverse().transform(twist).to_vector();
         for (joint, (frame, kind)) in estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate() {
+            // Links bend about the axes of their joints, wherever these are.
+            if session.robot.joints.get(joint).is_some_and(|it| it.give_of.is_some()) {
+                continue;
+            }
             let body = estimate.tree.joint_before(joint).map_or(Body::Base, Body::Link);
             add(Subject::Joint(joint), Some(body), &|twist| {
                 let step = local(frame, twist);

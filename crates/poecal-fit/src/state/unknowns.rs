@@ -45,7 +45,8 @@ impl Unknowns {
     /// Whether those of the robot, its targets and instruments are the usual ones; what is known of them before is another question.
     #[must_use]
     pub fn are_usual(&self) -> bool {
-        Unknowns { open_targets: Vec::new(), target_sigma_m: None, pictures: Vec::new(), ..self.clone() } == Unknowns::USUAL
+        Unknowns { open_targets: Vec::new(), target_sigma_m: None, pictures: Vec::new(), ..self.clone() }
+            == Unknowns::USUAL
     }
 
     /// Whether the axis of a joint is unknown.

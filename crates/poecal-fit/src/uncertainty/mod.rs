@@ -5,6 +5,7 @@ mod clusters;
 mod correlation;
 mod discrepancy;
 mod folds;
+mod gauge;
 mod held;
 mod information;
 mod motions;
@@ -30,6 +31,7 @@ pub use remainder::{Attribution, Part, Remainder, Settled, remainder};
 pub use share::Shares;
 pub use view::{PriorInformation, View};
 
+use gauge::Gauge;
 use information::{ROUNDING, factor};
 use motions::{motions, products};
 use prior_size::own_size;
@@ -59,6 +61,8 @@ pub struct Uncertainty {
     pub covariance: Vec<f64>,
     /// The covariance outside the sampled range, with [`Discrepancy::extrapolation`]; `None` where that is no larger.
     pub covariance_outside: Option<Vec<f64>>,
+    /// Standard deviation of the size of all that was measured, as a share, where nothing that was measured has a length: it is in no covariance.
+    pub size_sigma: Option<f64>,
     /// Sampled range of each joint, radians or metres.
     pub sampled: Vec<[f64; 2]>,
     /// Model error that the residuals show.
@@ -76,10 +80,17 @@ impl Uncertainty {
         let outside = (found.extrapolation > found.scatter)
             .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
         let sampled = ranges(&view.session, view.rows);
+        let covariance = own_size(inflated(gram, layout.dim(), view, found.scatter)?, normal, view);
+        let gauge = Gauge::of(view, &layout);
+        let fixed = |covariance: Vec<f64>| match &gauge {
+            Some(gauge) => gauge.fixed(&covariance),
+            None => covariance,
+        };
         Some(Uncertainty {
             estimate: view.estimate.clone(),
-            covariance: own_size(inflated(gram, layout.dim(), view, found.scatter)?, normal, view),
-            covariance_outside: outside.flatten(),
+            size_sigma: gauge.as_ref().and_then(|it| it.sigma_of_size(&covariance)),
+            covariance: fixed(covariance),
+            covariance_outside: outside.flatten().map(fixed),
             sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
             layout,
             discrepancy: *found,

@@ -153,6 +153,7 @@ impl CalibrationFile {
             layout,
             covariance,
             covariance_outside,
+            size_sigma: None,
             sampled: self.coverage.iter().map(|it| [it.sampled_min, it.sampled_max]).collect(),
             discrepancy: entry.model_error(),
             length_m: entry.length_m,
