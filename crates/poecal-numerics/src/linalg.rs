@@ -4,10 +4,7 @@
 
 pub use crate::kernels::Factor;
 use crate::kernels::{self as lanes, SimdLevel};
-use nalgebra::allocator::Allocator;
-use nalgebra::{
-    Cholesky, DMatrix, DVector, DefaultAllocator, Dim, Dyn, Matrix4, Matrix6, OMatrix, U6, Vector3, Vector4,
-};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Matrix6, U6, Vector3, Vector4};
 
 /// Adds `Σ rᵀ r` over rows r to the upper triangle of a row-major `n × n` Gram matrix (theory.md §6 (28)). `rows` holds rows of `n`
 /// numbers, of which those before `start` are zero and are skipped.
@@ -94,10 +91,7 @@ pub fn inverse(factor: &Factor) -> Vec<f64> {
 }
 
 /// `A⁻¹ b` of a symmetric matrix; `None` unless it is positive definite.
-pub fn solved<C: Dim>(matrix: DMatrix<f64>, right: &OMatrix<f64, Dyn, C>) -> Option<OMatrix<f64, Dyn, C>>
-where
-    DefaultAllocator: Allocator<Dyn, C>,
-{
+pub fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     Some(Cholesky::new(matrix)?.solve(right))
 }
 

@@ -131,6 +131,7 @@ impl CalibratedFit<'_> {
             .is_some_and(|it| [TermGroup::Sag, TermGroup::Tilt].iter().any(|of| it.sizes[*of] > 0.0));
         warnings.extend(self.run.robot.placeholder_masses().filter(|_| sags));
         warnings.extend(self.run.open_targets());
+        warnings.extend(figures.unknown_size());
         warnings.extend(one_zero(self));
         warnings.extend(optics.map(|it| it.statement));
         warnings.extend(view_doubts(self));

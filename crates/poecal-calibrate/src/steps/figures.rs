@@ -37,6 +37,17 @@ impl Figures {
         self.trust.uncertainty.as_ref()?.discrepancy.lag_one
     }
 
+    /// That the size of the robot shows in no measurement, and that no expected error contains it.
+    pub(crate) fn unknown_size(&self) -> Option<String> {
+        let of_corrected = self.correction.as_ref().and_then(|it| it.uncertainty.as_ref());
+        let sigma = of_corrected.or(self.trust.uncertainty.as_ref())?.size_sigma?;
+        Some(format!(
+            "the size of the robot shows in no measurement: only the model gives it, to {:.2} % (standard deviation). Expected errors are without it, \
+             as errors of contacts are; for places measure one known length, such as the distance of two sockets",
+            100.0 * sigma
+        ))
+    }
+
     /// Adds to each suspicious joint what the corrected model finds there.
     pub(crate) fn explain_suspicions(&mut self, robot: &Robot) {
         let Some(found) = &self.correction else { return };

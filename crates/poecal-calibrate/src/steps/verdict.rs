@@ -5,6 +5,7 @@ use super::figures::Figures;
 use super::level::{Gain, Level, Verdict};
 use super::summary::FitSummary;
 use crate::doubts::signs::Signs;
+use crate::run::Run;
 use crate::run::accuracy::JudgingError;
 use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
@@ -166,6 +167,8 @@ fn no_clear_gain(expected: &Expectations) -> String {
 
 /// Least relative reduction of the error on held-out rows.
 const WORTH: f64 = 0.02;
+/// Held-out configurations up to which cross-validation of the others may tell more.
+const FEW: usize = 12;
 /// Calibrated error over the reach above which no rigid robot is described: elastic gears and links have a tenth of it.
 const TOO_LARGE: f64 = 1e-2;
 /// Error over the reach above which no model of a robot is confirmed: that of nominal models is half as large.
@@ -213,7 +216,7 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     let [before, after] = [&set.registered, &set.calibrated].map(|model| model.judging(set.count));
     let (registered, calibrated, unit) = (before.rms, after.rms, after.unit.symbol());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
-    let no_better = (moves_joints && is_no_better(&after, &before)).then(|| {
+    let no_better = (moves_joints && is_no_better(&after, &before) && !is_better_left_out(grounds)).then(|| {
         format!(
             "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
         )
@@ -238,16 +241,38 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     }
 }
 
+/// Whether too few configurations were held out to tell, and cross-validation of the fitted ones predicts them better than the nominal screws
+/// explain them.
+fn is_better_left_out(grounds: &Grounds<'_>) -> bool {
+    let Run { data, held_out_rows, .. } = &grounds.fit.run;
+    let held_out = data.configurations(held_out_rows).len();
+    let Figures { accuracy, trust, .. } = grounds.figures;
+    let left_out = trust.cross_validation.as_ref().map(|it| it.random.rms);
+    let registered = &accuracy.training.registered;
+    (1..FEW).contains(&held_out)
+        && left_out.and_then(|it| it.leading()).is_some_and(|(quantity, rms)| {
+            registered
+                .get(quantity)
+                .is_some_and(|before| quantity.unit().shown(rms) < (1.0 - WORTH) * before.rms)
+        })
+}
+
 fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     let mut reasons = grounds.mistakes.clone();
     if !grounds.fit.robust.fitted.report.termination.is_success() {
         reasons.push("the fit did not converge".to_owned());
     }
-    let unknowns = grounds.figures.identifiability.parameters;
-    if (grounds.summary.remainder.numbers as f64) < REDUNDANCY * unknowns as f64 {
+    // What the prior determines needs no measurements.
+    let remainder = &grounds.summary.remainder;
+    let unknowns = if grounds.fit.run.prior.is_some() {
+        remainder.effective_unknowns
+    } else {
+        grounds.figures.identifiability.parameters as f64
+    };
+    if (remainder.numbers as f64) < REDUNDANCY * unknowns {
         reasons.push(format!(
-            "{} numbers measured in different configurations for {unknowns} unknowns are too few to judge the fit",
-            grounds.summary.remainder.numbers
+            "{} numbers measured in different configurations for {unknowns:.0} unknowns that they determine are too few to judge the fit",
+            remainder.numbers
         ));
     }
     reasons

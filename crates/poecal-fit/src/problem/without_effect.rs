@@ -21,13 +21,6 @@ pub struct WithoutEffect {
     pub(crate) of_base: usize,
 }
 
-impl WithoutEffect {
-    /// The directions if all are motions of the base.
-    pub(crate) fn of_base(self) -> Vec<Vec<f64>> {
-        if self.of_base == self.directions.len() { self.directions } else { Vec::new() }
-    }
-}
-
 /// A motion of all that stands on some bodies: everything (the base), or what is beyond a joint, against its offset.
 struct Motion {
     twist: Twist,
@@ -62,13 +55,24 @@ impl Layout {
             // The first device frame holds the base.
             0
         } else {
-            self.unseen(estimate, session, rows, &base).len()
+            self.unseen(estimate, data, rows, (&base, &|_| true)).len()
         };
         if offsets.is_empty() && of_base == 0 {
             return WithoutEffect { directions: Vec::new(), of_base };
         }
         let all: Vec<Motion> = base.into_iter().chain(offsets).collect();
-        WithoutEffect { directions: self.unseen(estimate, session, rows, &all), of_base }
+        WithoutEffect { directions: self.unseen(estimate, data, rows, (&all, &|_| true)), of_base }
+    }
+
+    /// Motions of the base that leave all held things where they are, but for the joints by which links bend: these stand where the links are.
+    pub(crate) fn base_motions(
+        &self,
+        estimate: &Estimate,
+        session: &Session<'_>,
+        rows: &[u32],
+    ) -> Vec<Vec<f64>> {
+        let bends = |joint: usize| session.robot.joints.get(joint).is_some_and(|it| it.give_of.is_some());
+        self.unseen(estimate, session.data, rows, (&base_motions(self.length_m()), &|joint| !bends(joint)))
     }
 
     /// Growth of all that these rows see about the first station, of which no row sees anything where none has a length: a step in which a
@@ -122,11 +126,10 @@ impl Layout {
     fn unseen(
         &self,
         estimate: &Estimate,
-        session: &Session<'_>,
+        data: &Dataset,
         rows: &[u32],
-        motions: &[Motion],
+        (motions, holds): (&[Motion], &dyn Fn(usize) -> bool),
     ) -> Vec<Vec<f64>> {
-        let data = session.data;
         let count = motions.len();
         let mut moved = begin_steps(motions, self.dim());
         // Information that the held things give about the motions.
@@ -149,8 +152,7 @@ impl Layout {
         // Of a motion, in the axes of what stands at `frame`: places, then turns.
         let local = |frame: &Pose, twist: &Twist| frame.inverse().transform(twist).to_vector();
         for (joint, (frame, kind)) in estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate() {
-            // Links bend about the axes of their joints, wherever these are.
-            if session.robot.joints.get(joint).is_some_and(|it| it.give_of.is_some()) {
+            if !holds(joint) {
                 continue;
             }
             let body = estimate.tree.joint_before(joint).map_or(Body::Base, Body::Link);

@@ -67,11 +67,12 @@ impl<'a> Session<'a> {
         let seen = |row: &u32| self.observation(*row).measurement;
         let has_length = |row: &u32| seen(row).has_length();
         let is_place = |row: &u32| seen(row).channels().iter().any(|it| it.quantity.unit() == Unit::Metre);
+        let bends = |joint: usize| self.robot.joints.get(joint).is_some_and(|it| it.give_of.is_some());
         let slides = || self.robot.joints.iter().any(|joint| joint.kind == JointKind::Prismatic);
         !rows.iter().any(has_length)
             && rows.iter().any(is_place)
             && self.data.lengths.is_empty()
-            && self.unknowns.held_axes.len() < 2
+            && self.unknowns.held_axes.iter().filter(|&&joint| !bends(joint)).count() < 2
             && !slides()
     }
 

@@ -1,7 +1,8 @@
 //! Directions of the unknowns that no row sees: covariances are stated where predictions move least along them (theory.md §9 (39e)).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, RowDVector};
 
+use super::in_first;
 use super::motions::motions;
 use super::view::View;
 use crate::problem::Layout;
@@ -11,38 +12,53 @@ use poecal_numerics::linalg;
 /// Most rows whose predictions choose.
 const ROWS: usize = 240;
 
+/// Effect of a direction of length 1 on the places, mean square, below which it has none.
+const NO_EFFECT: f64 = 1e-12;
+
 /// What no row sees, and what the unknowns do along it.
 pub(super) struct Gauge {
-    /// A column for each direction; the last one is the growth of everything where nothing has a length.
+    /// A column for each direction.
     directions: DMatrix<f64>,
     /// Parts of the directions in a step of all unknowns: those that leave the predicted places nearest.
     parts: DMatrix<f64>,
-    grows: bool,
+    /// Share of each direction that is growth, where nothing has a length.
+    growth: Option<RowDVector<f64>>,
 }
 
 impl Gauge {
-    /// That of some rows; `None` where they see everything.
+    /// That of a fit; `None` where its rows see everything that they predict.
     pub(super) fn of(view: &View<'_>, layout: &Layout) -> Option<Self> {
         let View { session, estimate, .. } = *view;
-        let mut directions = layout.motions_without_effect(estimate, &session, view.rows).of_base();
+        let mut unseen = layout.base_motions(estimate, &session, view.rows);
         let grows = session.lacks_length(view.rows);
         if grows {
-            directions.push(layout.growth(estimate, session.data, view.rows));
+            unseen.push(layout.growth(estimate, session.data, view.rows));
         }
-        if directions.is_empty() {
+        if unseen.is_empty() {
             return None;
         }
-        let directions = DMatrix::from_fn(layout.dim(), directions.len(), |i, k| directions[k][i]);
-        let sample: Vec<u32> = sample_rows(view.rows, ROWS);
-        let rows: Vec<_> = view
-            .with_sights(&sample)
-            .into_iter()
-            .map(|(row, sight)| super::in_first((row, sight.target)))
-            .collect();
+        let unseen = DMatrix::from_fn(layout.dim(), unseen.len(), |i, k| unseen[k][i]);
+        let sample = sample_rows(view.rows, ROWS);
+        let rows: Vec<_> =
+            view.with_sights(&sample).iter().map(|(row, sight)| in_first((*row, sight.target))).collect();
         let all = motions(layout, &Linkage::new(estimate), session.packed, &rows, 1);
-        let along = &all * &directions;
-        let parts = linalg::solved(along.tr_mul(&along), &(along.transpose() * all))?;
-        Some(Gauge { directions, parts, grows })
+        // Combinations of the directions with effects of their own.
+        let along = &all * &unseen;
+        let (values, vectors) = linalg::symmetric_eigen(along.tr_mul(&along).as_slice(), unseen.ncols());
+        let seen: Vec<usize> =
+            (0..values.len()).filter(|&k| values[k] > NO_EFFECT * all.nrows() as f64).collect();
+        if seen.is_empty() {
+            return None;
+        }
+        let scaled = |k: usize| vectors.column(k) / values[k].sqrt();
+        let combined = DMatrix::from_columns(&seen.iter().map(|&k| scaled(k)).collect::<Vec<_>>());
+        let last = combined.nrows().checked_sub(1)?;
+        let along = &along * &combined;
+        Some(Gauge {
+            growth: grows.then(|| combined.row(last).into_owned()),
+            directions: unseen * combined,
+            parts: along.tr_mul(&all),
+        })
     }
 
     /// A covariance (row-major) with what no row sees chosen so that predicted places in the rows' configurations move least.
@@ -55,10 +71,10 @@ impl Gauge {
     }
 
     /// Standard deviation of the size of everything, as a share, where no row sees it.
-    pub(super) fn sigma_of_size(&self, covariance: &[f64]) -> Option<f64> {
+    pub(super) fn size_sigma(&self, covariance: &[f64]) -> Option<f64> {
         let n = self.directions.nrows();
-        let own = self.parts.row(self.parts.nrows() - 1);
+        let own = self.growth.as_ref()? * &self.parts;
         let all = DMatrix::from_row_slice(n, n, covariance);
-        self.grows.then(|| (own * &all).dot(&own).max(0.0).sqrt())
+        Some((&own * all).dot(&own).max(0.0).sqrt())
     }
 }

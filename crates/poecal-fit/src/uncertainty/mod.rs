@@ -88,7 +88,7 @@ impl Uncertainty {
         };
         Some(Uncertainty {
             estimate: view.estimate.clone(),
-            size_sigma: gauge.as_ref().and_then(|it| it.sigma_of_size(&covariance)),
+            size_sigma: gauge.as_ref().and_then(|it| it.size_sigma(&covariance)),
             covariance: fixed(covariance),
             covariance_outside: outside.flatten().map(fixed),
             sampled: sampled.into_iter().map(|(least, most)| [least, most]).collect(),
