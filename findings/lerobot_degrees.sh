@@ -10,8 +10,8 @@
 # Whom it hurts: whoever measures an SO-100, SO-101 or Koch arm: half a tick of one joint is 0.3 mm at 0.4 m,
 # always to one side, which a calibration takes for an offset of that joint if the values that were sent
 # stand for those that were read. Read positions back after a motion.
-# poecal: writes offsets of motors in whole ticks of 360/4096 degrees (`poecal export --to lerobot`), rounded
-# to the nearest, and refuses a `drive_mode` other than 0.
+# poecal: writes offsets of motors in whole ticks of 360/4096 degrees, rounded to the nearest
+# (`poecal export --format lerobot`), and refuses a `drive_mode` other than 0.
 # LeRobot wants Python 3.12. Torch, which its import asks for, is replaced by an empty module; no motor is
 # needed.
 set -euo pipefail
