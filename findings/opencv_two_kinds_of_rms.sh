@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The reprojection error of one board, by calibrateCamera and by solvePnPGeneric of OpenCV.
 #
-# Expected: one number. Both are documented as a root of a mean of squares over N points.
+# Expected: one number: both are root mean squares of the same residuals.
 # What happens: calibrateCamera, fisheye.calibrate and stereoCalibrate divide by the number of points, of two
 # coordinates each; solvePnPGeneric divides by the number of coordinates. For the same points, pose and
 # camera its error is smaller by the root of two: 0.20 px in place of 0.28 px.

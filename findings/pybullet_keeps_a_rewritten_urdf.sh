@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # A URDF that is loaded, rewritten and loaded again, in PyBullet.
 #
-# Expected: loadURDF reads the file; resetSimulation begins anew. The documentation of enableFileCaching
-# speaks of files such as those of meshes.
+# Expected: loadURDF reads the file, at the latest after resetSimulation.
 # What happens: a URDF that was read once is kept by its name for as long as the connection lasts. Rewritten
 # and loaded again, after resetSimulation too, the robot is the old one. Nothing is said. Another name,
 # a new connection, or setPhysicsEngineParameter(enableFileCaching=0) before the first load helps.
