@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # An MJCF body with two joints, in Drake beside MuJoCo.
 #
-# Expected: the same poses from both. Drake reads joints, frames, defaults, angles and `ref` as MuJoCo does.
+# Expected: the same poses from both. Drake reads joints, defaults, angles and `ref` as MuJoCo does.
 # What happens: for bodies with one joint it does. Where a body has several, Drake puts its position and
 # orientation before the last joint, in place of before the first one: the others turn about the origin
 # and the axes of the parent. At zero both agree; with joints at 0.3 and 0.5 rad a tool at 1 m is 168 mm
