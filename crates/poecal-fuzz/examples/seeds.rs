@@ -296,7 +296,8 @@ fn binary_workbook(rows: &[Vec<String>]) -> Vec<u8> {
     }
     sheet.extend(record(0x92, &[]));
     let named = [vec![0; 8], counted("rId1"), counted("A")].concat();
-    let links: &[u8] = b"<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.bin\"/></Relationships>";
+    let links: &[u8] =
+        b"<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.bin\"/></Relationships>";
     let parts = [
         [&b"xl/workbook.bin\n"[..], &record(0x9C, &named)].concat(),
         [&b"xl/_rels/workbook.bin.rels\n"[..], links].concat(),
