@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_numerics::text::visible;
 
 use crate::yaml::Leaf;
 
@@ -79,7 +80,7 @@ pub fn other_keys(
             continue;
         }
         if !changes(leaf, at) {
-            let word = format!("`{key}`");
+            let word = format!("`{}`", visible(key));
             if !others.contains(&word) {
                 others.push(word);
             }

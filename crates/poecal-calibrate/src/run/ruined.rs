@@ -42,7 +42,7 @@ impl Run<'_> {
             return Vec::new();
         }
         let registration = self.registration(session, &self.fit_rows, *noise, true);
-        let usual = median(row_distances(&registration, registered));
+        let usual = median(row_distances(&registration, registered).into_iter());
         let distances = row_distances(&registration, &register_robustly(&registration, &self.delivered));
         let Some((usual, middle)) = usual.zip(median(distances.iter().copied())) else { return Vec::new() };
         let is_gross = |distance: &f64| *distance > GROSS * middle;
