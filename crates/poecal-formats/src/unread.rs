@@ -9,163 +9,55 @@ use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::xml::XmlSource;
 use poecal_storage::yaml::Leaf;
 
-/// An element that is read, with attributes and elements within it that are read or change no place of a link.
-pub(crate) type Known = (&'static str, &'static [&'static str], &'static [&'static str]);
+/// An element that is read, with attributes and elements within it that are read or change no place of a link: words with blanks between.
+pub(crate) type Known = (&'static str, &'static str, &'static str);
+
+fn has(words: &str, name: &str) -> bool {
+    words.split_whitespace().any(|it| it == name)
+}
 
 /// What elements of URDF have.
 pub(crate) const URDF: &[Known] = &[
-    (
-        "link",
-        &["name", "type"],
-        &[
-            "inertial",
-            "visual",
-            "collision",
-            "contact",
-            "sensor",
-            "self_collision_checking",
-            "gazebo",
-            "inertia",
-        ],
-    ),
+    ("link", "name type", "inertial visual collision contact sensor self_collision_checking gazebo inertia"),
     (
         "joint",
-        &["name", "type"],
-        &[
-            "parent",
-            "child",
-            "origin",
-            "axis",
-            "limit",
-            "mimic",
-            "dynamics",
-            "safety_controller",
-            "calibration",
-            "gazebo",
-            "hardwareInterface",
-            "transmission",
-        ],
+        "name type",
+        "parent child origin axis limit mimic dynamics safety_controller calibration gazebo hardwareInterface \
+         transmission",
     ),
-    ("origin", &["xyz", "rpy", "quat_xyzw"], &[]),
-    ("axis", &["xyz"], &[]),
-    ("limit", &["lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"], &[]),
-    ("mimic", &["joint", "multiplier", "offset"], &[]),
-    ("parent", &["link"], &[]),
-    ("child", &["link"], &[]),
+    ("origin", "xyz rpy quat_xyzw", ""),
+    ("axis", "xyz", ""),
+    ("limit", "lower upper effort velocity acceleration deceleration jerk", ""),
+    ("mimic", "joint multiplier offset", ""),
+    ("parent", "link", ""),
+    ("child", "link", ""),
 ];
 
 /// What elements of MuJoCo's models have.
 pub(crate) const MJCF: &[Known] = &[
     (
         "compiler",
-        &[
-            "angle",
-            "autolimits",
-            "eulerseq",
-            "coordinate",
-            "boundmass",
-            "boundinertia",
-            "settotalmass",
-            "balanceinertia",
-            "strippath",
-            "fitaabb",
-            "assetdir",
-            "meshdir",
-            "texturedir",
-            "discardvisual",
-            "convexhull",
-            "usethread",
-            "fusestatic",
-            "inertiafromgeom",
-            "inertiagrouprange",
-            "exactmeshinertia",
-            "alignfree",
-            "saveinertial",
-        ],
-        &["lengthrange"],
+        "angle autolimits eulerseq coordinate boundmass boundinertia settotalmass balanceinertia strippath fitaabb \
+         assetdir meshdir texturedir discardvisual convexhull usethread fusestatic inertiafromgeom \
+         inertiagrouprange exactmeshinertia alignfree saveinertial",
+        "lengthrange",
     ),
     (
         "body",
-        &[
-            "name",
-            "childclass",
-            "mocap",
-            "pos",
-            "quat",
-            "axisangle",
-            "xyaxes",
-            "zaxis",
-            "euler",
-            "gravcomp",
-            "sleep",
-            "user",
-        ],
-        &[
-            "inertial",
-            "joint",
-            "freejoint",
-            "geom",
-            "site",
-            "camera",
-            "light",
-            "flexcomp",
-            "plugin",
-            "body",
-            "frame",
-        ],
+        "name childclass mocap pos quat axisangle xyaxes zaxis euler gravcomp sleep user",
+        "inertial joint freejoint geom site camera light flexcomp plugin body frame",
     ),
     (
         "frame",
-        &["name", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler"],
-        &[
-            "inertial",
-            "joint",
-            "freejoint",
-            "geom",
-            "site",
-            "camera",
-            "light",
-            "flexcomp",
-            "plugin",
-            "body",
-            "frame",
-        ],
+        "name childclass pos quat axisangle xyaxes zaxis euler",
+        "inertial joint freejoint geom site camera light flexcomp plugin body frame",
     ),
     (
         "joint",
-        &[
-            "name",
-            "class",
-            "type",
-            "group",
-            "pos",
-            "axis",
-            "springdamper",
-            "limited",
-            "actuatorfrclimited",
-            "solreflimit",
-            "solimplimit",
-            "solreffriction",
-            "solimpfriction",
-            "solref",
-            "solimp",
-            "stiffness",
-            "range",
-            "actuatorfrcrange",
-            "actuatorgravcomp",
-            "margin",
-            "ref",
-            "springref",
-            "damping",
-            "armature",
-            "frictionloss",
-            "user",
-            "joint1",
-            "joint2",
-            "polycoef",
-            "active",
-        ],
-        &["plugin"],
+        "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit \
+         solreffriction solimpfriction solref solimp stiffness range actuatorfrcrange actuatorgravcomp margin ref \
+         springref damping armature frictionloss user joint1 joint2 polycoef active",
+        "plugin",
     ),
 ];
 
@@ -173,44 +65,21 @@ pub(crate) const MJCF: &[Known] = &[
 pub(crate) const SDF: &[Known] = &[
     (
         "model",
-        &["name", "canonical_link", "placement_frame"],
-        &[
-            "link",
-            "joint",
-            "frame",
-            "model",
-            "pose",
-            "static",
-            "self_collide",
-            "allow_auto_disable",
-            "enable_wind",
-            "plugin",
-            "gripper",
-        ],
+        "name canonical_link placement_frame",
+        "link joint frame model pose static self_collide allow_auto_disable enable_wind plugin gripper",
     ),
     (
         "joint",
-        &["name", "type"],
-        &[
-            "parent",
-            "child",
-            "pose",
-            "axis",
-            "axis2",
-            "gearbox_ratio",
-            "gearbox_reference_body",
-            "thread_pitch",
-            "screw_thread_pitch",
-            "physics",
-            "sensor",
-        ],
+        "name type",
+        "parent child pose axis axis2 gearbox_ratio gearbox_reference_body thread_pitch screw_thread_pitch physics \
+         sensor",
     ),
-    ("frame", &["name", "attached_to"], &["pose"]),
-    ("axis", &[], &["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"]),
-    ("pose", &["relative_to", "frame", "degrees", "rotation_format"], &[]),
-    ("xyz", &["expressed_in"], &[]),
-    ("mimic", &["joint", "axis"], &["multiplier", "offset", "reference"]),
-    ("limit", &[], &["lower", "upper", "effort", "velocity", "stiffness", "dissipation"]),
+    ("frame", "name attached_to", "pose"),
+    ("axis", "", "xyz limit dynamics mimic use_parent_model_frame initial_position"),
+    ("pose", "relative_to frame degrees rotation_format", ""),
+    ("xyz", "expressed_in", ""),
+    ("mimic", "joint axis", "multiplier offset reference"),
+    ("limit", "", "lower upper effort velocity stiffness dissipation"),
 ];
 
 /// Elements in which links and joints are sought: of URDF and Gazebo's models the root, of MuJoCo's what has joints.
@@ -238,7 +107,7 @@ pub(crate) fn sentence<'a>(
             continue;
         };
         for attribute in node.attributes().filter(|it| it.namespace().is_none()) {
-            if !attributes.contains(&attribute.name()) {
+            if !has(attributes, attribute.name()) {
                 found.push(leaf(source, node, &[tag, attribute.name()], attribute.value()));
             }
         }
@@ -247,7 +116,7 @@ pub(crate) fn sentence<'a>(
             .filter(|it| it.is_element() && it.tag_name().namespace() == node.tag_name().namespace())
         {
             let name = child.tag_name().name();
-            if elements.contains(&name) {
+            if has(elements, name) {
                 steps.push(child);
                 continue;
             }
