@@ -97,13 +97,14 @@ pub(crate) fn sentence<'a>(
     let mut found = Vec::new();
     let is_sought =
         |it: &Node<'a, 'a>| !root.has_tag_name("mujoco") || SOUGHT_IN.contains(&it.tag_name().name());
-    let mut steps: Vec<Node<'a, 'a>> = root.children().filter(Node::is_element).filter(is_sought).collect();
+    let of_root = root.children().rev().filter(Node::is_element);
+    let mut steps: Vec<Node<'a, 'a>> = of_root.filter(is_sought).collect();
     // Not recursive: models may be deep.
     while let Some(node) = steps.pop() {
         let tag = node.tag_name().name();
         let Some((_, attributes, elements)) = known.iter().find(|it| it.0 == tag) else {
             let leads = ["worldbody", "default", "equality", "world"].contains(&tag);
-            steps.extend(node.children().filter(|it| leads && it.is_element()));
+            steps.extend(node.children().rev().filter(|it| leads && it.is_element()));
             continue;
         };
         for attribute in node.attributes().filter(|it| it.namespace().is_none()) {
@@ -117,7 +118,7 @@ pub(crate) fn sentence<'a>(
         {
             let name = child.tag_name().name();
             if has(elements, name) {
-                steps.push(child);
+                next.push(child);
                 continue;
             }
             if child.attributes().len() == 0 {
@@ -128,7 +129,6 @@ pub(crate) fn sentence<'a>(
             }
         }
     }
-    found.reverse();
     other_keys(&found, 1, |_| false, (KeysOf::Robot, source.path))
 }
 
