@@ -112,6 +112,7 @@ pub(crate) fn sentence<'a>(
                 found.push(leaf(source, node, &[tag, attribute.name()], attribute.value()));
             }
         }
+        let mut next = Vec::new();
         for child in node
             .children()
             .filter(|it| it.is_element() && it.tag_name().namespace() == node.tag_name().namespace())
@@ -128,6 +129,7 @@ pub(crate) fn sentence<'a>(
                 found.push(leaf(source, child, &[tag, name, attribute.name()], attribute.value()));
             }
         }
+        steps.extend(next.into_iter().rev());
     }
     other_keys(&found, 1, |_| false, (KeysOf::Robot, source.path))
 }
