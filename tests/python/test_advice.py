@@ -19,7 +19,7 @@ POINTS = [line for line in (ELBOW / "points.csv").read_text().splitlines() if li
 BESIDE = {f"poecal-{name}" for name in ("arm", "c", "detect", "fuzz", "lou2009", "py", "testing", "wasm")}
 CRATES = sorted(path for path in (ROOT / "crates").glob("*/src") if path.parent.name not in BESIDE)
 # What a sentence looks like that says what to write.
-ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|\(--columns\)|by --start|`--third-axis")
+ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|: take --board|\(--columns\)|by --start|`--third-axis")
 
 HERE = "test_advice.py::"
 FOLLOWED = {
@@ -67,6 +67,7 @@ FOLLOWED = {
     "if they are millimetres, write `[mm]` behind the names of their columns, or --units mm": HERE + "test_lengths_of_poses",
     "if they are metres, write `[m]` behind the names of their columns, or --units m": HERE + "test_lengths_of_poses",
     "if the column is in degrees, write `[deg]` behind its name{option}": HERE + "test_angles_of_poses",
+    ": take --board {}": "crates/poecal-cli/tests/it/detect.rs::the_board_that_a_message_names_is_found",
     "write `[{short}]` behind the names of these columns": HERE + "test_angles_of_poses",
 }
 

@@ -16,4 +16,5 @@ pub mod logo;
 pub mod mimic;
 pub mod proof;
 pub mod robot_toml;
+mod unread;
 pub mod urdf;

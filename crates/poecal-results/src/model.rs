@@ -207,6 +207,15 @@ impl Model {
         self.controller().filter(|it| !it.is_plain())
     }
 
+    /// What its file states of links and joints that is not read, a sentence.
+    #[must_use]
+    pub fn unread(&self) -> Option<&str> {
+        match &self.source {
+            ModelSource::Urdf(document) => document.unread(),
+            ModelSource::Toml | ModelSource::Calibration(_) => None,
+        }
+    }
+
     /// What looks like other units than those of its form, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {

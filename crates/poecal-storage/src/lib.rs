@@ -19,6 +19,7 @@ pub mod limits;
 pub mod looks_like;
 pub mod named_files;
 pub mod numbers;
+pub mod other_keys;
 pub mod source;
 pub mod source_text;
 pub mod xml;

@@ -77,7 +77,8 @@ fn deepest_element(text: &str) -> Option<usize> {
 /// A text whose prefixes are all declared: the colon of a prefix that the text declares nowhere (`<sensor:camera>` in a `<gazebo>` of old) is
 /// written as `_`, so that the names are those of elements that nobody knows, and every byte is where it was.
 pub fn readable(text: &str) -> Cow<'_, str> {
-    let colons = undeclared(text);
+    // What is refused needs no list of its prefixes.
+    let colons = if is_beyond(text, Limit::Elements.most()) { Vec::new() } else { undeclared(text) };
     if colons.is_empty() {
         return Cow::Borrowed(text);
     }
@@ -142,6 +143,12 @@ fn undeclared(text: &str) -> Vec<usize> {
     used.into_iter().map(|(_, at)| at).collect()
 }
 
+/// Whether a text has more signs of elements and attributes than so many elements need: the parser makes room for each before it counts.
+fn is_beyond(text: &str, most: u64) -> bool {
+    let count = |sign: u8| memchr::memchr_iter(sign, text.as_bytes()).count() as u64;
+    count(b'<') > most.saturating_mul(2) || count(b'=') > most.saturating_mul(4)
+}
+
 /// An XML text, parsed; `expected` describes it in messages.
 pub fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document<'a>> {
     if let Some(offset) = crowded_element(text) {
@@ -153,6 +160,9 @@ pub fn parsed<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Document
         return Err(ErrorKind::Syntax
             .error(Limit::Nesting.exceeded("each other"))
             .at_offset(path, text, offset));
+    }
+    if is_beyond(text, Limit::Elements.most()) {
+        return Err(ErrorKind::Syntax.error(Limit::Elements.exceeded("an XML file")).in_file(path));
     }
     let nodes_limit = u32::try_from(Limit::Elements.most()).unwrap_or(u32::MAX);
     let options = ParsingOptions { nodes_limit, ..ParsingOptions::default() };
@@ -387,6 +397,7 @@ pub fn value_range(node: Node, name: &str) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits;
 
     #[test]
     fn prefixes_that_are_declared_nowhere_become_names_of_the_same_length() {
@@ -404,6 +415,21 @@ mod tests {
         for broken in ["<a:", "<a b:c=\"", "<!-- <a:b>", "<a:b<c:d>", "", "<:a/>", "<a:/>"] {
             assert_eq!(super::readable(broken).len(), broken.len());
         }
+    }
+
+    #[test]
+    fn texts_of_more_elements_than_there_may_be_are_refused_before_they_are_parsed() {
+        let few = limits::here().with(Limit::Elements, 10);
+        let of = |inside: &str| {
+            let text = format!("<r>{inside}</r>");
+            limits::on(few, || parsed(&readable(&text), Path::new("r"), "XML").map(|_| ()))
+        };
+        assert!(of(&"<a b='1' c='2'/>".repeat(9)).is_ok());
+        for beyond in ["<a/>".repeat(19), "<s:a/>".repeat(19), "<a/>".repeat(11), "= ".repeat(41)] {
+            let error = of(&beyond).unwrap_err();
+            assert!(error.message().contains("limit `elements`"), "{error}");
+        }
+        assert!(is_beyond(&"<".repeat(21), 10) && !is_beyond(&"<".repeat(20), 10));
     }
 
     #[test]

@@ -168,7 +168,7 @@ fn close_value(open: &mut [Open]) {
 }
 
 /// A number or word of a file with all the keys and places in lists that lead to it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Leaf {
     /// Keys, and numbers of places in lists.
     pub path: Vec<String>,

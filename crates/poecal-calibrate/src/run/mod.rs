@@ -15,6 +15,7 @@ pub(crate) mod pull;
 pub(crate) mod refused;
 pub(crate) mod restart;
 pub(crate) mod rounding;
+mod ruined;
 pub(crate) mod split;
 pub(crate) mod stage;
 pub(crate) mod stations;
@@ -160,13 +161,18 @@ impl<'a> Run<'a> {
 
     /// Device frame and targets with nominal screws, and the noise estimated from their residuals unless stated.
     pub(crate) fn register(&self) -> Start {
+        self.register_by(&self.fit_rows)
+    }
+
+    /// The same by some of the rows.
+    fn register_by(&self, rows: &[u32]) -> Start {
         self.in_pool(|| {
             let session = self.session(&[]);
             let (mut noise, source) = noise::first_guess(&self.data, &self.options);
-            let of = |noise| self.registration(session, &self.fit_rows, noise, true);
+            let of = |noise| self.registration(session, rows, noise, true);
             let (registered, _) = register(&of(noise), &self.delivered);
             if source == NoiseSource::Estimated
-                && let Some(found) = estimate_noise(&session, &self.fit_rows, &registered, 6.0, None, noise)
+                && let Some(found) = estimate_noise(&session, rows, &registered, 6.0, None, noise)
             {
                 noise = noise::stated(&self.options, found);
             }

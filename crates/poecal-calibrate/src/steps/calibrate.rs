@@ -50,6 +50,8 @@ fn calibrated<'a>(
     let run = run.with_best_tolerance()?;
     progress(Stage::Registration);
     let start = run.register();
+    // A session of few rows without one that alone ruins its start.
+    let (run, start) = run.without_ruinous(start);
     progress(Stage::Fit);
     // A loop where several instruments have different noises: fit, noises, fit.
     let fit = run.fit(start)?;

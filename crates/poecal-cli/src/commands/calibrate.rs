@@ -24,6 +24,7 @@ use poecal_results::residuals::{ResidualRows, Residuals};
 use poecal_results::shapes::Shapes;
 use poecal_storage::named_files::{refuse_fitted, refuse_repeats};
 
+use super::models::read_model;
 use super::typed::command;
 use crate::args::{Calibrate, ReportPlace};
 use crate::console::Console;
@@ -39,7 +40,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let mut timings = Timings::start();
     let model_path = stated_model(arguments)?;
     let reading = arguments.reading.options();
-    let mut model = Model::read(model_path, &arguments.chain.selection(reading.as_ref().ok())?)?;
+    let mut model = read_model(model_path, &arguments.chain.selection(reading.as_ref().ok())?, console)?;
     model.robot = model.robot.with_factors(&arguments.factors)?;
     model.terms_left_out().iter().for_each(|note| console.note(note));
     let (data, inputs) = read_measurements(arguments, &model, reading, console)?;

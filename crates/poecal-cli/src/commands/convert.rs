@@ -4,8 +4,9 @@ use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result, nearest};
 use poecal_numerics::unit::Unit;
-use poecal_results::model::{self, Model, ModelFormat};
+use poecal_results::model::{self, ModelFormat};
 
+use super::models::read_model;
 use crate::DONE;
 use crate::args::Convert;
 use crate::console::Console;
@@ -14,7 +15,7 @@ use crate::quantity::signed;
 pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
     let form = form(arguments)?;
     let place = arguments.place.reserve(&[&arguments.model], console)?;
-    let mut model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
+    let mut model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
     if !arguments.offset.is_empty() {
         let offsets = offsets(&arguments.offset, &model.robot)?;
         for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {

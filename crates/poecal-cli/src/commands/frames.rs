@@ -7,14 +7,15 @@ use poecal_numerics::error::Result;
 use poecal_results::model::Model;
 use poecal_results::output::{Contents, Existing, FolderPlace, write_texts};
 
+use super::models::read_model;
 use crate::args::{ChainArgs, OutFrames};
 use crate::console::Console;
 use crate::{DONE, WORSE, style};
 
 /// The model whose joint readings are read, if one is stated.
-pub(super) fn model(path: Option<&PathBuf>, chain: &ChainArgs) -> Result<Option<Model>> {
+pub(super) fn model(path: Option<&PathBuf>, chain: &ChainArgs, console: &Console) -> Result<Option<Model>> {
     chain.refuse_without(path.map(PathBuf::as_path))?;
-    path.map(|path| Model::read(path, &chain.selection())).transpose()
+    path.map(|path| read_model(path, &chain.selection(), console)).transpose()
 }
 
 /// Name of a row in messages.

@@ -21,7 +21,7 @@ use crate::console::Console;
 pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.poses)?;
     let place = arguments.out.reserve(Contents::HandEye, &arguments.inputs(), console)?;
-    let model = model(arguments.model.as_ref(), &arguments.chain)?;
+    let model = model(arguments.model.as_ref(), &arguments.chain, console)?;
     refuse_without_use(arguments)?;
     let pictures = arguments.pictures()?;
     let robot = model.as_ref().map(|it| &it.robot);

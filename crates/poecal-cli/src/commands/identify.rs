@@ -7,9 +7,9 @@ use poecal_model::measurement::{Noise, Quantity};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_plan::plan::{PlannedFit, expected_errors};
 use poecal_report as report;
-use poecal_results::model::Model;
 use poecal_storage::named_files::refuse_repeats;
 
+use super::models::read_model;
 use crate::DONE;
 use crate::args::Identify;
 use crate::console::Console;
@@ -17,7 +17,7 @@ use crate::console::Console;
 pub(crate) fn identify(arguments: &Identify, console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.joints)?;
     let options = arguments.columns.options().and_then(|options| arguments.cameras.add(options));
-    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let model = read_model(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?, console)?;
     let options = model.reads(options?);
     let usual = PlannedSession::default();
     let session = PlannedSession {

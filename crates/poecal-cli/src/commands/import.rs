@@ -7,11 +7,11 @@ use std::path::{Component, Path, PathBuf};
 use poecal_import as measurements;
 use poecal_import::{Frames, Join, MeasurementFile, PlaneContact};
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_results::model::Model;
 use poecal_results::output::{Existing, FilePlace};
 use poecal_storage::disk;
 use poecal_storage::named_files::{actual, refuse_repeats};
 
+use super::models::read_model;
 use crate::args::{CONTACT, FRAMES, Import, JOIN, word_of};
 use crate::console::Console;
 use crate::style::{labelled, shown};
@@ -41,7 +41,7 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     let beside = arguments.out.with_extension("map.toml");
     let map_place = FilePlace::reserve(&beside, existing, &inputs, &mut console.warner())?;
     let options = arguments.reading.options()?;
-    let model = Model::read(path, &arguments.chain.selection(Some(&options))?)?;
+    let model = read_model(path, &arguments.chain.selection(Some(&options))?, console)?;
     let file = measurements::read(&arguments.measurements, &model.robot, &model.reads(options))?;
     console.said_of(&file);
     let table = measurements::imported_table(&file, &model.robot)?;

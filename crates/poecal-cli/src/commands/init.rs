@@ -8,6 +8,7 @@ use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::output::{Contents, Existing, FolderPlace, Project, write_project, write_texts};
 
+use super::models::read_model;
 use crate::DONE;
 use crate::args::Init;
 use crate::console::Console;
@@ -25,7 +26,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
         return ErrorKind::Option.refuse("found no model, expected `poecal init MODEL`, --hand-eye or --tcp");
     };
     let chain = arguments.chain.selection(None)?;
-    let model = Model::read(path, &chain)?;
+    let model = read_model(path, &chain, console)?;
     if let Some(file) = &arguments.columns_from {
         return columns(arguments, (path, file), &model, console);
     }

@@ -16,6 +16,7 @@ mod import;
 mod init;
 mod itself;
 mod kept;
+mod models;
 mod offsets;
 #[cfg(any(unix, windows))]
 mod pictures;

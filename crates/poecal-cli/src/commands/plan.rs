@@ -16,6 +16,7 @@ use poecal_results::output::{Existing, FilePlace};
 use poecal_results::plan_program::plan_program;
 use poecal_results::shapes::capsules_of;
 
+use super::models::read_model;
 use super::visits::{Stated, Visited};
 use crate::DONE;
 use crate::args::{FitArgs, OutFile, Plan, PlannedDevice};
@@ -36,7 +37,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let program = arguments.program.as_ref().map(reserved).transpose()?;
     let page = arguments.report.as_ref().map(reserved).transpose()?;
     let options = arguments.columns.options();
-    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let model = read_model(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?, console)?;
     console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
     let reading = model.reads(options?);
     let read = |path: &PathBuf| readings(path, &model, &reading, console);

@@ -7,9 +7,9 @@ use poecal_calibrate::AcceptedModel;
 use poecal_formats::urdf::named_link;
 use poecal_import as measurements;
 use poecal_numerics::error::Result;
-use poecal_results::model::Model;
 use poecal_results::predictions;
 
+use super::models::read_model;
 use crate::DONE;
 use crate::args::{Predict, with_mapping};
 use crate::console::Console;
@@ -26,7 +26,7 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
         !["toml", "json"].map(OsStr::new).contains(&arguments.model.extension().unwrap_or_default());
     let mounted = target.filter(|target| has_links && target.contains('=')).map(named_link).transpose()?;
     let selection = arguments.chain.selection().joined(&[], mounted.as_slice())?;
-    let model = Model::read(&arguments.model, &with_mapping(selection, options.as_ref().ok())?)?;
+    let model = read_model(&arguments.model, &with_mapping(selection, options.as_ref().ok())?, console)?;
     let model = match arguments.of {
         AcceptedModel::Corrected => {
             let corrected = model.corrected()?;

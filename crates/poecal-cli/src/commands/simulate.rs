@@ -5,9 +5,9 @@ use poecal_model::robot::{Sizes, TermGroup};
 use poecal_model::simulate::Simulation;
 use poecal_numerics::error::Result;
 use poecal_numerics::text::visible;
-use poecal_results::model::Model;
 use poecal_results::output::{self, Contents, Existing, FolderPlace, SimulatedSession};
 
+use super::models::read_model;
 use crate::args::{Simulate, TreeArgs};
 use crate::console::Console;
 use crate::style;
@@ -21,7 +21,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         &[&arguments.model],
         &mut console.warner(),
     )?;
-    let model = Model::read(&arguments.model, &arguments.chain.selection(None)?)?;
+    let model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
     #[cfg(any(unix, windows))]
     if let Some(camera) = arguments.camera {
         return super::photograph::photograph(

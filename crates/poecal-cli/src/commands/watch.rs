@@ -9,8 +9,8 @@ use poecal_model::measurement::Kind;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::plan::{Watch as Watched, WatchOptions, workspace_in};
 use poecal_report as report;
-use poecal_results::model::Model;
 
+use super::models::read_model;
 use super::plan::{fit, readings};
 use crate::args::Watch;
 use crate::console::Console;
@@ -29,7 +29,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
         );
     }
     let options = arguments.columns.options();
-    let model = Model::read(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?)?;
+    let model = read_model(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?, console)?;
     let reading = model.reads(options?);
     let read = |path| readings(path, &model, &reading, console);
     let candidates = arguments.candidates.as_ref().map(read).transpose()?;

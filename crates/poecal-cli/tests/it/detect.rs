@@ -253,6 +253,22 @@ fn a_board_that_moved_once_is_named() {
     assert!(run.out.contains("moved") && run.out.contains("20.") || run.out.contains("19."), "{}", run.out);
 }
 
+/// The board that a message names in place of a wrong one is found when it is taken.
+#[test]
+fn the_board_that_a_message_names_is_found() {
+    let folder = Folder::new();
+    session(&folder, 4, usize::MAX);
+    for wrong in
+        ["charuco:5x7:36mm:26mm:DICT_4X4_50", "charuco:7x5:36mm:26mm:DICT_6X6_250", "tags:36h11:30mm"]
+    {
+        let said = folder.run(&format!("detect pictures --board {wrong} --out c.csv"));
+        let (_, named) = said.err.split_once("take --board ").unwrap();
+        let taken = folder.run(&format!("detect pictures --board {} --out c.csv --force", named.trim_end()));
+        assert!(said.code == 2 && taken.code == 0, "{}{}", said.err, taken.err);
+        assert!(folder.read("c.csv").lines().count() > 40, "{}", taken.err);
+    }
+}
+
 #[test]
 fn what_is_wrong_with_pictures_is_said_in_one_line_and_nothing_is_written() {
     let folder = Folder::new();

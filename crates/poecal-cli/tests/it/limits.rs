@@ -60,6 +60,14 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
         assert_eq!(folder.listing(), before);
         assert_eq!(folder.run(words).code, 0, "{words}");
     }
+    // A line that no form could have.
+    folder.write("wide.csv", format!("a,b,c\n{}\n", ",".repeat(99)));
+    let run = folder.run("check robot.urdf wide.csv --limit columns=5");
+    assert!(
+        run.code == 2 && run.err.contains("wide.csv:2: found 100 columns, expected at most 5"),
+        "{}",
+        run.err
+    );
     // More is read where it is asked for.
     let lower = "check robot.urdf points.csv --limit rows=29";
     assert_eq!(folder.run(&format!("{lower} --limit rows=30")).code, 0);

@@ -24,6 +24,6 @@ pub use registration::{
     Registration, clock_parameters, device_parameter, free_parameters, range_parameters, register_again,
     target_parameters,
 };
-pub use robust::register_robustly;
+pub use robust::{register_robustly, row_distances};
 pub use stations::register;
 pub(crate) use stations::register_roughly;

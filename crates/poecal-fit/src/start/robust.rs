@@ -49,6 +49,12 @@ fn least_distances(problem: &Registration<'_>, start: Estimate) -> (Estimate, f6
     (estimate, median, distances)
 }
 
+/// Whitened distance of each row of a registration from an estimate.
+#[must_use]
+pub fn row_distances(problem: &Registration<'_>, estimate: &Estimate) -> Vec<f64> {
+    distances(problem, estimate).0
+}
+
 /// Whitened distance of each row, and the median of them all.
 fn distances(problem: &Registration<'_>, estimate: &Estimate) -> (Vec<f64>, f64) {
     let Registration { session, rows, noise, .. } = problem;

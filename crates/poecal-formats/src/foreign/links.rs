@@ -17,6 +17,8 @@ pub(crate) struct Links {
     names: Names,
     joint_names: Names,
     pub(crate) joints: Vec<LinkJoint>,
+    /// What the file states beyond what is read, a sentence.
+    pub(crate) unread: Option<String>,
 }
 
 /// Names that are there, those of the file among them from the beginning, and those that were made.

@@ -82,7 +82,7 @@ impl Form {
         }?;
         // Its places are in no file.
         UrdfDocument::parse(&links.urdf(), path, selection)
-            .map(|document| document.made_from(self.name()))
+            .map(|document| document.made_from(self.name(), links.unread.clone()))
             .map_err(|error| error.without_line())
     }
 }

@@ -28,6 +28,7 @@ pub use visuals::{Geometry, Visual};
 pub use write::{Converted, write_new, written_new};
 pub(crate) use write::{UrdfText, WIDE_LIMITS};
 
+use crate::unread;
 use parts::{End, Part};
 use poecal_arm::lie::Pose;
 use poecal_model::robot::Robot;
@@ -49,6 +50,7 @@ pub struct UrdfDocument {
     base_from_top: Pose,
     beyond: Vec<(String, String)>,
     made_from: Option<&'static str>,
+    unread: Option<String>,
 }
 
 impl UrdfDocument {
@@ -89,6 +91,7 @@ impl UrdfDocument {
             return Err(source.syntax_error(robot_element, message));
         }
         refuse_xacro(&source)?;
+        let unread = unread::sentence(&source, robot_element, unread::URDF)?;
         let tree = Tree::read(source)?;
         let chain = chain::select(&tree, selection)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
@@ -102,6 +105,7 @@ impl UrdfDocument {
             base_from_top,
             beyond: ends::beyond(&tree, chain.tip),
             made_from: None,
+            unread,
         })
     }
 
@@ -125,8 +129,14 @@ impl UrdfDocument {
     }
 
     /// The same, made from a file of another form.
-    pub(crate) fn made_from(self, form: &'static str) -> Self {
-        UrdfDocument { made_from: Some(form), ..self }
+    pub(crate) fn made_from(self, form: &'static str, unread: Option<String>) -> Self {
+        UrdfDocument { made_from: Some(form), unread, ..self }
+    }
+
+    /// What the file states of links and joints that is not read, a sentence; what scales or shifts is refused.
+    #[must_use]
+    pub fn unread(&self) -> Option<&str> {
+        self.unread.as_deref()
     }
 
     /// The form of the file that was read: `URDF`, or the one that this text was made from.

@@ -46,7 +46,7 @@ fn read(data: &[u8], mend: impl Fn(&[u8]) -> Vec<u8>) -> bool {
 pub fn workbooks(data: &[u8]) -> bool {
     read(data, |bytes| {
         let is_text = !bytes.starts_with(b"PK") && !bytes.starts_with(b"\xd0\xcf");
-        if is_text { archive(&String::from_utf8_lossy(bytes)) } else { bytes.to_vec() }
+        if is_text { archive(bytes) } else { bytes.to_vec() }
     })
 }
 
@@ -55,20 +55,31 @@ pub fn bags(data: &[u8]) -> bool {
     read(data, <[u8]>::to_vec)
 }
 
+/// What stands before the first of these bytes, and behind them.
+fn cut<'a>(bytes: &'a [u8], at: &[u8]) -> (&'a [u8], Option<&'a [u8]>) {
+    match bytes.windows(at.len()).position(|it| it == at) {
+        Some(place) => (&bytes[..place], Some(&bytes[place + at.len()..])),
+        None => (bytes, None),
+    }
+}
+
 /// An archive of parts that are not packed.
-fn archive(text: &str) -> Vec<u8> {
+fn archive(parts: &[u8]) -> Vec<u8> {
     let (mut bytes, mut list, mut count) = (Vec::new(), Vec::new(), 0_u16);
-    for part in text.split(&format!("\n{BETWEEN}\n")) {
-        let (name, content) = part.split_once('\n').unwrap_or((part, ""));
-        let name = &name.as_bytes()[..name.len().min(200)];
+    let (between, mut rest) = (format!("\n{BETWEEN}\n"), Some(parts));
+    while let Some(all) = rest {
+        let part;
+        (part, rest) = cut(all, between.as_bytes());
+        let (name, content) = cut(part, b"\n");
+        let (name, content) = (&name[..name.len().min(200)], content.unwrap_or_default());
         let start = (bytes.len() as u32).to_le_bytes();
         let size = (content.len() as u32).to_le_bytes();
         let mut head = vec![20, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-        head.extend(crc32fast::hash(content.as_bytes()).to_le_bytes());
+        head.extend(crc32fast::hash(content).to_le_bytes());
         head.extend([size, size].concat());
         head.extend((name.len() as u16).to_le_bytes());
         head.extend([0, 0]);
-        bytes.extend([b"PK\x03\x04", &head[..], name, content.as_bytes()].concat());
+        bytes.extend([b"PK\x03\x04", &head[..], name, content].concat());
         list.extend([b"PK\x01\x02\x14\0", &head[..], &[0; 10], &start, name].concat());
         count = count.saturating_add(1);
     }

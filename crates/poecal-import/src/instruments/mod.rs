@@ -107,6 +107,22 @@ const FORMS: [Form; 11] = [
     headerless::FORM,
 ];
 
+/// Times the columns of a table that a line may have separators: what is no table, such as a program, may have more than that.
+const WIDE: usize = 16;
+
+/// Refuses a text with a line of far too many cells, before forms are sought in it.
+fn refuse_wide(text: &str, path: &Path) -> poecal_numerics::error::Result<()> {
+    let most = Limit::Columns.most_held();
+    for (line, number) in text.lines().zip(1..) {
+        let count = line.bytes().filter(|it| matches!(it, b',' | b';' | b'\t')).count() + 1;
+        if count > WIDE.saturating_mul(most) {
+            let message = Limit::Columns.sentence(&format!("{count} columns"));
+            return Err(ErrorKind::Syntax.error(message).at_line(path, number));
+        }
+    }
+    Ok(())
+}
+
 impl Opening<'_> {
     /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
     fn joint_columns(&self, angle: &str) -> Vec<String> {
@@ -206,6 +222,7 @@ impl Opening<'_> {
         mut blocks: Blocks<'p>,
     ) -> poecal_numerics::error::Result<Opened<'p>> {
         blocks.begin()?;
+        refuse_wide(blocks.text(), path)?;
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }

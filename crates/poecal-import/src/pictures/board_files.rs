@@ -4,6 +4,7 @@ use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::limits::Limit;
+use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::source_text::read_up_to;
 use poecal_storage::xml::parsed;
 use poecal_storage::yaml::{Leaf, leaves};
@@ -42,6 +43,50 @@ const DICTIONARIES: [&str; 21] = [
     "DICT_APRILTAG_36h11",
 ];
 
+/// Whose files have boards.
+const KALIBR: &str = "Kalibr";
+const INDUSTRIAL: &str = "industrial_calibration";
+/// Keys of Kalibr's boards that are read, in small letters.
+const OF_KALIBR: [&str; 12] = [
+    "target_type",
+    "tagcols",
+    "tagrows",
+    "tagsize",
+    "tagspacing",
+    "codeoffset",
+    "targetcols",
+    "targetrows",
+    "rowspacingmeters",
+    "colspacingmeters",
+    "spacingmeters",
+    "asymmetricgrid",
+];
+/// Keys of industrial_calibration's boards that are read, or say how their circles are sought.
+const OF_INDUSTRIAL: [&str; 9] = [
+    "type",
+    "cols",
+    "rows",
+    "spacing",
+    "chessboard_dim",
+    "aruco_marker_dim",
+    "dictionary",
+    "circle_diameter",
+    "circle_detector_params",
+];
+/// Beginnings of OpenCV's keys that are read, or say how pictures are taken and what is written.
+const OF_OPENCV: [&str; 10] = [
+    "boardsize_",
+    "square_size",
+    "marker_size",
+    "aruco_",
+    "calibrate_",
+    "input",
+    "write_",
+    "show_",
+    "fix_",
+    "grid_width",
+];
+
 /// A board of a file in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BoardOfFile {
@@ -63,9 +108,9 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let leaves = if ending == "xml" { of_xml(&text, path)? } else { leaves(&text, path, EXPECTED)? };
     let stated = Stated { leaves, path };
     let (words, of) = if stated.find("target_type").is_some() {
-        (stated.kalibr()?, "Kalibr")
+        (stated.kalibr()?, KALIBR)
     } else if stated.find("target_finder.type").is_some() {
-        (stated.industrial()?, "industrial_calibration")
+        (stated.industrial()?, INDUSTRIAL)
     } else if stated.find("BoardSize_Width").is_some() {
         (stated.opencv()?, "OpenCV's settings")
     } else {
@@ -73,7 +118,8 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
             Error::new(ErrorKind::Option, format!("found no board, expected {EXPECTED}")).in_file(path)
         );
     };
-    let said = format!("{}: read the board `{words}` ({of})", path.display());
+    let others = stated.others(of)?.map_or(String::new(), |it| format!("; {it}"));
+    let said = format!("{}: read the board `{words}` ({of}){others}", path.display());
     Ok(Some(BoardOfFile { words, said }))
 }
 
@@ -143,6 +189,22 @@ impl Stated<'_> {
             "false" | "0" | "no" => Ok(false),
             _ => Err(self.refuse(leaf, "true or false")),
         }
+    }
+
+    /// The keys of the board that were not read. Those of industrial_calibration stand below `target_finder`; OpenCV's settings are beside the board
+    /// of how pictures are taken and what is written, which change no board unless they flip the pictures.
+    fn others(&self, of: &str) -> Result<Option<String>> {
+        // OpenCV's stand below `Settings`, or at the top.
+        let section = if of == INDUSTRIAL { "target_finder" } else { "Settings" };
+        let is_below = |leaf: &Leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == section);
+        let at = usize::from(self.leaves.iter().any(is_below));
+        let own: Vec<Leaf> = self.leaves.iter().filter(|it| at == 0 || is_below(it)).cloned().collect();
+        let read = |key: &str| match of {
+            KALIBR => OF_KALIBR.contains(&key),
+            INDUSTRIAL => OF_INDUSTRIAL.contains(&key),
+            _ => !key.contains("flip") && OF_OPENCV.iter().any(|part| key.starts_with(part)),
+        };
+        other_keys(&own, at, read, (KeysOf::Board, self.path))
     }
 
     fn kalibr(&self) -> Result<String> {

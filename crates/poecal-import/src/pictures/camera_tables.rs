@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::other_keys::other_keys;
 use crate::pictures::lens_checks::{EXPECTED, size_of_pictures};
 use crate::table::cells::Cell;
 use crate::table::header::Header;
@@ -13,6 +12,7 @@ use crate::table::text::Blocks;
 use crate::table::{Row, Table};
 use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::yaml::Leaf;
 
 /// The columns of a table of cameras.
@@ -58,7 +58,8 @@ pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Came
         let message = format!("found a header and no rows, expected {EXPECTED}");
         return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
     }
-    let said = other_keys(&others, 0, |_| false, path)?;
+    let said = other_keys(&others, 0, |_| false, (KeysOf::Pictures, path))?
+        .map(|it| format!("{}: {it}", path.display()));
     Ok((cameras.into_iter().map(|(camera, ..)| camera).collect(), said.into_iter().collect()))
 }
 

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::intrinsics::of_intrinsics;
-use super::other_keys::other_keys;
 use super::region::{KEYS, Region};
 use crate::pictures::lens_checks::{EXPECTED, distortion, size_of_pictures};
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::yaml::{Leaf, leaves};
 
 /// Keys of Kalibr's cameras that are read, or say nothing of a lens.
@@ -86,7 +86,8 @@ pub(crate) fn read_yaml(text: &str, path: &Path) -> Result<(Vec<Camera>, Vec<Str
             .into_iter()
             .filter(|leaf| leaf.path.first().is_some_and(|key| cameras.iter().any(|it| it.name == *key)))
             .collect();
-        let said = other_keys(&of_cameras, 1, |key| OF_KALIBR.contains(&key), path)?;
+        let said = other_keys(&of_cameras, 1, |key| OF_KALIBR.contains(&key), (KeysOf::Pictures, path))?
+            .map(|it| format!("{}: {it}", path.display()));
         return Ok((cameras, said.into_iter().collect()));
     }
     let none: [String; 0] = [];
@@ -95,12 +96,15 @@ pub(crate) fn read_yaml(text: &str, path: &Path) -> Result<(Vec<Camera>, Vec<Str
             .into_iter()
             .filter(|leaf| leaf.path.first().is_some_and(|key| key == "intrinsics"))
             .collect();
-        let said = other_keys(&of_lens, 1, |key| ["fx", "fy", "cx", "cy"].contains(&key), path)?;
+        let said =
+            other_keys(&of_lens, 1, |key| ["fx", "fy", "cx", "cy"].contains(&key), (KeysOf::Pictures, path))?
+                .map(|it| format!("{}: {it}", path.display()));
         let name = word_at(&of_lens, &none, &["camera_name"]).unwrap_or_default();
         return Ok((vec![Camera::new(name, lens)], said.into_iter().collect()));
     }
     let (camera, seen) = read_single(&leaves, path)?;
-    let others = other_keys(&leaves, 0, |key| OF_OPENCV_AND_ROS.contains(&key), path)?;
+    let others = other_keys(&leaves, 0, |key| OF_OPENCV_AND_ROS.contains(&key), (KeysOf::Pictures, path))?
+        .map(|it| format!("{}: {it}", path.display()));
     Ok((vec![camera], seen.into_iter().chain(others).collect()))
 }
 

@@ -13,7 +13,6 @@ pub(crate) mod corner_names;
 pub(crate) mod gathering;
 pub(crate) mod intrinsics;
 pub(crate) mod lens_checks;
-pub(crate) mod other_keys;
 pub(crate) mod picture_files;
 pub(crate) mod picture_sizes;
 pub(crate) mod pixels;

@@ -223,9 +223,42 @@ fn boards_and_lenses_of_other_programs_are_read() {
         println!("{}", folder.without_path(&found.said));
         assert_eq!(found.words, words);
         assert_eq!(read_boards(typed).unwrap(), read_boards(words).unwrap());
+        assert!(!found.said.contains("did not read"), "{}", found.said);
         let mut options = ReadOptions::default();
         options.add_boards(typed).unwrap();
         assert_eq!(options.said, [found.said]);
+    }
+    let april = "target_type: aprilgrid\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\ntagSpacing: 0.3\n";
+    let settings = opencv("CHESSBOARD");
+    for (name, text, end) in [
+        ("other.yaml", format!("{april}material: glass\nthickness: 3\n"), "; did not read `material`, `thickness`"),
+        ("neutral.yaml", format!("{april}print_scale: 1.0\nserial: 4\n"), "(Kalibr)"),
+        ("other.yaml", charuco("  paint: red\n"), "; did not read `paint`"),
+        (
+            "other.xml",
+            settings.replace("</Settings>", "<Input_FlipAroundHorizontalAxis>0</Input_FlipAroundHorizontalAxis><Show_It>1</Show_It><Frame>2</Frame></Settings>"),
+            "; did not read `Frame`",
+        ),
+    ] {
+        let found = board_of_file(folder.write(name, &text).to_str().unwrap()).unwrap().unwrap();
+        assert!(found.said.ends_with(end), "{}", found.said);
+    }
+    for (name, text, key) in [
+        ("scaled.yaml", format!("{april}print_scale: 0.98\n"), ":6: found `0.98` for `print_scale`"),
+        ("scaled.yaml", charuco("  scale_factor: 2\n"), "for `target_finder.scale_factor`"),
+        (
+            "flipped.xml",
+            settings.replace("</Settings>", "<Input_FlipAroundHorizontalAxis>1</Input_FlipAroundHorizontalAxis></Settings>"),
+            "found `1` for `Input_FlipAroundHorizontalAxis`",
+        ),
+        (
+            "flipped.yml",
+            "Settings:\n  BoardSize_Width: 9\n  BoardSize_Height: 6\n  Square_Size: 25\n  Calibrate_Pattern: CHESSBOARD\n  Input_FlipAroundHorizontalAxis: 1\n".to_owned(),
+            "found `1` for `Settings.Input_FlipAroundHorizontalAxis`",
+        ),
+    ] {
+        let error = board_of_file(folder.write(name, &text).to_str().unwrap()).unwrap_err().to_string();
+        assert!(error.contains(key) && error.contains("expected the board as it is printed"), "{error}");
     }
     for (text, part) in [
         ("a: 1\n", "found no board, expected a board: YAML of Kalibr"),

@@ -425,6 +425,36 @@ fn rows_that_alone_tell_something_are_kept() {
     assert!(errors[0] < (1.05 + sessions.more(0.2)) * errors[1]);
 }
 
+/// A value of the row before, metres off, in a session of so few rows that it draws the start along: it is left out and named, and the verdict is
+/// of the others.
+#[test]
+fn a_row_that_ruins_the_start_of_few_is_left_out() {
+    for seed in [5, 6, 7] {
+        let simulation = Simulation {
+            count: 27,
+            seed,
+            error_rotation_rad: 0.2f64.to_radians(),
+            error_position_m: 1e-3,
+            ..Simulation::default()
+        };
+        let made = simulation.run(&elbow(), Kind::POINT).unwrap();
+        let usual = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+        for &row in usual.fit_rows.iter().filter(|row| **row > 0) {
+            let mut data = made.data.clone();
+            data.observations[row as usize].measurement = data.observations[row as usize - 1].measurement;
+            let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
+            let found = calibrate(&made.nominal, &data, &options).unwrap();
+            println!(
+                "{seed} row {row}: {:?} {:?}",
+                found.robustness.suspects().collect::<Vec<_>>(),
+                found.verdict.reasons
+            );
+            assert_eq!(found.robustness.suspects().collect::<Vec<_>>(), [row], "{seed}");
+            assert!(found.verdict.level > Level::DoNotUse, "{seed} row {row}: {:?}", found.verdict.reasons);
+        }
+    }
+}
+
 /// A stale row among so few that no row is judged: it is named, and the model is compared with the nominal one on the others.
 #[test]
 fn a_stale_row_that_was_held_out_does_not_decide_the_verdict() {

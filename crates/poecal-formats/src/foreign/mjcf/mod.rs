@@ -10,6 +10,7 @@ use std::path::Path;
 use roxmltree::Node;
 
 use super::links::{Inertial, Links};
+use crate::unread;
 use defaults::{Defaults, Settings, Stated};
 use elements::{described, unit};
 use poecal_arm::lie::Pose;
@@ -62,6 +63,7 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     for equality in source.children(root, "equality") {
         reader.read_followers(equality)?;
     }
+    reader.links.unread = unread::sentence(&source, root, unread::MJCF)?;
     Ok(reader.links)
 }
 

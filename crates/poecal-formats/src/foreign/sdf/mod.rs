@@ -9,6 +9,7 @@ use std::path::Path;
 use roxmltree::Node;
 
 use super::links::Links;
+use crate::unread;
 use frames::Frames;
 use poecal_numerics::error::Result;
 use poecal_storage::xml::{XmlSource, parsed, readable};
@@ -31,7 +32,11 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
     }
     let version =
         root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
-    Frames::of(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)
+    let unread = unread::sentence(&source, root, unread::SDF)?;
+    let mut links =
+        Frames::of(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)?;
+    links.unread = unread;
+    Ok(links)
 }
 
 /// The model that has joints.

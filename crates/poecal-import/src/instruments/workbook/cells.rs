@@ -1,6 +1,7 @@
 //! The cells of a sheet as a range, once it is known that the range can be held.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io::Cursor;
 
 use calamine::{Cell, Data, DataRef, Range, Reader as _, Sheets};
@@ -78,16 +79,17 @@ impl Found {
     }
 }
 
+/// What is said of a sheet that is damaged.
+pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
+    format!("the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again")
+}
+
 /// The cells of a sheet.
 ///
 /// # Errors
 /// What is wrong, in a sentence.
 pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<Range<Data>, String> {
-    let broken = |error: &dyn std::fmt::Display| {
-        format!(
-            "the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again"
-        )
-    };
+    let broken = |error: &dyn Display| broken(name, error);
     let mut found = Found::default();
     match book {
         Sheets::Xlsx(book) => {
@@ -101,14 +103,10 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
                 found.add(cell.get_position(), owned(cell.get_value()), left)?;
             }
         }
-        Sheets::Xlsb(book) => {
-            let mut reader = book.worksheet_cells_reader(name).map_err(|error| broken(&error))?;
-            while let Some(cell) = reader.next_cell().map_err(|error| broken(&error))? {
-                found.add(cell.get_position(), owned(cell.get_value()), left)?;
-            }
+        // The cells of .ods were counted before it was opened; the others are read elsewhere.
+        Sheets::Ods(_) | Sheets::Xls(_) | Sheets::Xlsb(_) => {
+            return book.worksheet_range(name).map_err(|error| broken(&error));
         }
-        // Their cells were counted before the workbook was opened.
-        Sheets::Ods(_) | Sheets::Xls(_) => return book.worksheet_range(name).map_err(|error| broken(&error)),
     }
     Ok(found.range(left))
 }
@@ -136,15 +134,7 @@ pub(crate) fn formulas(
                 }
             }
         }
-        Sheets::Xlsb(book) => {
-            if let Ok(mut reader) = book.worksheet_cells_reader(name) {
-                while let Ok(Some(cell)) = reader.next_formula() {
-                    take(cell);
-                }
-            }
-        }
-        // Their cells were counted before the workbook was opened.
-        Sheets::Ods(_) | Sheets::Xls(_) => {
+        Sheets::Ods(_) | Sheets::Xls(_) | Sheets::Xlsb(_) => {
             if let Ok(all) = book.worksheet_formula(name) {
                 let first = all.start().unwrap_or_default();
                 let cells = all.used_cells();

@@ -1,21 +1,23 @@
 //! Workbooks of spreadsheets (.xlsx, .xlsm, .xlsb, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
 //!
 //! The sizes of an archive are bounded before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read here
-//! (`old.rs`, from their container, `container.rs`), since no other reader bounds them.
+//! (`old.rs`, from their container, `container.rs`), and binary ones (`binary.rs`), since no other reader bounds them.
 
 mod archive;
+mod binary;
 mod cells;
 mod container;
+mod numbers;
 mod old;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use calamine::{Data, Range, Reader as _, open_workbook_auto_from_rs};
+use calamine::{Data, Ods, Range, Reader as _, Sheets, Xlsx};
 
 use self::archive::Parts;
 use self::cells::{Book, Left};
-use self::old::Sheet as OldSheet;
+use self::old::Sheet as ReadSheet;
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
@@ -46,16 +48,20 @@ struct Found {
 /// A workbook whose sheets are read one by one.
 enum Workbook<'b> {
     Archive(Box<Book<'b>>, Left),
-    Old(Vec<OldSheet>),
+    Read(Vec<ReadSheet>),
 }
 
 impl<'b> Workbook<'b> {
     fn open(bytes: &'b [u8]) -> Result<Self, String> {
         if bytes.starts_with(container::MAGIC) {
-            return old::sheets(bytes).map(Workbook::Old);
+            return old::sheets(bytes).map(Workbook::Read);
         }
         let parts = Parts::of(bytes)?;
-        let book = open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| {
+        if let Some(sheets) = binary::sheets(bytes, parts)? {
+            return Ok(Workbook::Read(sheets));
+        }
+        let cursor = Cursor::new(bytes);
+        let book = Xlsx::new(cursor.clone()).map(Sheets::Xlsx).or_else(|_| Ods::new(cursor).map(Sheets::Ods)).map_err(|_| {
             "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
              save the table as `CSV UTF-8`"
         })?;
@@ -66,7 +72,7 @@ impl<'b> Workbook<'b> {
     fn names(&self) -> Vec<String> {
         match self {
             Workbook::Archive(book, _) => book.sheet_names(),
-            Workbook::Old(sheets) => sheets.iter().map(|it| it.0.clone()).collect(),
+            Workbook::Read(sheets) => sheets.iter().map(|it| it.0.clone()).collect(),
         }
     }
 
@@ -74,18 +80,18 @@ impl<'b> Workbook<'b> {
     fn range(&mut self, name: &str) -> Result<Range<Data>, String> {
         match self {
             Workbook::Archive(book, left) => cells::range(book, name, left),
-            Workbook::Old(sheets) => {
+            Workbook::Read(sheets) => {
                 let own = sheets.iter_mut().find(|it| it.0 == name);
                 Ok(own.map(|it| std::mem::take(&mut it.1)).unwrap_or_default())
             }
         }
     }
 
-    /// Formulas of a sheet within a range; of old workbooks none.
+    /// Formulas of a sheet within a range; of those that are read here none.
     fn formulas(&mut self, name: &str, within: &Range<Data>) -> BTreeMap<(u32, u32), String> {
         match self {
             Workbook::Archive(book, _) => cells::formulas(book, name, within),
-            Workbook::Old(_) => BTreeMap::new(),
+            Workbook::Read(_) => BTreeMap::new(),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Old workbooks (.xls): the numbers and texts of their sheets, MS-XLS (BIFF8). Formulas are what they gave when the workbook was saved.
 
-use calamine::{Data, ExcelDateTime, ExcelDateTimeType, Range};
+use calamine::{Data, Range};
 
 use super::cells::{Found, Left};
 use super::container::{u16_at, u32_at, workbook};
+use super::numbers::{Styles, f64_at, short};
 
 /// Kinds of records.
 mod kind {
@@ -69,9 +70,7 @@ impl<'b> Iterator for Records<'b> {
 struct Shared {
     sheets: Vec<(usize, String)>,
     texts: Vec<String>,
-    /// Whether cells of a style are dates.
-    dates: Vec<bool>,
-    is_1904: bool,
+    styles: Styles,
 }
 
 /// The sheets of a workbook.
@@ -96,7 +95,8 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<Sheet>, String> {
 
 impl Shared {
     fn of(stream: &[u8]) -> Result<Self, String> {
-        let (mut shared, mut formats, mut styles) = (Shared::default(), Vec::new(), Vec::new());
+        let (mut shared, mut formats, mut styles, mut is_1904) =
+            (Shared::default(), Vec::new(), Vec::new(), false);
         for Record { kind, parts } in Records(stream) {
             let data = parts.first().copied().unwrap_or_default();
             match kind {
@@ -106,7 +106,7 @@ impl Shared {
                 kind::LOCKED => {
                     return Err("found a workbook with a password, expected one without: save its table as `CSV UTF-8`".to_owned());
                 }
-                kind::DATES => shared.is_1904 = u16_at(data, 0) == Some(1),
+                kind::DATES => is_1904 = u16_at(data, 0) == Some(1),
                 kind::FORMAT => formats.extend(u16_at(data, 0).zip(text(data.get(2..).unwrap_or_default()))),
                 kind::STYLE => styles.push(u16_at(data, 2).unwrap_or_default()),
                 kind::SHEET => shared.sheets.extend(sheet(data)),
@@ -114,11 +114,7 @@ impl Shared {
                 _ => {}
             }
         }
-        let is_date = |style: &u16| {
-            let stated = formats.iter().rev().find(|it| it.0 == *style);
-            stated.map_or(matches!(style, 14..=22 | 27..=36 | 45..=47 | 50..=58), |it| is_of_dates(&it.1))
-        };
-        shared.dates = styles.iter().map(is_date).collect();
+        shared.styles = Styles::of(&formats, &styles, is_1904);
         Ok(shared)
     }
 
@@ -137,10 +133,10 @@ impl Shared {
             let Some((row, column)) = u16_at(data, 0).zip(u16_at(data, 2)) else { continue };
             let place = (u32::from(row), u32::from(column));
             let style = u16_at(data, 4).unwrap_or_default();
-            let number = |at: usize| self.number(f64_at(data, at)?, style);
+            let number = |at: usize| self.styles.number(f64_at(data, at)?, style);
             let value = match kind {
                 kind::NUMBER => number(6),
-                kind::SHORT => u32_at(data, 6).and_then(|it| self.number(short(it), style)),
+                kind::SHORT => u32_at(data, 6).and_then(|it| self.styles.number(short(it), style)),
                 kind::LABEL | kind::RICH => text(data.get(6..).unwrap_or_default()).map(Data::String),
                 kind::OF_TEXTS => {
                     let at = u32_at(data, 6).and_then(|it| usize::try_from(it).ok());
@@ -155,7 +151,7 @@ impl Shared {
                 kind::SEVERAL => {
                     for (next, own) in (0_u32..).zip(data.get(4..).unwrap_or_default().chunks_exact(6)) {
                         let value = u16_at(own, 0).zip(u32_at(own, 2));
-                        let value = value.and_then(|(style, it)| self.number(short(it), style));
+                        let value = value.and_then(|(style, it)| self.styles.number(short(it), style));
                         let place = (place.0, place.1 + next);
                         value.map_or(Ok(()), |value| cells.add(place, value, left))?;
                     }
@@ -167,27 +163,6 @@ impl Shared {
         }
         Ok(())
     }
-
-    /// A number of a style.
-    fn number(&self, value: f64, style: u16) -> Option<Data> {
-        let is_date = self.dates.get(usize::from(style)).copied().unwrap_or_default();
-        let date = || ExcelDateTime::new(value, ExcelDateTimeType::DateTime, self.is_1904);
-        value.is_finite().then(|| if is_date { Data::DateTime(date()) } else { Data::Float(value) })
-    }
-}
-
-fn f64_at(bytes: &[u8], at: usize) -> Option<f64> {
-    bytes.get(at..at.checked_add(8)?)?.try_into().ok().map(f64::from_le_bytes)
-}
-
-/// A number in four bytes: an integer or the upper half of a number, maybe hundredths.
-fn short(bits: u32) -> f64 {
-    let value = if bits & 2 != 0 {
-        f64::from(bits.cast_signed() >> 2)
-    } else {
-        f64::from_bits(u64::from(bits & !3) << 32)
-    };
-    if bits & 1 != 0 { value / 100.0 } else { value }
 }
 
 /// A sheet of numbers: where it begins, and its name.
@@ -211,24 +186,6 @@ fn letters(bytes: &[u8], count: usize, is_wide: bool) -> Option<String> {
         return Some(String::from_utf16_lossy(&units));
     }
     Some(bytes.get(..count)?.iter().map(|it| char::from(*it)).collect())
-}
-
-/// Whether a format of numbers is one of dates or times: a letter of it, outside of quotes and brackets.
-fn is_of_dates(format: &str) -> bool {
-    let (mut quote, mut bracket, mut is_escaped) = (false, false, false);
-    format.chars().any(|letter| {
-        if std::mem::take(&mut is_escaped) {
-            return false;
-        }
-        match letter {
-            '"' => quote = !quote,
-            '\\' | '_' | '*' if !quote => is_escaped = true,
-            '[' if !quote => bracket = true,
-            ']' if !quote => bracket = false,
-            _ => {}
-        }
-        !quote && !bracket && matches!(letter.to_ascii_lowercase(), 'd' | 'm' | 'y' | 'h' | 's')
-    })
 }
 
 /// The texts that cells share: a list that goes on from record to record, in which a text may be cut, with its width stated anew behind the cut.
@@ -414,16 +371,6 @@ mod tests {
                 let _ = sheets(&bytes);
             }
             let _ = sheets(&whole[..at]);
-        }
-    }
-
-    #[test]
-    fn formats_of_dates_have_letters_of_them() {
-        for format in ["yyyy-mm-dd", "[h]:mm", "d/m/yy h:mm", "mm:ss.0"] {
-            assert!(is_of_dates(format), "{format}");
-        }
-        for format in ["General", "0.00", "0.00E+00", "[Red]0.0", "0 \"days\"", "0\\d", "_s0"] {
-            assert!(!is_of_dates(format), "{format}");
         }
     }
 }

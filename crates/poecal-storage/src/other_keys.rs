@@ -1,13 +1,19 @@
-//! Keys of files of cameras and boards that are not read: those that scale or shift are refused, others are named unless they are harmless.
+//! Keys of files of cameras, boards and robots that are not read: those that scale or shift are refused, others are named unless they are harmless.
 
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
-use poecal_storage::yaml::Leaf;
+use poecal_numerics::text::visible;
+
+use crate::yaml::Leaf;
 
 /// Parts of names of keys that say how pictures were made of the sensor's, or how numbers are scaled.
-const CHANGES: [&str; 13] = [
+const CHANGES: [&str; 17] = [
     "scale",
+    "factor",
+    "ratio",
+    "gear",
+    "invert",
     "offset",
     "crop",
     "binning",
@@ -33,16 +39,38 @@ const HARMLESS: [&str; 16] = [
 /// Values of a key that leave everything as it is.
 const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
 
-/// A sentence that names the keys of a file that were not read and are not harmless; `read` says of a lower-case key at the place `at` of the
-/// leaves' keys whether it was read or is known to be harmless there.
+/// Whose keys a file has, for the sentence of a key that changes them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeysOf {
+    /// A camera's pictures.
+    Pictures,
+    /// A board.
+    Board,
+    /// A robot.
+    Robot,
+}
+
+impl KeysOf {
+    /// What is expected, and what to do.
+    fn as_they_are(self) -> &'static str {
+        match self {
+            KeysOf::Pictures => "numbers of the pictures as they are: state them for these pictures",
+            KeysOf::Board => "the board as it is printed: state its own numbers",
+            KeysOf::Robot => "lengths and angles as they are: work it into them",
+        }
+    }
+}
+
+/// The keys of a file that were not read and are not harmless, in words; `read` says of a lower-case key at the place `at` of the leaves' keys
+/// whether it was read or is known to be harmless there.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] of a key that scales or shifts what was read, with its place.
-pub(crate) fn other_keys(
+pub fn other_keys(
     leaves: &[Leaf],
     at: usize,
     read: impl Fn(&str) -> bool,
-    path: &Path,
+    (of, path): (KeysOf, &Path),
 ) -> Result<Option<String>> {
     let mut others: Vec<String> = Vec::new();
     for leaf in leaves {
@@ -52,21 +80,21 @@ pub(crate) fn other_keys(
             continue;
         }
         if !changes(leaf, at) {
-            let word = format!("`{key}`");
+            let word = format!("`{}`", visible(key));
             if !others.contains(&word) {
                 others.push(word);
             }
         } else if !is_neutral(leaf, at) {
             let message = format!(
-                "found `{}` for `{}`, which this program does not apply, expected numbers of the pictures as they are: state them for these \
-                 pictures, and remove the key",
+                "found `{}` for `{}`, which this program does not apply, expected {}, and remove the key",
                 leaf.text,
-                leaf.path.join(".")
+                leaf.path.join("."),
+                of.as_they_are()
             );
             return Err(Error::new(ErrorKind::Measurement, message).at_line(path, leaf.line));
         }
     }
-    Ok((!others.is_empty()).then(|| format!("{}: did not read {}", path.display(), first_few(&others))))
+    Ok((!others.is_empty()).then(|| format!("did not read {}", first_few(&others))))
 }
 
 /// Whether a key scales or shifts.

@@ -1,0 +1,18 @@
+//! A robot model, with what its file states beyond what is read.
+
+use std::path::Path;
+
+use poecal_formats::urdf::ChainSelection;
+use poecal_numerics::error::Result;
+use poecal_results::model::Model;
+
+use crate::console::Console;
+
+/// Reads a model, and warns of what its file states of links and joints that is not read.
+pub(super) fn read_model(path: &Path, selection: &ChainSelection, console: &Console) -> Result<Model> {
+    let model = Model::read(path, selection)?;
+    if let Some(unread) = model.unread() {
+        console.warning(format!("{}: {unread}", path.display()));
+    }
+    Ok(model)
+}

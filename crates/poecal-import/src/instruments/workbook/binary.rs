@@ -1,0 +1,445 @@
+//! Binary workbooks (.xlsb): the numbers and texts of their sheets, MS-XLSB. Formulas are what they gave when the workbook was saved.
+//!
+//! Read here, since other readers take the lengths that records state without a check.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+
+use calamine::{CellErrorType, Data, Range};
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use zip::ZipArchive;
+
+use poecal_storage::limits::Limit;
+
+use super::archive::Parts;
+use super::cells::{Found, Left, broken};
+use super::container::{u16_at, u32_at};
+use super::numbers::{Styles, f64_at, short};
+use super::old::Sheet;
+
+/// Kinds of records.
+mod kind {
+    pub(super) const ROW: u16 = 0x0000;
+    pub(super) const SHORT: u16 = 0x0002;
+    pub(super) const ERROR: u16 = 0x0003;
+    pub(super) const FLAG: u16 = 0x0004;
+    pub(super) const NUMBER: u16 = 0x0005;
+    pub(super) const TEXT: u16 = 0x0006;
+    pub(super) const OF_TEXTS: u16 = 0x0007;
+    pub(super) const FORMULA_TEXT: u16 = 0x0008;
+    pub(super) const FORMULA: u16 = 0x0009;
+    pub(super) const FORMULA_FLAG: u16 = 0x000A;
+    pub(super) const FORMULA_ERROR: u16 = 0x000B;
+    pub(super) const SHARED_TEXT: u16 = 0x0013;
+    pub(super) const FORMAT: u16 = 0x002C;
+    pub(super) const STYLE: u16 = 0x002F;
+    pub(super) const END_OF_CELLS: u16 = 0x0092;
+    pub(super) const DATES: u16 = 0x0099;
+    pub(super) const SHEET: u16 = 0x009C;
+    pub(super) const STYLES: u16 = 0x0269;
+    pub(super) const END_OF_STYLES: u16 = 0x026A;
+}
+
+/// The part that names the sheets; a workbook with it is a binary one.
+const WORKBOOK: &str = "xl/workbook.bin";
+/// Bytes before what a cell holds: its column and its style.
+const HEAD: usize = 8;
+/// Most rows of a sheet.
+const MOST_ROWS: u32 = 1 << 20;
+/// What is said of a record whose parts lie beyond its end.
+const SHORT_RECORD: &str = "a record is shorter than what it holds";
+
+/// The parts of a workbook by their names.
+struct Archive<'b>(ZipArchive<Cursor<&'b [u8]>>);
+
+impl Archive<'_> {
+    /// A part, if there is one; its size is bounded with those of all.
+    fn part(&mut self, name: &str) -> Result<Option<Vec<u8>>, String> {
+        let own = self.0.file_names().find(|it| it.eq_ignore_ascii_case(name)).map(str::to_owned);
+        let Some(own) = own else { return Ok(None) };
+        let mut bytes = Vec::new();
+        let part = self.0.by_name(&own).map_err(|error| error.to_string())?;
+        part.take(Limit::Unpacked.most()).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        Ok(Some(bytes))
+    }
+}
+
+/// A record of a part: its kind and its bytes.
+type Record<'b> = (u16, &'b [u8]);
+
+/// The records of a part; the last one is an error if it is cut.
+struct Records<'b>(&'b [u8]);
+
+impl<'b> Records<'b> {
+    fn byte(&mut self) -> Option<u8> {
+        let (first, rest) = self.0.split_first()?;
+        self.0 = rest;
+        Some(*first)
+    }
+
+    fn one(&mut self) -> Option<Record<'b>> {
+        let first = self.byte()?;
+        let kind = match first & 0x80 {
+            0 => u16::from(first),
+            _ => u16::from(first & 0x7F) | u16::from(self.byte()? & 0x7F) << 7,
+        };
+        let mut size = 0;
+        for shift in [0, 7, 14, 21] {
+            let next = self.byte()?;
+            size |= usize::from(next & 0x7F) << shift;
+            if next & 0x80 == 0 {
+                break;
+            }
+        }
+        let (own, rest) = self.0.split_at_checked(size)?;
+        self.0 = rest;
+        Some((kind, own))
+    }
+}
+
+impl<'b> Iterator for Records<'b> {
+    type Item = Result<Record<'b>, String>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let found = self.one();
+        if found.is_none() {
+            self.0 = &[];
+        }
+        Some(found.ok_or_else(|| "a record goes beyond the end".to_owned()))
+    }
+}
+
+/// What the sheets of a workbook share.
+#[derive(Default)]
+struct Shared {
+    /// Names of the sheets and of their parts.
+    sheets: Vec<(String, String)>,
+    texts: Vec<String>,
+    styles: Styles,
+}
+
+/// The sheets of a binary workbook; `None` of an archive that is none.
+///
+/// # Errors
+/// What is wrong with it, in a sentence.
+pub(crate) fn sheets(bytes: &[u8], parts: Parts) -> Result<Option<Vec<Sheet>>, String> {
+    let Ok(archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(None) };
+    let mut archive = Archive(archive);
+    let damaged = |error: String| {
+        format!("the workbook cannot be read ({error}), expected a workbook that is whole: save it again")
+    };
+    let Some(workbook) = archive.part(WORKBOOK).map_err(damaged)? else { return Ok(None) };
+    let shared = Shared::of(&mut archive, &workbook).map_err(damaged)?;
+    if shared.texts.len() as u64 > Limit::Cells.most() {
+        return Err(Limit::Cells.exceeded("the texts of this workbook"));
+    }
+    parts.refuse_sheets(shared.sheets.len())?;
+    let mut left = Left::of_workbook();
+    let mut found = Vec::new();
+    for (name, path) in &shared.sheets {
+        let sheet = archive.part(path).and_then(|it| it.ok_or_else(|| format!("there is no part `{path}`")));
+        let sheet = sheet.map_err(|error| broken(name, &error))?;
+        found.push((name.clone(), shared.range(&sheet, name, &mut left)?));
+    }
+    Ok(Some(found))
+}
+
+impl Shared {
+    fn of(archive: &mut Archive<'_>, workbook: &[u8]) -> Result<Self, String> {
+        let mut shared = Shared::default();
+        let paths = paths(&archive.part("xl/_rels/workbook.bin.rels")?.unwrap_or_default());
+        let mut is_1904 = false;
+        for record in Records(workbook) {
+            match record? {
+                (kind::DATES, data) => is_1904 = data.first().is_some_and(|it| it & 1 != 0),
+                (kind::SHEET, data) => {
+                    let (link, name) = link_and_name(data).ok_or(SHORT_RECORD)?;
+                    let path = paths.get(&link).filter(|it| it.contains("worksheets/"));
+                    shared.sheets.extend(path.map(|it| (name, it.clone())));
+                }
+                _ => {}
+            }
+        }
+        for record in Records(&archive.part("xl/sharedStrings.bin")?.unwrap_or_default()) {
+            if let (kind::SHARED_TEXT, data) = record? {
+                shared.texts.push(text(data, 1).ok_or(SHORT_RECORD)?.0);
+            }
+        }
+        shared.styles = styles(&archive.part("xl/styles.bin")?.unwrap_or_default(), is_1904)?;
+        Ok(shared)
+    }
+
+    /// The cells of a sheet.
+    fn range(&self, sheet: &[u8], name: &str, left: &mut Left) -> Result<Range<Data>, String> {
+        let (mut found, mut row) = (Found::default(), 0);
+        for record in Records(sheet) {
+            let (kind, data) = record.map_err(|error| broken(name, &error))?;
+            let short = || broken(name, &SHORT_RECORD);
+            match kind {
+                kind::END_OF_CELLS => break,
+                kind::ROW => row = u32_at(data, 0).filter(|it| *it < MOST_ROWS).ok_or_else(short)?,
+                kind::SHORT..=kind::FORMULA_ERROR => {
+                    let column = u32_at(data, 0).filter(|it| *it <= u32::from(u16::MAX)).ok_or_else(short)?;
+                    let value = self.value(kind, data).ok_or_else(short)?;
+                    found.add((row, column), value, left)?;
+                }
+                _ => {}
+            }
+        }
+        Ok(found.range(left))
+    }
+
+    /// What a cell holds; `None` of a record that is too short.
+    fn value(&self, kind: u16, data: &[u8]) -> Option<Data> {
+        // Its upper byte is none of the style.
+        let style = u16_at(data, 4)?;
+        let number = |value| self.styles.number(value, style).unwrap_or(Data::Empty);
+        Some(match kind {
+            kind::SHORT => number(short(u32_at(data, HEAD)?)),
+            kind::NUMBER | kind::FORMULA => number(f64_at(data, HEAD)?),
+            kind::TEXT | kind::FORMULA_TEXT => Data::String(text(data, HEAD)?.0),
+            kind::OF_TEXTS => {
+                let at = usize::try_from(u32_at(data, HEAD)?).ok()?;
+                Data::String(self.texts.get(at)?.clone())
+            }
+            kind::FLAG | kind::FORMULA_FLAG => Data::Bool(*data.get(HEAD)? != 0),
+            kind::ERROR | kind::FORMULA_ERROR => Data::Error(error(*data.get(HEAD)?)),
+            _ => Data::Empty,
+        })
+    }
+}
+
+fn error(code: u8) -> CellErrorType {
+    match code {
+        0x00 => CellErrorType::Null,
+        0x07 => CellErrorType::Div0,
+        0x17 => CellErrorType::Ref,
+        0x1D => CellErrorType::Name,
+        0x24 => CellErrorType::Num,
+        0x2A => CellErrorType::NA,
+        0x2B => CellErrorType::GettingData,
+        _ => CellErrorType::Value,
+    }
+}
+
+/// Which styles are dates: formats, and the list of the styles of cells, which names them.
+fn styles(part: &[u8], is_1904: bool) -> Result<Styles, String> {
+    let (mut formats, mut styles, mut is_of_cells) = (Vec::new(), Vec::new(), false);
+    for record in Records(part) {
+        match record? {
+            (kind::FORMAT, data) => {
+                let own = u16_at(data, 0).zip(text(data, 2));
+                formats.extend(own.map(|(number, format)| (number, format.0)));
+            }
+            (kind::STYLES, _) => is_of_cells = true,
+            (kind::END_OF_STYLES, _) => is_of_cells = false,
+            (kind::STYLE, data) if is_of_cells => styles.push(u16_at(data, 2).unwrap_or_default()),
+            _ => {}
+        }
+    }
+    Ok(Styles::of(&formats, &styles, is_1904))
+}
+
+/// A text from a place on, with its number of letters before it, and the place behind it.
+fn text(data: &[u8], at: usize) -> Option<(String, usize)> {
+    let count = usize::try_from(u32_at(data, at)?).ok()?;
+    let begin = at.checked_add(4)?;
+    let end = begin.checked_add(count.checked_mul(2)?)?;
+    let units: Vec<u16> = data.get(begin..end)?.chunks_exact(2).filter_map(|it| u16_at(it, 0)).collect();
+    Some((String::from_utf16_lossy(&units), end))
+}
+
+/// The link of a sheet to its part, and its name.
+fn link_and_name(data: &[u8]) -> Option<(String, String)> {
+    // A sheet without a part, such as one of macros.
+    if u32_at(data, HEAD)? == u32::MAX {
+        return Some((String::new(), text(data, HEAD + 4)?.0));
+    }
+    let (link, end) = text(data, HEAD)?;
+    Some((link, text(data, end)?.0))
+}
+
+/// The parts that links lead to.
+fn paths(links: &[u8]) -> BTreeMap<String, String> {
+    let mut reader = Reader::from_reader(links);
+    let mut found = BTreeMap::new();
+    while let Ok(event) = reader.read_event() {
+        let (Event::Start(tag) | Event::Empty(tag)) = event else {
+            if matches!(event, Event::Eof) {
+                break;
+            }
+            continue;
+        };
+        let value = |name: &[u8]| {
+            let own = tag.attributes().flatten().find(|it| it.key.as_ref() == name)?;
+            Some(String::from_utf8_lossy(&own.value).into_owned())
+        };
+        if let Some((link, target)) = value(b"Id").zip(value(b"Target")) {
+            let path = target.strip_prefix('/').map_or_else(|| format!("xl/{target}"), str::to_owned);
+            found.insert(link, path);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use poecal_storage::limits;
+    use std::io::Write;
+    use zip::ZipWriter;
+    use zip::write::SimpleFileOptions;
+
+    fn read(bytes: &[u8]) -> Result<Option<Vec<Sheet>>, String> {
+        sheets(bytes, Parts::of(bytes)?)
+    }
+
+    fn record(kind: u16, data: &[u8]) -> Vec<u8> {
+        let low = u8::try_from(kind & 0x7F).unwrap();
+        let kind = if kind < 0x80 { vec![low] } else { vec![low | 0x80, u8::try_from(kind >> 7).unwrap()] };
+        let size = u8::try_from(data.len()).unwrap();
+        let size = if size < 0x80 { vec![size] } else { vec![size, 1] };
+        [kind, size, data.to_vec()].concat()
+    }
+
+    fn counted(text: &str) -> Vec<u8> {
+        let units: Vec<u16> = text.encode_utf16().collect();
+        let count = u32::try_from(units.len()).unwrap();
+        [count.to_le_bytes().to_vec(), units.into_iter().flat_map(u16::to_le_bytes).collect()].concat()
+    }
+
+    fn cell(kind: u16, column: u32, style: u32, data: &[u8]) -> Vec<u8> {
+        record(kind, &[&column.to_le_bytes()[..], &style.to_le_bytes(), data].concat())
+    }
+
+    fn row(at: u32) -> Vec<u8> {
+        record(kind::ROW, &[&at.to_le_bytes()[..], &[0; 13]].concat())
+    }
+
+    fn archive(sheet: &[u8]) -> Vec<u8> {
+        let links =
+            "<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.bin\"/></Relationships>";
+        let named = [vec![0; 8], counted("rId1"), counted("Rows1")].concat();
+        let texts: Vec<u8> = ["first", "second"]
+            .into_iter()
+            .flat_map(|it| record(kind::SHARED_TEXT, &[vec![0], counted(it)].concat()))
+            .collect();
+        let styles = [
+            record(kind::FORMAT, &[164_u16.to_le_bytes().to_vec(), counted("yyyy-mm")].concat()),
+            record(kind::STYLES, &[2, 0, 0, 0]),
+            record(kind::STYLE, &[0, 0, 0, 0]),
+            record(kind::STYLE, &[0, 0, 164, 0]),
+            record(kind::END_OF_STYLES, &[]),
+        ];
+        let mut out = ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, content) in [
+            (WORKBOOK, record(kind::SHEET, &named)),
+            ("xl/_rels/workbook.bin.rels", links.as_bytes().to_vec()),
+            ("xl/sharedStrings.bin", texts),
+            ("xl/styles.bin", styles.concat()),
+            ("xl/worksheets/sheet1.bin", sheet.to_vec()),
+        ] {
+            let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+            out.start_file(name, stored).unwrap();
+            out.write_all(&content).unwrap();
+        }
+        out.finish().unwrap().into_inner()
+    }
+
+    fn example() -> Vec<u8> {
+        [
+            row(0),
+            cell(kind::OF_TEXTS, 0, 0, &[0, 0, 0, 0]),
+            cell(kind::OF_TEXTS, 1, 0, &[1, 0, 0, 0]),
+            cell(kind::TEXT, 2, 0, &counted("third")),
+            row(1),
+            cell(kind::NUMBER, 0, 0, &1.5_f64.to_le_bytes()),
+            cell(kind::SHORT, 1, 0, &(250_u32 << 2 | 3).to_le_bytes()),
+            cell(kind::FORMULA, 2, 0, &[&7.0_f64.to_le_bytes()[..], &[0; 10]].concat()),
+            row(2),
+            cell(kind::NUMBER, 0, 1, &2.0_f64.to_le_bytes()),
+            cell(kind::FLAG, 1, 0, &[1]),
+            cell(kind::ERROR, 2, 0, &[7]),
+            record(kind::END_OF_CELLS, &[]),
+        ]
+        .concat()
+    }
+
+    #[test]
+    fn cells_of_every_kind_are_read() {
+        let found = read(&archive(&example())).unwrap().unwrap();
+        let [(name, range)] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!((name.as_str(), range.get_size()), ("Rows1", (3, 3)));
+        let texts: Vec<String> = range
+            .rows()
+            .flatten()
+            .filter(|it| !matches!(it, Data::DateTime(_)))
+            .map(ToString::to_string)
+            .collect();
+        assert_eq!(texts, ["first", "second", "third", "1.5", "2.5", "7", "true", "#DIV/0!"]);
+        assert!(matches!(range.get_value((2, 0)), Some(Data::DateTime(time)) if time.as_f64() == 2.0));
+        assert!(read(b"PK\x03\x04").unwrap().is_none());
+    }
+
+    #[test]
+    fn short_and_cut_records_are_told() {
+        let message = |sheet: &[u8]| read(&archive(sheet)).unwrap_err();
+        let whole = example();
+        let cut = message(&whole[..whole.len() - 5]);
+        assert_eq!(
+            cut,
+            "the sheet `Rows1` cannot be read (a record goes beyond the end), expected a workbook that is whole: save it again"
+        );
+        for short in [
+            record(kind::ROW, &[0]),
+            record(kind::ROW, &u32::MAX.to_le_bytes()),
+            record(kind::NUMBER, &[0; 15]),
+            record(kind::SHORT, &[0; 11]),
+            record(kind::ERROR, &[]),
+            cell(kind::OF_TEXTS, 0, 0, &[2, 0, 0, 0]),
+            cell(kind::TEXT, 0, 0, &[0xFF; 6]),
+            cell(kind::NUMBER, 1 << 16, 0, &[0; 8]),
+        ] {
+            assert!(message(&short).contains("a record is shorter than what it holds"), "{short:?}");
+        }
+    }
+
+    #[test]
+    fn a_cell_far_off_is_refused_before_its_range_is_held() {
+        let far = example();
+        let cells = [&far[..far.len() - 3], &row(1_048_575), &cell(kind::NUMBER, 16_000, 0, &[0; 8])];
+        let error = read(&archive(&cells.concat())).unwrap_err();
+        assert!(
+            error.starts_with("found a sheet of 1048576 rows and 16001 columns, expected at most"),
+            "{error}"
+        );
+        let few = limits::here().with(Limit::Cells, 1);
+        assert!(limits::on(few, || read(&archive(&[]))).unwrap_err().contains("the texts of this workbook"));
+    }
+
+    #[test]
+    fn no_bytes_end_in_a_panic() {
+        let whole = archive(&example());
+        for at in 0..whole.len() {
+            for byte in [0, 1, 0x7F, 0xFF, whole[at] ^ 1] {
+                let mut bytes = whole.clone();
+                bytes[at] = byte;
+                let _ = read(&bytes);
+            }
+            let _ = read(&whole[..at]);
+        }
+        // Checksums do not guard a sheet whose archive is whole.
+        let sheet = example();
+        for at in 0..sheet.len() {
+            for byte in [0, 1, 0x7F, 0x80, 0xFF, sheet[at] ^ 1] {
+                let mut sheet = sheet.clone();
+                sheet[at] = byte;
+                let _ = read(&archive(&sheet));
+            }
+        }
+    }
+}

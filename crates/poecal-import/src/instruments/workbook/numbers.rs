@@ -1,0 +1,76 @@
+//! Numbers of workbooks that are read here: how they are stored, and which are dates by their styles.
+
+use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
+
+/// The styles of cells.
+#[derive(Default)]
+pub(crate) struct Styles {
+    /// Whether cells of a style are dates.
+    dates: Vec<bool>,
+    is_1904: bool,
+}
+
+impl Styles {
+    /// Of formats of their own by number, and of the number of the format of each style.
+    pub(crate) fn of(formats: &[(u16, String)], styles: &[u16], is_1904: bool) -> Self {
+        let is_date = |style: &u16| {
+            let stated = formats.iter().rev().find(|it| it.0 == *style);
+            stated.map_or(matches!(style, 14..=22 | 27..=36 | 45..=47 | 50..=58), |it| is_of_dates(&it.1))
+        };
+        Styles { dates: styles.iter().map(is_date).collect(), is_1904 }
+    }
+
+    /// A number of a style.
+    pub(crate) fn number(&self, value: f64, style: u16) -> Option<Data> {
+        let is_date = self.dates.get(usize::from(style)).copied().unwrap_or_default();
+        let date = || ExcelDateTime::new(value, ExcelDateTimeType::DateTime, self.is_1904);
+        value.is_finite().then(|| if is_date { Data::DateTime(date()) } else { Data::Float(value) })
+    }
+}
+
+pub(crate) fn f64_at(bytes: &[u8], at: usize) -> Option<f64> {
+    bytes.get(at..at.checked_add(8)?)?.try_into().ok().map(f64::from_le_bytes)
+}
+
+/// A number in four bytes: an integer or the upper half of a number, maybe hundredths.
+pub(crate) fn short(bits: u32) -> f64 {
+    let value = if bits & 2 != 0 {
+        f64::from(bits.cast_signed() >> 2)
+    } else {
+        f64::from_bits(u64::from(bits & !3) << 32)
+    };
+    if bits & 1 != 0 { value / 100.0 } else { value }
+}
+
+/// Whether a format of numbers is one of dates or times: a letter of it, outside of quotes and brackets.
+fn is_of_dates(format: &str) -> bool {
+    let (mut quote, mut bracket, mut is_escaped) = (false, false, false);
+    format.chars().any(|letter| {
+        if std::mem::take(&mut is_escaped) {
+            return false;
+        }
+        match letter {
+            '"' => quote = !quote,
+            '\\' | '_' | '*' if !quote => is_escaped = true,
+            '[' if !quote => bracket = true,
+            ']' if !quote => bracket = false,
+            _ => {}
+        }
+        !quote && !bracket && matches!(letter.to_ascii_lowercase(), 'd' | 'm' | 'y' | 'h' | 's')
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_of_dates_have_letters_of_them() {
+        for format in ["yyyy-mm-dd", "[h]:mm", "d/m/yy h:mm", "mm:ss.0"] {
+            assert!(is_of_dates(format), "{format}");
+        }
+        for format in ["General", "0.00", "0.00E+00", "[Red]0.0", "0 \"days\"", "0\\d", "_s0"] {
+            assert!(!is_of_dates(format), "{format}");
+        }
+    }
+}
