@@ -17,6 +17,7 @@ mod promises;
 #[allow(dead_code)]
 #[path = "../../../poecal-fit/tests/reference/mod.rs"]
 mod reference;
+mod small_sessions;
 mod starts;
 mod stations;
 mod statistics;
