@@ -30,6 +30,9 @@ const RIGHT_REACHES: f64 = 4.0;
 pub const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
 const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
+/// By how much readings differ at most that count a joint's turns from the middle of its range on or beyond, radians; and a margin.
+const MOST_TURNS: f64 = 2.0 * TAU;
+const MORE: f64 = 0.05;
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
 
@@ -44,10 +47,13 @@ struct OneJoint<'a> {
     reading: usize,
     /// Whether a whole turn of its reading is one of the joint, and of no other.
     is_periodic: bool,
+    /// The lowest and the highest reading before whole turns are taken off.
+    raw: [f64; 2],
     turned: usize,
     turned_lines: Vec<usize>,
     beyond: usize,
     first_lines: Vec<usize>,
+    /// The largest of these, and its place.
     extreme: f64,
     extreme_place: (usize, usize),
 }
@@ -61,6 +67,7 @@ impl<'a> JointWatch<'a> {
             is_periodic: joint.kind == JointKind::Revolute
                 && joint.reading.multiplier.abs() == 1.0
                 && robot.reading_indices().iter().filter(|it| **it == reading).count() == 1,
+            raw: [f64::INFINITY, f64::NEG_INFINITY],
             turned: 0,
             turned_lines: Vec::new(),
             beyond: 0,
@@ -74,9 +81,13 @@ impl<'a> JointWatch<'a> {
     /// Takes whole turns off the readings of a row that are inside the limits without, as 0 to 360° of a joint from -180 to 180°.
     pub(crate) fn unwind(&mut self, row: &Row<'_>, inputs: &mut InputReader<'_>) {
         for one in &mut self.joints {
-            let Some(turns) = inputs.value(one.reading).and_then(|reading| one.turns(reading)) else {
-                continue;
-            };
+            let Some(reading) = inputs.value(one.reading) else { continue };
+            one.raw = [one.raw[0].min(reading), one.raw[1].max(reading)];
+            if reading.abs() > one.extreme {
+                one.extreme = reading.abs();
+                one.extreme_place = row.place(inputs.column(one.reading));
+            }
+            let Some(turns) = one.turns(reading) else { continue };
             inputs.unwind(one.reading, turns);
             one.turned += 1;
             if one.turned_lines.len() < NAMED_LINES {
@@ -97,10 +108,6 @@ impl<'a> JointWatch<'a> {
             if one.first_lines.len() < NAMED_LINES {
                 one.first_lines.push(row.line);
             }
-            if reading.abs() > one.extreme {
-                one.extreme = reading.abs();
-                one.extreme_place = row.place(inputs.column(one.reading));
-            }
         }
     }
 
@@ -112,12 +119,15 @@ impl<'a> JointWatch<'a> {
         let mut warnings = Vec::new();
         let turned = self.joints.iter().filter(|one| one.turned > 0);
         warnings.extend(turned.map(|one| one.turn_warning(path)));
-        for one in self.joints.iter().filter(|one| one.beyond > 0) {
+        for one in self.joints.iter().filter(|one| one.beyond > 0 || one.turned > 0) {
             let (Some(input), Some(range)) = (layout.inputs.get(one.reading), ranges.get(one.reading)) else {
                 continue;
             };
             let Some((lowest, highest)) = range.0 else { continue };
-            if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
+            let likely = one
+                .other_unit(input, [lowest, highest], self.rows)
+                .or_else(|| one.other_unit_of_turns(input, self.rows));
+            if let Some(likely) = likely {
                 let (line, column) = one.extreme_place;
                 let of_joints = layout.inputs.iter().zip(ranges).take(self.joints.len());
                 let extremes = of_joints.filter_map(|(input, range)| {
@@ -128,7 +138,7 @@ impl<'a> JointWatch<'a> {
                     .error(one.unit_message(input, likely, is_per_cent))
                     .at(path, line, column));
             }
-            if let Some(limits) = one.joint.limits {
+            if let Some(limits) = one.joint.limits.filter(|_| one.beyond > 0) {
                 warnings.push(one.limit_warning(path, limits, NamedUnit::from(input.unit.of())));
             }
         }
@@ -187,16 +197,28 @@ impl OneJoint<'_> {
 
     /// The unit that explains readings far outside.
     fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
+        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
+        let is_far = self.is_far_outside(input.unit.of(), extremes, input.unit_from);
+        if is_rare || !is_far { None } else { self.smaller_unit(input, extremes) }
+    }
+
+    /// The same of readings of which whole turns were taken off, although they differ by more turns than any count of them.
+    fn other_unit_of_turns(&self, input: &Input, rows: usize) -> Option<NamedUnit> {
+        let is_rare = ((self.turned + self.beyond) as f64) < SHARE * rows as f64;
+        let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
+        let [lowest, highest] = self.raw;
+        let is_of_turns = highest - lowest <= MOST_TURNS.max(span) * (1.0 + MORE);
+        if self.turned == 0 || is_rare || is_of_turns { None } else { self.smaller_unit(input, self.raw) }
+    }
+
+    /// The smaller unit in which readings are inside the limits.
+    fn smaller_unit(&self, input: &Input, extremes: [f64; 2]) -> Option<NamedUnit> {
         let quantity = input.unit.of();
         let candidates: &[&str] = match quantity {
             Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
             Unit::Metre => &["mm", "um", "nm"],
             Unit::One | Unit::Second => &[],
         };
-        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
-        if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
-            return None;
-        }
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
             let unit = NamedUnit::parse(symbol, quantity).ok()?;
