@@ -8,10 +8,10 @@ use poecal_model::measurement::Dataset;
 
 /// Fewest rows of a part.
 const FEWEST: usize = 16;
-/// Least ratio of the registered error of all rows, after a mistake of all of them is undone, to that of a part without a mistake.
+/// Least ratio of the registered error of all rows, after a mistake of all of them is undone, and of the other part, to that of a part without one.
 const WORSE: f64 = 3.0;
 
-/// The mistake of the first third of the rows or of the last, where the other third has none and is explained far better than all rows are;
+/// The mistake of the first third of the rows or of the last, where the other third is explained far better than it and than all rows are;
 /// `of_all` is what a mistake of all rows leaves, metres.
 pub(super) fn diagnose(
     fitter: &Fitter<'_>,
@@ -25,16 +25,15 @@ pub(super) fn diagnose(
         return None;
     }
     let parts = [("first", rows.get(..third)?), ("last", rows.get(rows.len() - third..)?)];
+    let [first_m, last_m] = parts.map(|(_, part)| registered_m(fitter, data, part));
+    let ((which, part), clean_m, other_m) =
+        if first_m < last_m { (parts[1], first_m, last_m) } else { (parts[0], last_m, first_m) };
     let whole_m = of_all.unwrap_or_else(|| registered_m(fitter, data, rows));
-    let is_clean = |part: &[u32]| WORSE * registered_m(fitter, data, part) < whole_m;
+    if WORSE * clean_m > whole_m.min(other_m) {
+        return None;
+    }
     let of_part = DiagnosisOptions { calibrated: None, ..*options };
-    let mistake = |part: &[u32]| of_rows(fitter, data, part, &of_part).filter(Diagnosis::is_of_input);
-    let [(_, first), (_, last)] = parts;
-    let ((which, part), found) = match (is_clean(first), is_clean(last)) {
-        (true, false) => (parts[1], mistake(last)?),
-        (false, true) => (parts[0], mistake(first)?),
-        _ => return None,
-    };
+    let found = of_rows(fitter, data, part, &of_part).filter(Diagnosis::is_of_input)?;
     let statement = format!("in the {which} third of the rows alone, {}", found.statement);
     Some(Diagnosis { statement, rows: part.to_vec(), ..found })
 }
