@@ -143,11 +143,10 @@ pub(crate) fn calibrate(
         (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
     let usual = CalibrationOptions::default();
     let (formulation, residual) = written(formulation, residual, method)?;
-    let [position, rotation] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
-        sigma: ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation),
+        sigma: stated(sigmas(sigma_position_mm, sigma_rotation_deg)?),
         tolerance: tolerance(&tolerance_deg_mm)?,
         chooses_tolerance: tolerance_deg_mm == Believed::Auto,
         corrections: corrections.unwrap_or_default(),
@@ -165,10 +164,14 @@ pub(crate) fn calibrate(
     };
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
-    let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
+    let inputs = (inputs(robot, measurements, validate), record.unwrap_or_default());
     let (found, repaired, took) = fit(py, &robot.model, &data, &options, progress)?;
-    let data = kept_rows(measurements, repaired, data);
-    Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
+    Ok(Calibration::of_fit(robot.clone(), found, kept_rows(measurements, repaired, data), inputs, took))
+}
+
+/// Stated noise of positions and rotations.
+fn stated([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Option<f64>> {
+    ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation)
 }
 
 /// The rows of a calibration: its measurements, or what became of them.
