@@ -65,7 +65,7 @@ pub use corrections::{
     CorrectedFit, Correction, Effects, JointEffect, JointErrorPart, JointErrors, SizesReason, TriedSizes,
     unknowns, whitened_rows,
 };
-pub use events::{Event, EventKind, Repairs, family};
+pub use events::{Event, EventKind, RepairLimit, RepairLimits, Repairs, family};
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use robust::{Loss, Robust, Robustness, RowInfluence, RowJudgement, row_influence};
 pub use workspace::{Displacements, Spread, Workspace, workspace};

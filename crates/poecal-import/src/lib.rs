@@ -25,9 +25,8 @@ pub mod stored_pictures;
 pub(crate) mod table;
 pub(crate) mod write;
 
-pub use crate::checks::scale::{
-    LARGEST_OTHERWISE as LARGEST_ANGLE_RAD, REACHES as MOST_REACHES, SHARE as WRONG_UNIT_SHARE,
-};
+pub use crate::checks::lengths::REACHES as MOST_REACHES;
+pub use crate::checks::scale::{LARGEST_OTHERWISE as LARGEST_ANGLE_RAD, SHARE as WRONG_UNIT_SHARE};
 pub use crate::join::join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
 pub use crate::join::witness::to_measure_again;
 pub use crate::pictures::board_files::{BoardOfFile, board_of_file};

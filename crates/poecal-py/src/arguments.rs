@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 
-use poecal_calibrate::{AcceptanceLimits, Corrections};
+use poecal_calibrate::{AcceptanceLimits, Corrections, RepairLimits};
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::GravityDirection;
 use poecal_plan::plan::RobotError;
@@ -39,7 +39,7 @@ named! {
     held_out_count history id ids ignore_sets instrument_noise instruments join judge kind kinds lag language length_unit level limit_mm
     limits logo margin_deg_mm markers measurements method model most_slide_m most_slide_mm most_turn_deg most_turn_rad motors move_tip name names nearest
     noise_position_mm noise_rotation_deg nominal offset out part parts path paths points progress purpose quantity readings record refit refit_frame
-    refit_tool repair repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
+    refit_tool repair repair_limit repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
     sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
     third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units valid_until with_uncertainty
 }
@@ -272,6 +272,17 @@ impl<'a, 'py> Argument<'a, 'py> for AcceptanceLimits {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if !value.is_instance_of::<PyString>() {
             return Err(unexpected(name, value, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\""));
+        }
+        String::of(value, name)?
+            .parse()
+            .map_err(|error: poecal_numerics::error::Error| argument(name, error.message()))
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for RepairLimits {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if !value.is_instance_of::<PyString>() {
+            return Err(unexpected(name, value, "a text, like \"device=100mm\" or \"tool=30mm,zero=10deg\""));
         }
         String::of(value, name)?
             .parse()

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use poecal_calibrate::{
-    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, Repaired, Repairs, Stage,
-    calibrate_repairing, settle_sets,
+    AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, RepairLimits, Repaired,
+    Repairs, Stage, calibrate_repairing, settle_sets,
 };
 use poecal_formats::abb::AbbCalibration;
 use poecal_import::MeasurementFile;
@@ -68,6 +68,9 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// repair
 ///     "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
 ///     other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
+/// repair_limit
+///     Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
+///     arcs at a third of the robot's reach. What is larger is named, not acted upon.
 /// formulation
 ///     Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
 /// residual
@@ -102,8 +105,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     No finite result is reached.
 #[pyfunction]
 #[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
-                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", repair="auto", formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
-        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
+                    corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", repair="auto", repair_limit=None, formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
+        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', repair_limit=None, formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
@@ -123,6 +126,7 @@ pub(crate) fn calibrate(
     #[pyo3(from_py_with = arg::seed)] seed: Option<u64>,
     #[pyo3(from_py_with = arg::robust)] robust: &str,
     #[pyo3(from_py_with = arg::repair)] repair: &str,
+    #[pyo3(from_py_with = arg::repair_limit)] repair_limit: Option<RepairLimits>,
     #[pyo3(from_py_with = arg::formulation)] formulation: &str,
     #[pyo3(from_py_with = arg::residual)] residual: &str,
     #[pyo3(from_py_with = arg::method)] method: Option<&str>,
@@ -139,11 +143,10 @@ pub(crate) fn calibrate(
         (robot.get(), measurements.get(), validate.as_ref().map(Bound::get));
     let usual = CalibrationOptions::default();
     let (formulation, residual) = written(formulation, residual, method)?;
-    let [position, rotation] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let options = CalibrationOptions {
         frame: frame_word(frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
-        sigma: ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation),
+        sigma: stated(sigmas(sigma_position_mm, sigma_rotation_deg)?),
         tolerance: tolerance(&tolerance_deg_mm)?,
         chooses_tolerance: tolerance_deg_mm == Believed::Auto,
         corrections: corrections.unwrap_or_default(),
@@ -153,6 +156,7 @@ pub(crate) fn calibrate(
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
         repair: chosen("repair", repair, &[("auto", Repairs::Auto), ("off", Repairs::Off)])?,
+        repair_limits: repair_limit.unwrap_or_default(),
         move_tip,
         accept: accept_limits(accept, accept_model)?,
         formulation,
@@ -160,10 +164,14 @@ pub(crate) fn calibrate(
     };
     let data = rows(py, robot, measurements, validate, held_out, seed)?;
     warn_of_residual(py, &data, residual)?;
-    let stated = (inputs(robot, measurements, validate), record.unwrap_or_default());
+    let inputs = (inputs(robot, measurements, validate), record.unwrap_or_default());
     let (found, repaired, took) = fit(py, &robot.model, &data, &options, progress)?;
-    let data = kept_rows(measurements, repaired, data);
-    Ok(Calibration::of_fit(robot.clone(), found, data, stated, took))
+    Ok(Calibration::of_fit(robot.clone(), found, kept_rows(measurements, repaired, data), inputs, took))
+}
+
+/// Stated noise of positions and rotations.
+fn stated([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Option<f64>> {
+    ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation)
 }
 
 /// The rows of a calibration: its measurements, or what became of them.

@@ -53,15 +53,22 @@ impl CalibratedFit<'_> {
         let apart = self.frames_apart(accuracy);
         let diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
-            None => {
-                let believed = self.robust.robustness.loss.map(|_| &summary.kept[..]);
-                self.diagnosis(&self.run.data, &self.estimate, believed)
-            }
+            None => self.diagnosed(summary),
         };
         let of_steps = || finds_moves.then(|| self.moved()).flatten();
         let moved = apart.as_ref().map(FramesApart::moved).or_else(of_steps);
         let input = self.input_doubts(accuracy, robustness, moved.as_ref());
         Signs { diagnosis, moved, input, noise: noise_doubts(&summary.remainder, figures.lag_one()) }
+    }
+
+    /// A mistake in the input of a session whose rows share one device frame.
+    pub(crate) fn mistake(&self, summary: &FitSummary) -> Option<Diagnosis> {
+        self.diagnosed(summary).into_iter().find(Diagnosis::is_of_input)
+    }
+
+    fn diagnosed(&self, summary: &FitSummary) -> Vec<Diagnosis> {
+        let believed = self.robust.robustness.loss.map(|_| &summary.kept[..]);
+        self.diagnosis(&self.run.data, &self.estimate, believed)
     }
 
     /// Mistakes in all rows, held-out ones too: shifted rows show best in an unbroken series. After a robust fit first in the kept rows,

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::hypotheses::Moved;
+use super::limits::RepairLimits;
 use super::names::{DEVICE, family, next_of};
 use super::search::Step;
 use super::told::{Event, EventKind};
@@ -29,7 +30,7 @@ impl Happened {
         matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robust.robustness.suspects_row(*row)))
     }
 
-    /// Whether the session without it can be better by much.
+    /// Whether it leaves much out of what the residuals are.
     pub(crate) fn matters(&self) -> bool {
         match self {
             Happened::Wrong(_) => true,
@@ -44,6 +45,18 @@ pub(crate) struct Said(Event, String);
 impl Said {
     pub(crate) fn repaired(self, [before, after]: [f64; 2], residuals: Vec<[f64; 3]>) -> Event {
         Event { error_before_mm: Some(before), error_after_mm: Some(after), residuals, ..self.0 }
+    }
+
+    /// That it is too large for a repair.
+    pub(crate) fn beyond(self, limit: &str) -> Self {
+        Said(self.0, format!("{}; it is {limit}: look for a mistake in the input, or raise it", self.1))
+    }
+
+    /// The limit that it is beyond, in words; `radian_m` metres count for a radian.
+    pub(crate) fn exceeded(&self, limits: &RepairLimits, radian_m: f64) -> Option<String> {
+        let Event { kind, size_mm, size_deg, .. } = &self.0;
+        let size = (1e-3 * size_mm.unwrap_or(0.0), size_deg.unwrap_or(0.0).to_radians());
+        limits.exceeded(*kind, size, radian_m)
     }
 
     pub(crate) fn suspected(self, before: f64, after: Option<f64>) -> Event {

@@ -4,6 +4,7 @@
 mod early;
 mod happened;
 mod hypotheses;
+mod limits;
 mod names;
 mod repair;
 mod repaired;
@@ -12,6 +13,7 @@ mod search;
 mod told;
 mod wrong;
 
+pub use limits::{RepairLimit, RepairLimits};
 pub use names::family;
 pub(crate) use repair::{Events, repair};
 pub use told::{Event, EventKind, Repairs};

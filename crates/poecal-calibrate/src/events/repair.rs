@@ -34,7 +34,7 @@ pub(crate) struct Events {
 }
 
 /// Searches a session by its corrected model, and repairs what evidently happened where the repaired session predicts rows better that are left
-/// out.
+/// out, and no mistake in the input explains more.
 pub(crate) fn repair(best: &mut Found<'_>) -> Events {
     let mut events = Events::default();
     for _ in 0..MOST {
@@ -42,12 +42,14 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         events.early = early;
         let Some(happened) = happened else { break };
         let before = error_of(best);
-        let event = event(&happened, &best.fit.run.data, &best.fit.run.robot);
-        let matters = happened.matters();
-        let is_open = matters && best.fit.run.options.repair == Repairs::Auto;
-        let Some(repaired) = is_open.then(|| without(&best.fit.run, &happened)).flatten() else {
-            let event = event.suspected(before, None);
-            if matters && event.is_grave(before) {
+        let run = &best.fit.run;
+        let said = event(&happened, &run.data, &run.robot);
+        let exceeded = said.exceeded(&run.options.repair_limits, best.fit.session().length_m);
+        let is_open = exceeded.is_none() && run.options.repair == Repairs::Auto;
+        let said = exceeded.iter().fold(said, |said, limit| said.beyond(limit));
+        let Some(repaired) = is_open.then(|| without(run, &happened)).flatten() else {
+            let event = said.suspected(before, None);
+            if happened.matters() && event.is_grave(before) {
                 events.against = Some(event.statement.clone());
             }
             events.suspicions.push(event);
@@ -55,7 +57,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         };
         // Where the other session cannot be fitted, that is no reason to have no calibration of this one.
         let Ok(other) = repaired.and_then(fitted) else {
-            events.suspicions.push(event.suspected(before, None));
+            events.suspicions.push(said.suspected(before, None));
             break;
         };
         let after = error_of(&other);
@@ -67,14 +69,24 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         };
         if !is_better {
             if !happened.is_suspected(&best.fit) {
-                events.suspicions.push(event.suspected(before, Some(after)));
+                events.suspicions.push(said.suspected(before, Some(after)));
             }
             break;
         }
-        events.repairs.push(event.repaired([before, after], picture(best, &other)));
+        // What is named at the end, since it stays in the session.
+        if explains_more(best, &other, after) {
+            break;
+        }
+        events.repairs.push(said.repaired([before, after], picture(best, &other)));
         *best = other;
     }
     events
+}
+
+/// Whether a mistake in the input explains a session better than what a repair takes out of it, or stays in what is repaired.
+fn explains_more(session: &Found<'_>, repaired: &Found<'_>, after: f64) -> bool {
+    let mistake = |found: &Found<'_>| found.fit.mistake(&found.summary);
+    mistake(session).is_some_and(|it| it.after_mm <= after || mistake(repaired).is_some())
 }
 
 /// Fits a session.

@@ -10,7 +10,7 @@ use poecal_model::measurement::ByQuantity;
 use poecal_model::robot::{Extent, GravityDirection, Tolerance};
 use poecal_numerics::solve;
 
-use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, Repairs, Robust};
+use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, RepairLimits, Repairs, Robust};
 
 /// What is known of the measuring device's frame.
 ///
@@ -80,6 +80,8 @@ pub struct CalibrationOptions {
     pub move_tip: bool,
     /// Whether [`calibrate_repairing`](crate::calibrate_repairing) repairs a session in which something evidently happened.
     pub repair: Repairs,
+    /// The largest sizes that are repaired.
+    pub repair_limits: RepairLimits,
     /// Limits that the errors of rows that were not fitted shall keep.
     pub accept: Option<AcceptanceLimits>,
     /// Options of the solver.
@@ -108,6 +110,7 @@ impl Default for CalibrationOptions {
             robust: Robust::default(),
             move_tip: false,
             repair: Repairs::default(),
+            repair_limits: RepairLimits::default(),
             accept: None,
             solver: solve::Options::default(),
             diagnose: true,

@@ -6,10 +6,9 @@ use crate::acceptance::{Acceptance, AcceptedModel};
 use crate::run::accuracy::{Improvement, ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
 use crate::steps::improvement::paired;
-use crate::steps::level::Level;
 use crate::trust::coverage_check::{
-    CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PartCoverage, PredictedUncertainty, ROUNDING,
-    coverage_checks, promised_rows,
+    CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PredictedUncertainty, coverage_checks,
+    promised_rows,
 };
 use crate::{DeviceFrameKnowledge, corner_error, delivered};
 use poecal_arm::lie::{Freedom, Pose};
@@ -19,11 +18,6 @@ use poecal_fit::state::{Packed, Range, Session};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
-
-/// Least share of the errors inside their 95 % bounds.
-const INSIDE: f64 = 0.8;
-/// Largest ratio of the error to the expected error.
-const TIMES: f64 = 2.0;
 
 /// A calibration to be judged, and the parts of it to be refitted to the judging measurements.
 #[derive(Clone, Copy, Debug)]
@@ -326,67 +320,5 @@ impl Judgement {
                 in_sampled_range: self.in_sampled_range.as_ref(),
             },
         }
-    }
-
-    /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the
-    /// calibration has no bounds to test.
-    #[must_use]
-    pub fn confirmed(&self) -> (Option<Level>, Vec<String>) {
-        if self.delivered().promised.is_none() {
-            return (None, Vec::new());
-        }
-        let mut reasons = Vec::new();
-        for asked in [Level::Good, Level::InsideSampledRange] {
-            match self.falls_short(asked) {
-                Some(reason) => reasons.push(reason),
-                None => return (Some(asked), reasons),
-            }
-        }
-        (Some(Level::DoNotUse), reasons)
-    }
-
-    /// Why the measurements do not confirm this level of the model that is delivered; `None` if they do. *Good* requires it of all rows, *use inside the sampled range* of
-    /// the rows inside it: at least 80 % of the errors inside their 95 % bounds, and the error (RMS) at most twice the expected one.
-    #[must_use]
-    pub fn falls_short(&self, required: Level) -> Option<String> {
-        let own = self.delivered();
-        let (which, found) = match required {
-            Level::DoNotUse => return None,
-            Level::Located | Level::MeasuredConfigurations | Level::InsideSampledRange => (
-                "inside the sampled range",
-                own.in_sampled_range.map(|some| (&some.calibrated, &some.promised)),
-            ),
-            Level::Good => ("of these rows", own.promised.map(|kept| (own.errors, kept))),
-        };
-        let Some((errors, kept)) = found else {
-            return Some(match own.promised {
-                None => "the calibration has no uncertainty, so there are no bounds to test".to_owned(),
-                Some(_) => "no row lies inside the sampled range".to_owned(),
-            });
-        };
-        let mut errors = kept
-            .parts
-            .iter()
-            .filter_map(|(quantity, part)| Some((quantity, part, errors.get(quantity)?.rms)));
-        errors.find_map(|(quantity, part, rms)| {
-            let (what, unit) = (quantity.name(), quantity.unit().symbol());
-            let PartCoverage { expected_rms, inside_bound95 } = part;
-            // Exact data leave only rounding.
-            if rms <= ROUNDING * 1e6 {
-                None
-            } else if inside_bound95 < INSIDE {
-                Some(format!(
-                    "{:.0} % of the {what} errors {which} are inside their 95 % bounds, {:.0} % are required",
-                    100.0 * inside_bound95,
-                    100.0 * INSIDE
-                ))
-            } else if rms > TIMES * expected_rms {
-                Some(format!(
-                    "the {what} error {which} is {rms:.3} {unit} (RMS), more than twice the expected {expected_rms:.3} {unit}"
-                ))
-            } else {
-                None
-            }
-        })
     }
 }

@@ -168,6 +168,39 @@ fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
     );
 }
 
+#[test]
+fn what_is_larger_than_a_repair_may_be_is_named_and_not_acted_upon() {
+    let mut made = session(5, Kind::POINT);
+    moved(&mut made.data, 40, |_, place| place + Vector3::new(0.0, 0.08, 0.0));
+    let (calibration, data) = found(&made.nominal, &made.data, &CalibrationOptions::default());
+    let [event] = &calibration.suspicions[..] else { panic!("{:?}", calibration.suspicions) };
+    println!("{}", event.statement);
+    assert!(calibration.repairs.is_empty() && data == made.data && event.kind == EventKind::Device);
+    assert!(event.statement.contains("more than the 50 mm that --repair-limit device=50mm"));
+    assert_eq!(calibration.verdict.reasons.first(), Some(&event.statement));
+    let repair_limits = "device=100mm".parse().unwrap();
+    let options = CalibrationOptions { repair_limits, ..CalibrationOptions::default() };
+    let (calibration, _) = found(&made.nominal, &made.data, &options);
+    assert_eq!((calibration.repairs.len(), calibration.suspicions.len()), (1, 0));
+}
+
+#[test]
+fn a_mistake_that_explains_more_is_named_and_nothing_is_repaired() {
+    for seed in trials(4).at_least(2).seeds() {
+        let mut made = session(seed, Kind::POINT);
+        moved(&mut made.data, 0, |_, place| Vector3::new(place.x, place.y, 1e-3 * place.z));
+        for repair_limits in ["device=50mm", "device=10m,tool=10m,zero=180deg"] {
+            let repair_limits = repair_limits.parse().unwrap();
+            let options = CalibrationOptions { repair_limits, ..CalibrationOptions::default() };
+            let (calibration, _) = found(&made.nominal, &made.data, &options);
+            let said: Vec<&String> = calibration.diagnosis.iter().map(|it| &it.statement).collect();
+            println!("seed {seed}: {said:?} {:?}", calibration.suspicions);
+            assert!(calibration.repairs.is_empty(), "{:?}", calibration.repairs);
+            assert!(said.iter().any(|it| it.contains("multiplying z alone by 1000")), "{said:?}");
+        }
+    }
+}
+
 /// Joints that turn at one speed and are read a constant time before they are there.
 #[test]
 fn readings_that_are_all_early_are_named_with_their_angle() {

@@ -29,6 +29,36 @@ const KINDS: [DiagnosisKind; 12] = [
     DiagnosisKind::DuplicateRows,
 ];
 
+/// Half a file of another export.
+#[test]
+fn a_mistake_of_a_part_of_the_rows_is_named_with_these_rows() {
+    for seed in trials(4).at_least(2).seeds() {
+        let made = Simulation { count: 60, seed, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+        let changed = |is_of: fn(usize) -> bool| {
+            let mut data = Dataset::new(made.data.reading_names().to_vec());
+            for row in 0..made.data.len() {
+                let mut readings = made.data.readings(row).to_vec();
+                if is_of(row) {
+                    readings[2] = -readings[2];
+                }
+                data.push(&readings, None, made.data.observations[row].measurement).unwrap();
+            }
+            diagnose(&made.nominal, &data, &data.all_rows(), &DiagnosisOptions::default())
+        };
+        for (is_of, which, first) in
+            [(|row| row >= 30, "last", 40), (|row| row < 25, "first", 0)] as [(fn(usize) -> bool, _, _); 2]
+        {
+            let found = changed(is_of);
+            println!("{found:?}");
+            let [found] = &found[..] else { panic!("{found:?}") };
+            assert_eq!((found.kind, found.rows.first()), (DiagnosisKind::JointSign, Some(&first)));
+            let begin = format!("in the {which} third of the rows alone, counting joint3 the other way");
+            assert!(found.statement.starts_with(&begin), "{}", found.statement);
+        }
+        assert_eq!(changed(|_| false), []);
+    }
+}
+
 fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     let rows: Vec<u32> = data.all_rows();
     diagnose(

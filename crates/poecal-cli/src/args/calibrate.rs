@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use poecal_calibrate::{AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, Repairs, Robust};
+use poecal_calibrate::{
+    AcceptedModel, Corrections, DeviceFrameKnowledge, Level, Limit, RepairLimit, Repairs, Robust,
+};
 use poecal_lou2009::{Formulation, Method, Residual};
 use poecal_model::robot::GravityDirection;
 use poecal_results::output::Existing;
@@ -82,6 +84,10 @@ pub(crate) struct Calibrate {
     /// What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole
     #[arg(long, value_parser = one_of(REPAIR), default_value = "auto", help_heading = FIT)]
     pub(crate) repair: Repairs,
+    /// Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), with its turn as an arc at a third of the robot's reach; what is
+    /// larger is named
+    #[arg(long, value_name = "THING=SIZE", value_delimiter = ',', help_heading = FIT)]
+    pub(crate) repair_limit: Vec<RepairLimit>,
     /// Parameterisation of joint errors; all but the default are for comparison
     #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", help_heading = "Comparison")]
     pub(crate) formulation: Formulation,

@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use poecal_calibrate::{
-    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Gain, Level, Repaired, Stage,
-    calibrate_repairing, settle_sets,
+    AcceptanceLimits, BlockChoice, Calibration, CalibrationOptions, Decision, Gain, Level, RepairLimits,
+    Repaired, Stage, calibrate_repairing, settle_sets,
 };
 use poecal_formats::abb::AbbCalibration;
 use poecal_import as measurements;
@@ -198,6 +198,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         robust: arguments.robust,
         move_tip: arguments.move_tip,
         repair: arguments.repair,
+        repair_limits: RepairLimits::with(&arguments.repair_limit),
         accept: AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?,
         formulation: formulated(arguments.formulation, arguments.residual, method),
         ..usual

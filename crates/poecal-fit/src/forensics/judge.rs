@@ -35,6 +35,10 @@ const SLACK: f64 = 1.2;
 /// Largest registered and calibrated error with the mistake undone, as shares of the reach.
 const REGISTERED_SHARE: f64 = 0.12;
 pub(crate) const CALIBRATED_SHARE: f64 = 5e-3;
+/// Registered error, as a share of the reach, above which a single mistake may not be all: real robots are below it.
+pub(crate) const POOR: f64 = 1e-2;
+/// Ratio of the products of both errors from which on several mistakes explain more than one.
+const SEVERAL: f64 = 5.0;
 /// Calibrated errors below this share of the reach are noise.
 const NOISE_SHARE: f64 = 3e-5;
 /// The same of one more unknown: nothing else is compared with it.
@@ -60,12 +64,17 @@ pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
     let columns = ReadingColumns::new(fitter.robot);
     let sample = sampled(&few.data);
     let hypotheses = single_mistakes(fitter, &columns, &sample);
-    let (best, score) = best_of(few, all, &sample, base, &hypotheses)
-        .map(|(index, score)| (hypotheses[index].clone(), score))
-        .or_else(|| {
-            let pairs = sign_pairs(&columns);
-            best_of(few, all, &sample, base, &pairs).map(|(index, score)| (pairs[index].clone(), score))
-        })
+    let of = |hypotheses: &[Hypothesis]| {
+        let (index, score) = best_of(few, all, &sample, base, hypotheses)?;
+        Some((hypotheses[index].clone(), score))
+    };
+    let single = of(&hypotheses);
+    // One of two mistakes often explains something.
+    let is_poor = single.as_ref().is_none_or(|(_, score)| fitter.is_poor(score));
+    let several = is_poor.then(|| of(&sign_pairs(&columns))).flatten();
+    let (best, score) = several
+        .filter(|(_, several)| single.as_ref().is_none_or(|(_, single)| several.is_far_better(single)))
+        .or(single)
         .or_else(|| {
             let scales = joint_scales(fitter, &columns, &sample)?;
             let (_, score) = best_of(few, all, &sample, base, std::slice::from_ref(&scales))?;
@@ -193,6 +202,14 @@ fn best_of(
     Some((simplest.index, simplest.score))
 }
 
+impl Score {
+    /// Whether both errors together are so much smaller that a mistake more is worth it.
+    fn is_far_better(&self, other: &Score) -> bool {
+        let product = |it: &Score| it.registered.total_m * it.calibrated.total_m;
+        SEVERAL * product(self) < product(other)
+    }
+}
+
 impl Candidate {
     /// Registered and calibrated error, metres, at the size of the given data. The calibrated robot can have any size; the nominal one
     /// cannot, so its error counts less only for data that have shrunk.
@@ -208,6 +225,11 @@ impl Fitter<'_> {
         let (registered, calibrated) = one.errors_m();
         let fitted = if one.kind == DiagnosisKind::JointZero { FITTED } else { 1.0 };
         fitted * registered * calibrated.max(NOISE_SHARE * self.reach_m())
+    }
+
+    /// Whether what a mistake leaves is more than a robot's own errors.
+    fn is_poor(&self, score: &Score) -> bool {
+        score.registered.total_m > POOR * self.reach_m()
     }
 
     /// Whether a hypothesis reduces the errors enough, to a plausible size.

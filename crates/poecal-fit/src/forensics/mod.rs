@@ -13,6 +13,7 @@ mod few;
 mod fitter;
 mod hypotheses;
 mod judge;
+mod parts;
 mod places;
 mod repeats;
 mod scales;
@@ -92,6 +93,13 @@ pub fn diagnose(
             }
         }
         _ => found.extend(whole),
+    }
+    let of_all = found.iter().find(|it| it.is_of_input()).map(|it| 1e-3 * it.after_mm);
+    if of_all.is_none_or(|after_m| after_m > judge::POOR * fitter.reach_m())
+        && let Some(of_part) = parts::diagnose(&fitter, data, &rows, options, of_all)
+    {
+        found.retain(|it| !it.is_of_input());
+        found.push(of_part);
     }
     found
 }

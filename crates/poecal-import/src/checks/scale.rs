@@ -3,15 +3,11 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use nalgebra::Vector3;
-
 use crate::table::Row;
 use crate::table::inputs::{Input, InputReader, Range};
 use crate::table::layout::ColumnLayout;
 use crate::table::lost::{NAMED_LINES, named_lines};
-use poecal_model::measurement::Observation;
 use poecal_model::robot::{Joint, JointKind, Limits, Robot};
-use poecal_numerics::distributions::{median, median_point};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
@@ -22,14 +18,11 @@ const LARGEST_UNLIMITED: f64 = 50.0;
 pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
 /// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
 pub const SHARE: f64 = 0.1;
-/// Motion below which a coordinate did not move, as a share of the reach.
-const STILL: f64 = 1e-2;
-/// A coordinate that moves by at most this many reaches is in the right unit where another one is in a wrong one.
-const RIGHT_REACHES: f64 = 4.0;
-/// Positions with a spread of more than this many reaches are in a wrong unit.
-pub const REACHES: f64 = 20.0;
 /// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
 const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
+/// By how much readings differ at most that count a joint's turns from the middle of its range on or beyond, radians; and a margin.
+const MOST_TURNS: f64 = 2.0 * TAU;
+const MORE: f64 = 0.05;
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
 
@@ -44,10 +37,13 @@ struct OneJoint<'a> {
     reading: usize,
     /// Whether a whole turn of its reading is one of the joint, and of no other.
     is_periodic: bool,
+    /// The lowest and the highest reading before whole turns are taken off.
+    raw: [f64; 2],
     turned: usize,
     turned_lines: Vec<usize>,
     beyond: usize,
     first_lines: Vec<usize>,
+    /// The largest of these, and its place.
     extreme: f64,
     extreme_place: (usize, usize),
 }
@@ -61,6 +57,7 @@ impl<'a> JointWatch<'a> {
             is_periodic: joint.kind == JointKind::Revolute
                 && joint.reading.multiplier.abs() == 1.0
                 && robot.reading_indices().iter().filter(|it| **it == reading).count() == 1,
+            raw: [f64::INFINITY, f64::NEG_INFINITY],
             turned: 0,
             turned_lines: Vec::new(),
             beyond: 0,
@@ -74,9 +71,13 @@ impl<'a> JointWatch<'a> {
     /// Takes whole turns off the readings of a row that are inside the limits without, as 0 to 360° of a joint from -180 to 180°.
     pub(crate) fn unwind(&mut self, row: &Row<'_>, inputs: &mut InputReader<'_>) {
         for one in &mut self.joints {
-            let Some(turns) = inputs.value(one.reading).and_then(|reading| one.turns(reading)) else {
-                continue;
-            };
+            let Some(reading) = inputs.value(one.reading) else { continue };
+            one.raw = [one.raw[0].min(reading), one.raw[1].max(reading)];
+            if reading.abs() > one.extreme {
+                one.extreme = reading.abs();
+                one.extreme_place = row.place(inputs.column(one.reading));
+            }
+            let Some(turns) = one.turns(reading) else { continue };
             inputs.unwind(one.reading, turns);
             one.turned += 1;
             if one.turned_lines.len() < NAMED_LINES {
@@ -97,10 +98,6 @@ impl<'a> JointWatch<'a> {
             if one.first_lines.len() < NAMED_LINES {
                 one.first_lines.push(row.line);
             }
-            if reading.abs() > one.extreme {
-                one.extreme = reading.abs();
-                one.extreme_place = row.place(inputs.column(one.reading));
-            }
         }
     }
 
@@ -112,12 +109,15 @@ impl<'a> JointWatch<'a> {
         let mut warnings = Vec::new();
         let turned = self.joints.iter().filter(|one| one.turned > 0);
         warnings.extend(turned.map(|one| one.turn_warning(path)));
-        for one in self.joints.iter().filter(|one| one.beyond > 0) {
+        for one in self.joints.iter().filter(|one| one.beyond > 0 || one.turned > 0) {
             let (Some(input), Some(range)) = (layout.inputs.get(one.reading), ranges.get(one.reading)) else {
                 continue;
             };
             let Some((lowest, highest)) = range.0 else { continue };
-            if let Some(likely) = one.other_unit(input, [lowest, highest], self.rows) {
+            let likely = one
+                .other_unit(input, [lowest, highest], self.rows)
+                .or_else(|| one.other_unit_of_turns(input, self.rows));
+            if let Some(likely) = likely {
                 let (line, column) = one.extreme_place;
                 let of_joints = layout.inputs.iter().zip(ranges).take(self.joints.len());
                 let extremes = of_joints.filter_map(|(input, range)| {
@@ -128,7 +128,7 @@ impl<'a> JointWatch<'a> {
                     .error(one.unit_message(input, likely, is_per_cent))
                     .at(path, line, column));
             }
-            if let Some(limits) = one.joint.limits {
+            if let Some(limits) = one.joint.limits.filter(|_| one.beyond > 0) {
                 warnings.push(one.limit_warning(path, limits, NamedUnit::from(input.unit.of())));
             }
         }
@@ -187,16 +187,28 @@ impl OneJoint<'_> {
 
     /// The unit that explains readings far outside.
     fn other_unit(&self, input: &Input, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
+        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
+        let is_far = self.is_far_outside(input.unit.of(), extremes, input.unit_from);
+        if is_rare || !is_far { None } else { self.smaller_unit(input, extremes) }
+    }
+
+    /// The same of readings of which whole turns were taken off, although they differ by more turns than any count of them.
+    fn other_unit_of_turns(&self, input: &Input, rows: usize) -> Option<NamedUnit> {
+        let is_rare = ((self.turned + self.beyond) as f64) < SHARE * rows as f64;
+        let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
+        let [lowest, highest] = self.raw;
+        let is_of_turns = highest - lowest <= MOST_TURNS.max(span) * (1.0 + MORE);
+        if self.turned == 0 || is_rare || is_of_turns { None } else { self.smaller_unit(input, self.raw) }
+    }
+
+    /// The smaller unit in which readings are inside the limits.
+    fn smaller_unit(&self, input: &Input, extremes: [f64; 2]) -> Option<NamedUnit> {
         let quantity = input.unit.of();
         let candidates: &[&str] = match quantity {
             Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
             Unit::Metre => &["mm", "um", "nm"],
             Unit::One | Unit::Second => &[],
         };
-        let is_rare = (self.beyond as f64) < SHARE * rows as f64;
-        if is_rare || !self.is_far_outside(quantity, extremes, input.unit_from) {
-            return None;
-        }
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
         candidates.iter().find_map(|symbol| {
             let unit = NamedUnit::parse(symbol, quantity).ok()?;
@@ -278,114 +290,8 @@ impl OneJoint<'_> {
     }
 }
 
-/// Refuses distances that differ by more than the robot reaches, from which their unit must be smaller.
-pub(crate) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Observation]) -> Result<()> {
-    let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
-    let Some(middle) = median(ranged().map(|(range, _)| range)) else { return Ok(()) };
-    let reach = robot.reach_m() + slides_m;
-    let far = |range: f64| (range - middle).abs() > 2.0 * reach;
-    let count = ranged().filter(|(range, _)| far(*range)).count();
-    let furthest = ranged().max_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
-    let Some((range, row)) = furthest else { return Ok(()) };
-    if !far(range) || (count as f64) < SHARE * ranged().count() as f64 {
-        return Ok(());
-    }
-    Err(ErrorKind::Unit.error(format!(
-        "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
-         the unit in the header, as `distance[mm]`",
-        short((range - middle).abs()),
-        short(reach)
-    )).at_line(path, row.source.line as usize))
-}
-
-/// Refuses positions whose spread shows that their unit must be smaller.
-pub(crate) fn check_positions(
-    path: &Path,
-    robot: &Robot,
-    layout: &ColumnLayout,
-    slides_m: f64,
-    rows: &[Observation],
-) -> Result<()> {
-    let columns = layout.targets.first().and_then(|target| target.position);
-    let Some(inputs) = columns.and_then(|at| {
-        let [x, y, z] = at.map(|at| layout.inputs.get(at));
-        Some([x?, y?, z?])
-    }) else {
-        return Ok(());
-    };
-    // The reach does not contain prismatic joints without limits.
-    let reach = robot.reach_m() + slides_m;
-    let placed = || rows.iter().filter_map(|row| Some((row.measurement.position()?, row)));
-    let positions: Vec<Vector3<f64>> = placed().map(|(position, _)| position).collect();
-    let middle = median_point(&positions);
-    let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
-    let furthest = placed()
-        .map(|(position, row)| (position - middle, row.source.line))
-        .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
-    let Some((apart, line)) = furthest else { return Ok(()) };
-    let spread = apart.norm();
-    if spread <= REACHES * reach
-        || spread > 1e3 * REACHES * reach
-        || (far as f64) < SHARE * positions.len() as f64
-    {
-        return Ok(());
-    }
-    let far_of =
-        |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
-    match positions_message(inputs, [0, 1, 2].map(far_of), apart, reach) {
-        Some(message) => Err(ErrorKind::Unit.error(message).at_line(path, line as usize)),
-        None => Ok(()),
-    }
-}
-
-/// What is wrong of positions of which one is so far from their middle, by how far each coordinate is at most; nothing without a smaller unit.
-fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
-    // The columns of which that is so: a header may state the unit of one of three wrongly.
-    // One in which nothing moved shows nothing.
-    let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
-    let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
-    let own = if own.is_empty() { vec![0, 1, 2] } else { own };
-    let mut headers = Vec::new();
-    for input in own.iter().map(|axis| inputs[*axis]) {
-        let smaller = match input.unit.symbol() {
-            "m" | "cm" | "in" => "mm",
-            "mm" => "um",
-            "um" => "nm",
-            _ => return None,
-        };
-        headers.push((input.name.as_str(), smaller));
-    }
-    let (first, smaller) = headers.first()?;
-    let unit = inputs[own[0]].unit;
-    let what = match own.len() {
-        3 => "positions".to_owned(),
-        1 => format!("values of `{first}`"),
-        _ => format!(
-            "values of {}",
-            headers.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
-        ),
-    };
-    let others: Vec<&str> =
-        (0..3).filter(|axis| !own.contains(axis)).map(|axis| inputs[axis].name.as_str()).collect();
-    let others = match others.as_slice() {
-        [] => String::new(),
-        [one] => format!(", beside `{one}`, which it can reach"),
-        several => format!(", beside `{}`, which it can reach", several.join("` and `")),
-    };
-    let written: Vec<String> = headers.iter().map(|(name, unit)| format!("{name}[{unit}]")).collect();
-    Some(format!(
-        "found {what} up to {} {stated} from their middle, where the robot reaches {} {stated}{others}, expected another \
-         unit, most likely {smaller}; write `{}` in the header, or {}",
-        short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
-        short(unit.from_si(reach)),
-        written.join(","),
-        state_it(inputs[own[0]].unit_from, smaller),
-        stated = unit.symbol(),
-    ))
-}
-
 /// How to state a unit beside the header: where a column states none, by an option.
-fn state_it(unit_from: UnitSource, symbol: &str) -> String {
+pub(crate) fn state_it(unit_from: UnitSource, symbol: &str) -> String {
     match unit_from {
         UnitSource::Si => format!("say --units {symbol}"),
         UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {

@@ -11,7 +11,7 @@ use super::table::{Table, refuse_more_rows};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::checks::scale::JointWatch;
 use crate::checks::turns::TurnWatch;
-use crate::checks::{scale, spread};
+use crate::checks::{lengths, spread};
 use crate::instruments::Opening;
 use crate::join::beside::{alone, beside, has_readings_of_pictures};
 use crate::join::join_plan::{Plan, ReadingsByLine};
@@ -258,7 +258,7 @@ impl<'a> Reader<'a> {
         self.rows(&mut table, &layout, &mut inputs)?;
         self.found.data.ids.resize(self.found.data.len(), String::new());
         // A wrong unit would be taken for a wrong order.
-        scale::check_positions(path, self.robot, &layout, 0.0, &self.found.data.observations)
+        lengths::check_positions(path, self.robot, &layout, 0.0, &self.found.data.observations)
     }
 
     /// Takes all rows of a file, and counts them with the lost beams among them.
@@ -313,8 +313,8 @@ impl<'a> Reader<'a> {
         turns.finish(path)?;
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
         let slides_m = joints.unlimited_slides_m(&inputs.ranges);
-        scale::check_positions(path, self.robot, layout, slides_m, new_rows)?;
-        scale::check_ranges(path, self.robot, slides_m, new_rows)?;
+        lengths::check_positions(path, self.robot, layout, slides_m, new_rows)?;
+        lengths::check_ranges(path, self.robot, slides_m, new_rows)?;
         spread::check(path, &table.header, self.robot, layout, &self.found.data, first)
     }
 

@@ -273,8 +273,16 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
         "{}",
         file.warnings[0]
     );
-    // Readings alone, for predictions, are taken so too.
+    // Degrees that were stated as radians differ by more than any count of turns does.
+    let of = |text: &str| format!("a[rad],lift,b,x,y,z\n{text}");
+    let degrees: String = (-6..=6).map(|k| format!("{},0,0,1,2,3\n", 1.9 * f64::from(k))).collect();
     let folder = Folder::new();
+    let path = folder.write("points.csv", of(&degrees));
+    let told = read(&[path], &lifting_robot(), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(told.contains("up to 11.4 rad") && told.contains("most likely deg"), "{told}");
+    let counted: String = (-3..=3).map(|k| format!("{},0,0,1,2,3\n", 1.9 * f64::from(k))).collect();
+    assert_eq!(plain(&of(&counted)).data.len(), 7);
+    // Readings alone, for predictions, are taken so too.
     let path = folder.write("q.csv", "a[deg],lift,b\n350,0,0\n");
     let joints = read_joints(&path, &lifting_robot(), &ReadOptions::default()).unwrap();
     assert!((joints.readings[0].to_degrees() + 10.0).abs() < 1e-12);

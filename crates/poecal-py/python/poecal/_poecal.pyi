@@ -1815,6 +1815,7 @@ def calibrate(
     seed: int | None = None,
     robust: Literal["auto", "off", "huber", "cauchy", "tukey"] = "auto",
     repair: Literal["auto", "off"] = "auto",
+    repair_limit: str | None = None,
     formulation: Literal["adjoint", "screw", "screw-offsets", "adjoint-offsets"] = "adjoint",
     residual: Literal["tool", "spatial"] = "tool",
     method: Literal["levenberg-marquardt", "gauss-newton"] | None = None,
@@ -1864,6 +1865,9 @@ def calibrate(
     repair
         "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
         other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
+    repair_limit
+        Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
+        arcs at a third of the robot's reach. What is larger is named, not acted upon.
     formulation
         Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
     residual

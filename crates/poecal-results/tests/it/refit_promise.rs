@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
-use poecal_calibrate::{CalibrationOptions, Judgement, Level, calibrate};
-use poecal_model::measurement::Noise;
+use poecal_calibrate::{CalibrationOptions, Judgement, Level, PartCoverage, calibrate};
+use poecal_model::measurement::{Measured, Noise};
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{Kind, Simulation, elbow, random, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};
@@ -97,4 +97,21 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
     let own = file.judge(&made.data, true, true).unwrap();
     assert_eq!(own.falls_short(Level::Good), None);
     assert_eq!(own.falls_short(Level::InsideSampledRange), None);
+    // One row inside the sampled range is no reason for anything, several are one against all.
+    let with_inside = |count: usize| {
+        let mut judgement = own.clone();
+        let some = judgement.in_sampled_range.as_mut().unwrap();
+        let parts = some.promised.parts;
+        some.promised.parts =
+            Measured::of(|it| parts.get(it).map(|part| PartCoverage { inside_bound95: 0.41, ..part }));
+        some.count = count;
+        judgement
+    };
+    assert_eq!(with_inside(1).falls_short(Level::Good), None);
+    let told = with_inside(1).falls_short(Level::InsideSampledRange).unwrap();
+    assert_eq!(told, "only 1 row lies inside the sampled range, too few to judge it");
+    for level in [Level::Good, Level::InsideSampledRange] {
+        let told = with_inside(50).falls_short(level).unwrap();
+        assert!(told.starts_with("41 % of the position errors inside the sampled range are"), "{told}");
+    }
 }

@@ -1,0 +1,52 @@
+//! A mistake of a part of the rows: half a file that another program wrote, or wrote otherwise.
+
+use super::few::FewTargets;
+use super::fitter::{Fitter, sampled, taken};
+use super::{Diagnosis, DiagnosisOptions, WHOLE, of_rows};
+use crate::state::sample_rows;
+use poecal_model::measurement::Dataset;
+
+/// Fewest rows of a part.
+const FEWEST: usize = 16;
+/// Least ratio of the registered error of all rows, after a mistake of all of them is undone, and of the other part, to that of a part without one.
+const WORSE: f64 = 3.0;
+
+/// The mistake of the first third of the rows or of the last, where the other third is explained far better than it and than all rows are;
+/// `of_all` is what a mistake of all rows leaves, metres.
+pub(super) fn diagnose(
+    fitter: &Fitter<'_>,
+    data: &Dataset,
+    rows: &[u32],
+    options: &DiagnosisOptions<'_>,
+    of_all: Option<f64>,
+) -> Option<Diagnosis> {
+    let third = rows.len() / 3;
+    if third < FEWEST || is_explained(fitter, data, rows, options) {
+        return None;
+    }
+    let parts = [("first", rows.get(..third)?), ("last", rows.get(rows.len() - third..)?)];
+    let [first_m, last_m] = parts.map(|(_, part)| registered_m(fitter, data, part));
+    let ((which, part), clean_m, other_m) =
+        if first_m < last_m { (parts[1], first_m, last_m) } else { (parts[0], last_m, first_m) };
+    let whole_m = of_all.unwrap_or_else(|| registered_m(fitter, data, rows));
+    if WORSE * clean_m > whole_m.min(other_m) {
+        return None;
+    }
+    let of_part = DiagnosisOptions { calibrated: None, ..*options };
+    let found = of_rows(fitter, data, part, &of_part).filter(Diagnosis::is_of_input)?;
+    let statement = format!("in the {which} third of the rows alone, {}", found.statement);
+    Some(Diagnosis { statement, rows: part.to_vec(), ..found })
+}
+
+/// Whether a calibration explains all rows.
+fn is_explained(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32], options: &DiagnosisOptions<'_>) -> bool {
+    let whole = taken(data, &sample_rows(rows, WHOLE));
+    options.calibrated.is_some_and(|estimate| fitter.is_sound(&whole, estimate))
+}
+
+/// Error of the nominal robot on some rows, metres.
+fn registered_m(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> f64 {
+    let all = taken(data, rows);
+    let few = FewTargets::of(fitter, &all);
+    few.fitter.registered(&sampled(&few.data)).1.total_m
+}
