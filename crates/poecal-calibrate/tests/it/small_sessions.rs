@@ -1,6 +1,7 @@
 //! Sessions of few rows, or of rows that see only lengths: no absurd target, no fear without a cause, bounds of what is asked.
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use poecal_arm::lie::Pose;
 use poecal_calibrate::{Calibration, CalibrationOptions, Level, calibrate};
 use poecal_fit::state::{Packed, Session};
 use poecal_model::measurement::Dataset;
@@ -30,7 +31,8 @@ fn unseen_m(simulation: &Simulation, made: &Simulated, found: &Calibration) -> [
     let rms = |robot: &Robot, estimate| {
         let packed = Packed::of(robot, &unseen);
         let session = Session::new(robot, &unseen, &packed, true);
-        let squares = session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.square_m2());
+        let squares =
+            session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.position_m().norm_squared());
         (squares.sum::<f64>() / unseen.len() as f64).sqrt()
     };
     let corrected = found.correction.as_deref().filter(|it| it.has_terms());
@@ -57,7 +59,7 @@ fn a_target_that_few_rows_leave_open_stays_at_the_tool() {
         };
         let made = simulation.run(&robot, Kind::POINT).unwrap();
         let found = calibrate(&made.nominal, &made.data, &all_fitted()).unwrap();
-        let target = found.targets[0].pose.translation.norm();
+        let target = found.targets[0].tip_from_target.translation.norm();
         assert!(target < 0.1, "seed {seed}: {target} m from the tip");
         let [delivered, located] = unseen_m(&simulation, &made, &found);
         assert!(delivered < 1.5 * located, "seed {seed}: {delivered} against {located} m");
@@ -79,9 +81,9 @@ fn a_target_far_from_the_model_is_found_there() {
     }
 }
 
-/// Places of the tip by a robot, in rows of readings.
-fn places(robot: &Robot, data: &Dataset) -> Vec<Vector3<f64>> {
-    (0..data.len()).map(|row| robot.forward_kinematics(data.readings(row)).translation).collect()
+/// Places of a target by a robot, in rows of readings.
+fn places(robot: &Robot, target: &Pose, data: &Dataset) -> Vec<Vector3<f64>> {
+    (0..data.len()).map(|row| (robot.forward_kinematics(data.readings(row)) * *target).translation).collect()
 }
 
 /// Root mean square distance of places after the best small motion, and with `grows` the best size.
@@ -123,10 +125,15 @@ fn what_no_row_sees_is_in_no_bound_of_lengths() {
             }
             let calibration = calibrate(&made.nominal, &made.data, &all_fitted()).unwrap();
             let corrected = calibration.correction.as_deref().filter(|it| it.has_terms());
-            let robot = corrected.map_or(&calibration.robot, |it| &it.robot);
+            let (robot, targets) =
+                corrected.map_or((&calibration.robot, &calibration.targets), |it| (&it.robot, &it.targets));
             let of = corrected.map_or(&calibration.trust.expected, |it| &it.expected);
             expected += of.measured.unwrap().sigma_m.powi(2);
-            found += apart_m(&places(robot, &made.data), &places(&made.actual, &made.data), grows).powi(2);
+            let predicted = places(robot, &targets[0].tip_from_target, &made.data);
+            let actual = places(&made.actual, &Pose::identity(), &made.data);
+            // Nothing tells noise from errors of the model here.
+            let noise_m2 = 3.0 * simulation.noise_position_m.powi(2);
+            found += apart_m(&predicted, &actual, grows).powi(2) + noise_m2;
             let size = calibration
                 .warnings
                 .iter()
@@ -135,8 +142,8 @@ fn what_no_row_sees_is_in_no_bound_of_lengths() {
         }
         let ratio = (expected / found).sqrt();
         println!("{kind:?}: expected over found {ratio:.2}");
-        // Few of these sessions are alike; the gauge alone made this ratio ten and more.
-        assert!((0.6..2.5).contains(&ratio), "{kind:?}: {ratio}");
+        // Terms that may be there are in the bounds and not in every robot; the gauge alone made this ratio ten and more.
+        assert!((0.7..1.6).contains(&ratio), "{kind:?}: {ratio}");
     }
 }
 
