@@ -109,7 +109,9 @@ fn changes(leaf: &Leaf, at: usize) -> bool {
 
 /// Whether a key that scales or shifts has a value that leaves everything as it is.
 fn is_neutral(leaf: &Leaf, at: usize) -> bool {
-    let is_shift = |key: &String| ["offset", "shift"].iter().any(|part| key.to_lowercase().contains(part));
+    // Of these 1 is no neutral value.
+    const SHIFTS: [&str; 5] = ["offset", "shift", "flip", "mirror", "invert"];
+    let is_shift = |key: &String| SHIFTS.iter().any(|part| key.to_lowercase().contains(part));
     let value = leaf.text.trim().to_lowercase();
     match value.parse::<f64>() {
         Ok(number) => number == 0.0 || number == 1.0 && !leaf.path.iter().skip(at).any(is_shift),

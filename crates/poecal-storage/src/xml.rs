@@ -424,7 +424,7 @@ mod tests {
             let text = format!("<r>{inside}</r>");
             limits::on(few, || parsed(&readable(&text), Path::new("r"), "XML").map(|_| ()))
         };
-        assert!(of(&"<a b='1' c='2'/>".repeat(9)).is_ok());
+        assert!(of(&"<a b='1' c='2'/>".repeat(8)).is_ok());
         for beyond in ["<a/>".repeat(19), "<s:a/>".repeat(19), "<a/>".repeat(11), "= ".repeat(41)] {
             let error = of(&beyond).unwrap_err();
             assert!(error.message().contains("limit `elements`"), "{error}");

@@ -52,9 +52,13 @@ impl Said {
         Said(self.0, format!("{}; it is {limit}: look for a mistake in the input, or raise it", self.1))
     }
 
-    /// The limit that it is beyond, in words; `radian_m` metres count for a radian.
-    pub(crate) fn exceeded(&self, limits: &RepairLimits, radian_m: f64) -> Option<String> {
-        let Event { kind, size_mm, size_deg, .. } = &self.0;
+    /// The limit that it is beyond, in words; `radian_m` metres count for a radian. None of a device that stood elsewhere for another file.
+    pub(crate) fn exceeded(&self, limits: &RepairLimits, data: &Dataset, radian_m: f64) -> Option<String> {
+        let Event { kind, size_mm, size_deg, from_row, .. } = &self.0;
+        let first = u32::try_from(*from_row).ok()?.checked_sub(1)?;
+        if *kind == EventKind::Device && files_apart(data, first).is_some() {
+            return None;
+        }
         let size = (1e-3 * size_mm.unwrap_or(0.0), size_deg.unwrap_or(0.0).to_radians());
         limits.exceeded(*kind, size, radian_m)
     }

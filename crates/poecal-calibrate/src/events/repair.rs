@@ -44,7 +44,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         let before = error_of(best);
         let run = &best.fit.run;
         let said = event(&happened, &run.data, &run.robot);
-        let exceeded = said.exceeded(&run.options.repair_limits, best.fit.session().length_m);
+        let exceeded = said.exceeded(&run.options.repair_limits, &run.data, best.fit.session().length_m);
         let is_open = exceeded.is_none() && run.options.repair == Repairs::Auto;
         let said = exceeded.iter().fold(said, |said, limit| said.beyond(limit));
         let Some(repaired) = is_open.then(|| without(run, &happened)).flatten() else {

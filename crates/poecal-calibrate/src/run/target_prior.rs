@@ -12,7 +12,7 @@ use poecal_numerics::solve::{LeastSquares as _, Normal};
 const SIGMAS_M: [f64; 3] = [0.02, 0.06, 0.2];
 /// Standard deviation of the places by the rows and the axes' prior, metres, from which on another prior of targets matters where rows are left
 /// out, and from which on it decides in the fit.
-const MATTERS_M: f64 = 3e-4;
+const MATTERS_M: f64 = 1e-3;
 const OPEN_M: f64 = 5e-3;
 /// Loss of twice the cost (27) by which the rows contradict a prior: 95 % of χ² with one degree of freedom.
 const CONTRADICTED: f64 = 3.84;

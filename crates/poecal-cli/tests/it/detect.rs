@@ -261,8 +261,8 @@ fn the_board_that_a_message_names_is_found() {
     for wrong in
         ["charuco:5x7:36mm:26mm:DICT_4X4_50", "charuco:7x5:36mm:26mm:DICT_6X6_250", "tags:36h11:30mm"]
     {
-        let said = folder.run(&format!("detect pictures --board {wrong} --out c.csv"));
-        let (_, named) = said.err.split_once("take --board ").unwrap();
+        let said = folder.run(&format!("detect pictures --board {wrong} --out c.csv --force"));
+        let (_, named) = said.err.split_once("take --board ").unwrap_or_else(|| panic!("{}", said.err));
         let taken = folder.run(&format!("detect pictures --board {} --out c.csv --force", named.trim_end()));
         assert!(said.code == 2 && taken.code == 0, "{}{}", said.err, taken.err);
         assert!(folder.read("c.csv").lines().count() > 40, "{}", taken.err);

@@ -12,8 +12,8 @@ use poecal_numerics::linalg;
 /// Most rows whose predictions choose.
 const ROWS: usize = 240;
 
-/// Effect of a direction of length 1 on the places, mean square, below which it has none.
-const NO_EFFECT: f64 = 1e-12;
+/// Effect of a direction of length 1 on the places, mean square, below which it is only that of links that bend and stay behind.
+const NO_EFFECT: f64 = 2e-4;
 
 /// What no row sees, and what the unknowns do along it.
 pub(super) struct Gauge {
