@@ -151,18 +151,10 @@ impl Layout {
         };
         // Of a motion, in the axes of what stands at `frame`: places, then turns.
         let local = |frame: &Pose, twist: &Twist| frame.inverse().transform(twist).to_vector();
-        for (joint, (frame, kind)) in estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate() {
-            if !holds(joint) {
-                continue;
-            }
+        let axes = estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate();
+        for (joint, (frame, kind)) in axes.filter(|(joint, _)| holds(*joint)) {
             let body = estimate.tree.joint_before(joint).map_or(Body::Base, Body::Link);
-            add(Subject::Joint(joint), Some(body), &|twist| {
-                let step = local(frame, twist);
-                match kind {
-                    JointKind::Revolute => vec![step[0], step[1], step[3], step[4]],
-                    JointKind::Prismatic => vec![step[3], step[4]],
-                }
-            });
+            add(Subject::Joint(joint), Some(body), &|twist| of_axis(*kind, &local(frame, twist)));
         }
         let freedoms = data.target_freedoms(rows);
         for (target, frame) in estimate.base_from_target.iter().enumerate() {
@@ -171,10 +163,7 @@ impl Layout {
             add(Subject::Target(target), body, &|twist| seen_of(freedom, &local(frame, twist)));
         }
         for station in 0..=estimate.further_devices.len() {
-            let body = match estimate.tree.instruments().get(station) {
-                Some(Stand::On(body)) => *body,
-                Some(Stand::Target(_)) | None => Body::Base,
-            };
+            let body = body_of(estimate, station);
             // What no row sees holds nothing.
             let is_seen = data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
             if estimate.tree.shared(station).is_none() && is_seen {
@@ -247,6 +236,22 @@ fn combine(gram: &DMatrix<f64>, moved: &[Vec<f64>], dim: usize) -> Vec<Vec<f64>>
         }
         step
     }))
+}
+
+/// The body on which an instrument stands.
+fn body_of(estimate: &Estimate, station: usize) -> Body {
+    match estimate.tree.instruments().get(station) {
+        Some(Stand::On(body)) => *body,
+        Some(Stand::Target(_)) | None => Body::Base,
+    }
+}
+
+/// The motions of an axis, along and about its own axes, that are unknowns.
+fn of_axis(kind: JointKind, motion: &Vector6<f64>) -> Vec<f64> {
+    match kind {
+        JointKind::Revolute => vec![motion[0], motion[1], motion[3], motion[4]],
+        JointKind::Prismatic => vec![motion[3], motion[4]],
+    }
 }
 
 /// The motions of a frame that are seen.

@@ -2,11 +2,10 @@
 
 use nalgebra::{DMatrix, RowDVector};
 
-use super::in_first;
 use super::motions::motions;
 use super::view::View;
 use crate::problem::Layout;
-use crate::state::{Linkage, sample_rows};
+use crate::state::{Linkage, Sight, sample_rows};
 use poecal_numerics::linalg;
 
 /// Most rows whose predictions choose.
@@ -40,7 +39,7 @@ impl Gauge {
         let unseen = DMatrix::from_fn(layout.dim(), unseen.len(), |i, k| unseen[k][i]);
         let sample = sample_rows(view.rows, ROWS);
         let rows: Vec<_> =
-            view.with_sights(&sample).iter().map(|(row, sight)| in_first((*row, sight.target))).collect();
+            view.with_sights(&sample).iter().map(|(row, sight)| (*row, Sight::from(sight.target))).collect();
         let all = motions(layout, &Linkage::new(estimate), session.packed, &rows, 1);
         // Combinations of the directions with effects of their own.
         let along = &all * &unseen;

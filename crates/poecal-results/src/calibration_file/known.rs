@@ -122,7 +122,6 @@ impl CalibrationFile {
             let (body, pose) = place(Some(name));
             estimate = estimate.with_target(body, pose);
         }
-        let free = entry.parameters(robot, self.first_station());
         let mut points = Vec::new();
         let mut index = |wanted: &Option<&str>| {
             let wanted = wanted.unwrap_or_default();
@@ -137,7 +136,7 @@ impl CalibrationFile {
             })
         };
         let indices = targets.iter().map(&mut index).collect();
-        let mut layout = Layout::new(free, entry.length_m);
+        let mut layout = Layout::new(entry.parameters(robot, self.first_station()), entry.length_m);
         let n = layout.dim();
         let outside = entry.covariance_outside_m2.as_ref();
         std::iter::once(&entry.covariance_m2).chain(outside).try_for_each(|upper| check(upper, n))?;
