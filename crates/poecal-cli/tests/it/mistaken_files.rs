@@ -266,14 +266,14 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
 fn what_a_model_states_beyond_what_is_read_is_named() {
     let folder = Folder::new();
     let model = include_str!("../../../../examples/elbow/robot.urdf");
-    folder.write("robot.urdf", &model.replace("<joint name=", "<joint colour=\"red\" name="));
+    folder.write("robot.urdf", model.replace("<joint name=", "<joint colour=\"red\" name="));
     for words in ["check robot.urdf", "convert robot.urdf --out robot.toml", "simulate robot.urdf --out sim"]
     {
         let run = folder.run(words);
         let said = format!("{}{}", run.out, run.err);
         assert_eq!((run.code, said.matches("did not read `colour`").count()), (0, 1), "{words}: {said}");
     }
-    folder.write("robot.urdf", &model.replacen("<origin ", "<origin scale=\"0.001\" ", 1));
+    folder.write("robot.urdf", model.replacen("<origin ", "<origin scale=\"0.001\" ", 1));
     let run = folder.run("check robot.urdf");
     assert!(
         run.code == 2 && run.err.contains("robot.urdf:15: found `0.001` for `origin.scale`"),
