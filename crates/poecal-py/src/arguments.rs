@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use poecal_calibrate::{AcceptanceLimits, Corrections, RepairLimits};
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::GravityDirection;
+use poecal_numerics::error::Error;
 use poecal_plan::plan::RobotError;
 use poecal_results::record::Record;
 use pyo3::PyTypeInfo;
@@ -268,25 +270,23 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
     }
 }
 
+/// A value that is written as in the program; `expected` says how.
+fn parsed<T: FromStr<Err = Error>>(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<T> {
+    if !value.is_instance_of::<PyString>() {
+        return Err(unexpected(name, value, expected));
+    }
+    String::of(value, name)?.parse().map_err(|error: Error| argument(name, error.message()))
+}
+
 impl<'a, 'py> Argument<'a, 'py> for AcceptanceLimits {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        if !value.is_instance_of::<PyString>() {
-            return Err(unexpected(name, value, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\""));
-        }
-        String::of(value, name)?
-            .parse()
-            .map_err(|error: poecal_numerics::error::Error| argument(name, error.message()))
+        parsed(value, name, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\"")
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for RepairLimits {
     fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        if !value.is_instance_of::<PyString>() {
-            return Err(unexpected(name, value, "a text, like \"device=100mm\" or \"tool=30mm,zero=10deg\""));
-        }
-        String::of(value, name)?
-            .parse()
-            .map_err(|error: poecal_numerics::error::Error| argument(name, error.message()))
+        parsed(value, name, "a text, like \"device=100mm\" or \"tool=30mm,zero=10deg\"")
     }
 }
 

@@ -37,7 +37,8 @@ impl Run<'_> {
         let joints = (self.options.formulation.joint_parameters)(registered.kinds());
         let free = free_parameters(&session, registered, &self.fit_rows, joints);
         let unknowns: usize = free.iter().map(|it| it.model().columns().len()).sum();
-        let numbers: usize = session.errors(&self.fit_rows, registered).iter().map(|it| it.dim()).sum();
+        let numbers: usize =
+            self.fit_rows.iter().map(|&row| session.observation(row).measurement.dim()).sum();
         if numbers >= ENOUGH * unknowns {
             return Vec::new();
         }

@@ -78,11 +78,10 @@ impl Layout {
     /// Growth of all that these rows see about the first station, of which no row sees anything where none has a length: a step in which a
     /// point 1 m from there moves by 1 m.
     pub(crate) fn growth(&self, estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<f64> {
-        let first = estimate.device(data.first_station(rows));
+        let centre = estimate.device(data.first_station(rows)).inverse().translation;
+        let local = |frame: &Pose| frame.rotation.tr_mul(&(frame.translation - centre));
         let mut step = vec![0.0; self.dim()];
         for (parameter, places) in self.parameters() {
-            let local =
-                |frame: &Pose| frame.rotation.tr_mul(&(frame.translation - first.inverse().translation));
             let (freedom, shift) = match parameter.model().subject() {
                 Subject::Joint(joint) if parameter.value_term().is_none() => {
                     let is_revolute = estimate.kinds().get(joint) == Some(&JointKind::Revolute);
@@ -94,9 +93,9 @@ impl Layout {
                     (freedom, estimate.base_from_target.get(target).map(local))
                 }
                 Subject::Instrument(station) => {
-                    let freedom = data.device_freedom(station, rows);
-                    let (device, centre) = (estimate.device(station), first.inverse().translation);
-                    (freedom, Some(device.rotation * centre + device.translation))
+                    let device = estimate.device(station);
+                    let shift = device.rotation * centre + device.translation;
+                    (data.device_freedom(station, rows), Some(shift))
                 }
                 Subject::Joint(_) | Subject::Range(_) | Subject::Clock(_) => continue,
             };
