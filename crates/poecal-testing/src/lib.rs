@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod damage;
 pub mod files;
 pub mod largest;
 pub mod old_workbook;

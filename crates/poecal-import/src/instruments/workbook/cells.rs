@@ -79,6 +79,9 @@ impl Found {
     }
 }
 
+/// A sheet: its name and its cells.
+pub(crate) type ReadSheet = (String, Range<Data>);
+
 /// What is said of a sheet that is damaged.
 pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
     format!("the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again")

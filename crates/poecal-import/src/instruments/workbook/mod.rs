@@ -16,8 +16,7 @@ use std::io::Cursor;
 use calamine::{Data, Ods, Range, Reader as _, Sheets, Xlsx};
 
 use self::archive::Parts;
-use self::cells::{Book, Left};
-use self::old::Sheet as ReadSheet;
+use self::cells::{Book, Left, ReadSheet};
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
