@@ -18,10 +18,7 @@ export interface CalibrateOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /**
-   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
-   * Measurement files:
-   */
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
@@ -66,7 +63,7 @@ export interface CalibrateOptions {
    * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
-  /** Fit only rows whose COLUMN has one of these values, and hold out all others Fit: */
+  /** Fit only rows whose COLUMN has one of these values, and hold out all others */
   fitWhere?: Value | readonly Value[];
   /** The measuring device's frame */
   frame?: "unknown" | "base";
@@ -115,6 +112,11 @@ export interface CalibrateOptions {
   robust?: "auto" | "off" | "huber" | "cauchy" | "tukey";
   /** What to do where a device, a target, a nest or a joint's zero moved during the session, or configurations are wrong as a whole */
   repair?: "auto" | "off";
+  /**
+   * Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), with its turn as an arc at a third of the robot's reach;
+   * what is larger is named
+   */
+  repairLimit?: Value | readonly Value[];
   /**
    * Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row
    * [default: 0.3]
@@ -197,7 +199,7 @@ export interface ValidateOptions {
   /**
    * Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and
    * their side), charuco:, circles:, aprilgrid: or tags: as poecal detect has them, YAML of Kalibr or industrial_calibration, settings of
-   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again How it is judged:
+   * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
   /** Refit the measuring device's frame to these measurements */
@@ -239,7 +241,7 @@ export interface PredictOptions {
   wait?: Value | readonly Value[];
   /** First link of the chain, where a URDF has several */
   baseLink?: Value | readonly Value[];
-  /** Last link of the chain, where a URDF has several Measurement files: */
+  /** Last link of the chain, where a URDF has several */
   tipLink?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
@@ -252,7 +254,7 @@ export interface PredictOptions {
   withUncertainty?: boolean;
   /** Which model of a calibration predicts: the corrected one, if there is one, or the calibrated one, which a URDF holds */
   model?: "corrected" | "calibrated";
-  /** Predict this target of the model, or the `tip` [default: the tip, but for --with-uncertainty]; of a URDF, with its link Results: */
+  /** Predict this target of the model, or the `tip` [default: the tip, but for --with-uncertainty]; of a URDF, with its link */
   target?: Value | readonly Value[];
 }
 
@@ -271,10 +273,7 @@ export interface CheckOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /**
-   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
-   * Measurement files:
-   */
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
@@ -340,10 +339,7 @@ export interface IdentifyOptions {
    * base and the named links
    */
   instrument?: Value | readonly Value[];
-  /**
-   * Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip
-   * Measurement files:
-   */
+  /** Target, as rows name it, and its link in a URDF (repeatable), likewise. Without --tip-link, the first that a joint moves is the tip */
   target?: Value | readonly Value[];
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];

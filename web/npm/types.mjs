@@ -93,7 +93,7 @@ function optionsOf(command) {
   const part = text.split(`\n## poecal ${command}\n`)[1]?.split("\n```\n")[0] ?? "";
   const help = part.split("\nOptions:\n")[1];
   if (help === undefined) throw new Error(`docs/commands.md: found no options of \`poecal ${command}\`, expected some`);
-  return help.split(/\n(?=\s{2,6}-)/).flatMap((block) => {
+  return help.replace(/^\S.*:$/gm, "").split(/\n(?=\s{2,6}-)/).flatMap((block) => {
     const head = /^\s*(?:-\w, )?--([\w-]+)(?: <(.+)>)?\n/.exec(`${block}\n`);
     if (!head || head[1] === "help") return [];
     const [words, values = ""] = block.slice(head[0].length).split(/Possible values:\s*\n/);
