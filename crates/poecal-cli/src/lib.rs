@@ -32,6 +32,7 @@ use help::command_line;
 use poecal_fit::problem::stated_level;
 use poecal_numerics::error::{Error, ErrorKind};
 use poecal_numerics::text::visible;
+use poecal_storage::document;
 use poecal_storage::held;
 use poecal_storage::limits::{self, Limits};
 use quantity::Allowed;
@@ -168,6 +169,13 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let work = || run_command(&arguments.command, &typed, &console);
+    let work = || match arguments.command {
+        // These read what grows, many sessions, or tables that are never held whole.
+        Command::Watch(_) | Command::Predict(_) | Command::Compensate(_) => work(),
+        #[cfg(any(unix, windows))]
+        Command::Fleet(_) => work(),
+        _ => document::reading(work),
+    };
     let work = || held::waiting(arguments.wait.unwrap_or_default(), work);
     match limits::on(stated_limits(&arguments), work) {
         Ok(code) => code,

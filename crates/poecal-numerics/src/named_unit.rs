@@ -17,6 +17,8 @@ pub enum UnitSource {
     UnitsLine,
     /// The mapping file.
     Mapping,
+    /// None stated: as the maker of these columns has them.
+    Maker,
     /// None stated: SI.
     Si,
 }

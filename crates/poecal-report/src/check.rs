@@ -373,6 +373,7 @@ fn unit_words(column: &ColumnUnderstanding) -> String {
         Some(UnitSource::Header) => format!("{unit}, header"),
         Some(UnitSource::UnitsLine) => format!("{unit}, units line"),
         Some(UnitSource::Mapping) => format!("{unit}, mapping"),
+        Some(UnitSource::Maker) => format!("{unit}, its maker's"),
         Some(UnitSource::Si) => format!("{unit}, SI"),
         None => unit.to_owned(),
     }

@@ -7,6 +7,7 @@ use std::path::Path;
 use sha2::{Digest as _, Sha256};
 
 use super::disk::{self, ObjectKind};
+use super::document;
 use super::source::is_standard_input;
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -20,7 +21,9 @@ pub fn sha256(path: &Path) -> Result<Option<String>> {
         return Ok(None);
     }
     let read = || {
-        let mut file = Hashing::new(disk.open(path)?);
+        // What was read of it is that which was read.
+        let file = document::again(path).map_or_else(|| disk.open(path), Ok)?;
+        let mut file = Hashing::new(file);
         io::copy(&mut file, &mut io::sink())?;
         Ok(Some(file.sha256()))
     };

@@ -4,7 +4,7 @@
 //! nothing by itself.
 //!
 //! It is the only part that opens files. [`disk`] has the trait; inputs are opened in [`source`] alone (limits, standard input, files that are not
-//! text), and what a file may take is in [`limits`]. Results are put in place by `poecal-results`'s `output`, through the same trait.
+//! text), once for all questions of a command ([`document`]), and what a file may take is in [`limits`]. Results are put in place by `poecal-results`'s `output`, through the same trait.
 //!
 //! Not here: robots, measurements, results, and computation beyond the numbers of a text.
 
@@ -12,6 +12,7 @@
 
 pub mod csv_text;
 pub mod disk;
+pub mod document;
 pub mod folder;
 pub mod hashes;
 pub mod held;

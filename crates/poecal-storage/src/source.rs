@@ -4,6 +4,7 @@ use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::disk::{self, ObjectKind};
+use super::document::{self, Source};
 use super::limits::{Limit, amount};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
@@ -103,7 +104,7 @@ impl Form {
 /// An input. Beyond its largest size it gives an error.
 pub struct Input {
     /// The head, which is looked at first, and the rest.
-    bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Box<dyn Read + Send>>>,
+    bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Source>>,
     limit: Limit,
 }
 
@@ -133,6 +134,16 @@ pub fn refuse_named(path: &Path, expected: &str) -> Result<()> {
 
 /// The same of any form, with its first bytes.
 pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
+    headed(document::open(path, || opened(path, expected))?, path, expected, limit)
+}
+
+/// The same of what is too large to be kept.
+pub fn open_streamed(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
+    headed(document::stream(path, || opened(path, expected))?, path, expected, limit)
+}
+
+/// The bytes of a file, or of standard input.
+fn opened(path: &Path, expected: &str) -> Result<Source> {
     let error = |message: String| ErrorKind::File.error(message).in_file(path);
     let disk = disk::here();
     let opened = if is_standard_input(path) {
@@ -142,13 +153,17 @@ pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec
     } else {
         disk.open(path)
     };
-    let mut rest = opened.map_err(|cause| {
+    opened.map_err(|cause| {
         if cause.kind() == io::ErrorKind::NotFound {
             error(format!("found no such file, expected {expected}: check the path"))
         } else {
             unreadable(path, &cause, expected)
         }
-    })?;
+    })
+}
+
+/// An input, with its first bytes.
+fn headed(mut rest: Source, path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
     let mut head = Vec::new();
     rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
     // One byte more than allowed shows that the file is too large.

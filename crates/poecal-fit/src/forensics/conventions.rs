@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::DiagnosisKind;
 use super::change::{Change, like, push};
-use super::euler::Reinterpretation;
+use super::euler::{Reinterpretation, columns, words};
 use super::fitter::Fitter;
 use super::hypotheses::Hypothesis;
 use crate::start::mean_rotation;
@@ -113,26 +113,26 @@ fn hypothesis(meaning: Reinterpretation, turns: Vec<Option<Matrix3<f64>>>) -> Hy
     let (action, advice) = if read == meant {
         let (is, read_as, unit) =
             if factor > 1.0 { ("radians", "degrees", "rad") } else { ("degrees", "radians", "deg") };
-        let columns = read.columns().map_or_else(String::new, |columns| {
+        let columns = columns(read).map_or_else(String::new, |columns| {
             format!(", as in {}", columns.map(|name| format!("`{name}[{unit}]`")).join(", "))
         });
         (
-            format!("taking the orientation ({}) in {is} instead of {read_as}", meant.words()),
+            format!("taking the orientation ({}) in {is} instead of {read_as}", words(meant)),
             format!(
                 "state the unit of the angles in the header{columns}, or in a mapping (`unit = \"{unit}\"`)"
             ),
         )
     } else {
-        let columns = read.columns().map_or_else(
+        let columns = columns(read).map_or_else(
             || "the same `columns`".to_owned(),
             |columns| format!("`columns = [{}]`", columns.map(|name| format!("\"{name}\"")).join(", ")),
         );
         (
-            format!("taking the orientation as {} instead of {}", meant.words(), read.words()),
+            format!("taking the orientation as {} instead of {}", words(meant), words(read)),
             format!(
                 "check the convention of the angles; a mapping (--columns) with `form = \"{}\"` and {columns} under `[orientation]` has \
                  them read so (an equivalent pair of conventions may be meant)",
-                meant.form()
+                meant
             ),
         )
     };

@@ -66,7 +66,13 @@ impl Builder<'_> {
                 self.constant_input(name, kept.offset, (NamedUnit::from(quantity), UnitSource::Mapping));
             }
             [(column, factor, unit)] if *factor == 1.0 && kept.offset == 0.0 => {
-                self.column_or(name, column, quantity, (None, *unit), purpose)?;
+                self.column_or(
+                    name,
+                    column,
+                    quantity,
+                    (None, unit.map(|unit| (unit, UnitSource::Mapping))),
+                    purpose,
+                )?;
             }
             _ => {
                 let at = self.joined_input(name, &columns, quantity, None, purpose)?;

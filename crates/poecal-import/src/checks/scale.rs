@@ -293,7 +293,7 @@ impl OneJoint<'_> {
 /// How to state a unit beside the header: where a column states none, by an option.
 pub(crate) fn state_it(unit_from: UnitSource, symbol: &str) -> String {
     match unit_from {
-        UnitSource::Si => format!("say --units {symbol}"),
+        UnitSource::Si | UnitSource::Maker => format!("say --units {symbol}"),
         UnitSource::Header | UnitSource::UnitsLine | UnitSource::Mapping => {
             "the unit in the mapping".to_owned()
         }

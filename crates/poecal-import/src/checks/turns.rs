@@ -9,7 +9,9 @@ use crate::table::inputs::{InputReader, InputSource};
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::orientation::OrientationForm;
+use poecal_arm::lie::{Angles, MAKERS};
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::UnitSource;
 
 /// Least share of rows with implausible angles: a few corrupt rows are no wrong unit.
 const SHARE: f64 = 0.1;
@@ -45,9 +47,9 @@ impl TurnWatch {
                 | OrientationForm::QuaternionWxyz
                 | OrientationForm::MatrixByRows
                 | OrientationForm::MatrixByColumns => continue,
-                OrientationForm::RotationVector => (true, TAU + ROUNDING),
+                &OrientationForm::ROTATION_VECTOR => (true, TAU + ROUNDING),
                 // Angles that count on over many turns are in no other unit.
-                OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => (false, 2.0 * TAU),
+                OrientationForm::Angles(_) => (false, 2.0 * TAU),
             };
             let values: Vec<f64> = columns.iter().filter_map(|&input| inputs.value(input)).collect();
             if values.len() != 3 || !columns.iter().all(of_radians) {
@@ -99,50 +101,53 @@ impl TurnWatch {
     }
 }
 
-/// Orientation columns of robot makers: names, maker, and form.
-const MAKERS: [(&[&str], &str, &str); 6] = [
-    (&["A", "B", "C"], "KUKA's A, B, C (turns about z, then the new y, then the new x)", "intrinsic_zyx"),
-    (&["W", "P", "R"], "FANUC's W, P, R (turns about the fixed x, y, z)", "roll_pitch_yaw"),
-    (&["O", "A", "T"], "Kawasaki's O, A, T (turns about z, then the new y, then the new z)", "intrinsic_zyz"),
-    (&["q1", "q2", "q3", "q4"], "ABB's q1 to q4 (a quaternion, its real part first)", "quaternion_wxyz"),
-    (&["q0", "q1", "q2", "q3"], "a quaternion with its real part first", "quaternion_wxyz"),
-    (
-        &["Rx", "Ry", "Rz"],
-        "a rotation vector (as Universal Robots has them; of Stäubli they are intrinsic_xyz, of Yaskawa roll_pitch_yaw)",
-        "rotation_vector",
-    ),
-];
+/// Columns that makers call alike and mean in several ways.
+const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// Advice on columns that may hold an orientation and are not read as one.
 pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
     let [target] = layout.targets.as_slice() else { return None };
     match &target.orientation {
         None => unread(header, layout),
-        Some((OrientationForm::RotationVector, columns)) if map.orientation.is_none() => {
+        Some((OrientationForm::ROTATION_VECTOR, columns)) if map.orientation.is_none() => {
             backwards(header, layout, columns)
         }
         Some(_) => None,
     }
 }
 
-/// Columns of a maker that the layout does not use.
+/// What columns of a maker were taken for.
+pub(crate) fn note(layout: &ColumnLayout) -> Option<String> {
+    let [target] = layout.targets.as_slice() else { return None };
+    let (convention, inputs) = (target.convention?, &target.orientation.as_ref()?.1);
+    let of = |input: &usize| layout.inputs.get(*input);
+    let names: Vec<&str> = inputs.iter().filter_map(of).map(|it| it.label.as_str()).collect();
+    let place = target.position.iter().flatten().take(1);
+    let usual = place.chain(inputs.first()).filter_map(of).filter(|it| it.unit_from == UnitSource::Maker);
+    let usual: Vec<&str> = usual.map(|it| it.unit.symbol()).filter(|it| *it != "1").collect();
+    let units = match usual.as_slice() {
+        [] => String::new(),
+        some => format!(", in {}, since no unit is stated: --units says another", some.join(" and ")),
+    };
+    Some(format!("took the columns {} for {}{units}", names.join(", "), convention.words))
+}
+
+/// Columns of makers that the layout does not use.
 fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
     let left_alone = |name: &str| {
         let mut cells = header.cells.iter().filter(|cell| cell.name.eq_ignore_ascii_case(name));
         cells.find(|cell| layout.ignored.iter().any(|(text, _)| *text == cell.text))
     };
-    let (names, words, form) = MAKERS.into_iter().find(|(names, ..)| {
-        // Joints may be called q1 to q6.
-        names.iter().all(|name| left_alone(name).is_some()) && (names.len() < 4 || left_alone("q5").is_none())
-    })?;
-    let cells: Vec<_> = names.iter().filter_map(|name| left_alone(name)).collect();
-    let stated = names.len() == 4 || cells.iter().all(|cell| cell.unit.is_some());
-    let unit = if stated { "" } else { ", unit = \"deg\"" };
+    let cells = AMBIGUOUS.iter().map(|name| left_alone(name)).collect::<Option<Vec<_>>>()?;
+    let unit = if cells.iter().all(|cell| cell.unit.is_some()) { "" } else { ", unit = \"deg\"" };
     let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
+    let own = MAKERS.iter().filter(|it| it.names == AMBIGUOUS);
+    let forms: Vec<String> = own.map(|it| format!("{} of {}", it.angles, it.maker)).collect();
     Some(format!(
-        "the columns {} look like {words}; they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses",
+        "the columns {} may be {}; they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses",
         columns.join(", "),
-        mapped(form, &columns, unit)
+        forms.join(", "),
+        mapped(&Angles::RotationVector.to_string(), &columns, unit)
     ))
 }
 
@@ -179,6 +184,8 @@ fn mapped(form: &str, columns: &[&str], unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use crate::{MeasurementFile, ReadOptions, parse};
+    use nalgebra::Vector3;
+    use poecal_arm::lie::rotation;
     use poecal_model::simulate::scara;
 
     fn read(header: &str, turns: &[&str]) -> poecal_numerics::error::Result<MeasurementFile> {
@@ -215,26 +222,16 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_robot_makers_are_named_with_their_mapping() {
+    fn columns_that_makers_mean_in_several_ways_are_named_with_their_mapping() {
         let told = |header, turn| {
             let file = read(header, &[turn]).unwrap();
             file.warnings.iter().find(|warning| warning.contains("--columns")).cloned().unwrap_or_default()
         };
         assert_eq!(
-            told("A,B,C", "10,20,30"),
-            "t.csv: the columns A, B, C look like KUKA's A, B, C (turns about z, then the new y, then the new x); they are ignored and the rows read as points: a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` \
-             reads them as poses"
-        );
-        assert!(
-            told("w[deg],p[deg],r[deg]", "1,2,3")
-                .contains("`orientation = { form = \"roll_pitch_yaw\", columns = [\"w\", \"p\", \"r\"] }`")
-        );
-        assert!(
-            told("q1,q2,q3,q4", "1,0,0,0")
-                .contains("{ form = \"quaternion_wxyz\", columns = [\"q1\", \"q2\", \"q3\", \"q4\"] }")
-        );
-        assert!(
-            told("Rx,Ry,Rz", "1,0,0").contains("look like a rotation vector (as Universal Robots has them")
+            told("Rx,Ry,Rz", "1,0,0"),
+            "t.csv: the columns Rx, Ry, Rz may be roll_pitch_yaw of Yaskawa, rotation_vector of Universal Robots, intrinsic_xyz of Stäubli; they are \
+             ignored and the rows read as points: a mapping (--columns) with `orientation = { form = \"rotation_vector\", columns = [\"Rx\", \"Ry\", \
+             \"Rz\"], unit = \"deg\" }` reads them as poses"
         );
         assert_eq!(
             told("rz,ry,rx", "0.1,0.2,0.3"),
@@ -247,5 +244,55 @@ mod tests {
         {
             assert_eq!(told(header, turn), "", "{header}");
         }
+    }
+
+    /// Lengths in millimetres and angles in degrees, as `hand-eye` reads the same columns.
+    #[test]
+    fn columns_of_a_maker_mean_what_it_means_by_them() {
+        let row = "0,0.1,0.1,0,600,50,100";
+        let read = |header: &str, turn: &str| {
+            let text = format!("joint1,joint2,joint3,joint4,{header}\n{row},{turn}\n");
+            parse(&text, "t.csv", &scara(), &ReadOptions::default()).unwrap()
+        };
+        let turned = |roll: f64, pitch: f64, yaw: f64| {
+            rotation::from_rpy(roll.to_radians(), pitch.to_radians(), yaw.to_radians())
+        };
+        for (header, turn, expected, note) in [
+            (
+                "X,Y,Z,A,B,C",
+                "10,20,30",
+                turned(30.0, 20.0, 10.0),
+                "A, B, C for KUKA's A, B, C, in mm and deg, since",
+            ),
+            (
+                "x,y,z,w,p,r",
+                "10,20,30",
+                turned(10.0, 20.0, 30.0),
+                "w, p, r for FANUC's W, P, R, in mm and deg, since",
+            ),
+            (
+                "x[mm],y[mm],z[mm],A[deg],B[deg],C[deg]",
+                "10,20,30",
+                turned(30.0, 20.0, 10.0),
+                "KUKA's A, B, C",
+            ),
+            (
+                "X,Y,Z,q1,q2,q3,q4",
+                "0,1,0,0",
+                turned(180.0, 0.0, 0.0),
+                "ABB's quaternion, q1 real, in mm, since",
+            ),
+        ] {
+            let file = read(header, turn);
+            let pose = file.data.observations[0].measurement.pose();
+            assert!((pose.rotation - expected).amax() < 1e-15, "{header}");
+            assert!((pose.translation - Vector3::new(0.6, 0.05, 0.1)).amax() < 1e-15, "{header}");
+            assert!(file.notes.iter().any(|it| it.contains(note)), "{:?}", file.notes);
+        }
+        let mut options = ReadOptions::default();
+        options.state_units("m").unwrap();
+        let text = "joint1,joint2,joint3,joint4,X,Y,Z,A,B,C\n0,0.1,0.1,0,0.6,0.05,0.1,10,20,30\n";
+        let file = parse(text, "t.csv", &scara(), &options).unwrap();
+        assert!(file.notes.iter().any(|it| it.contains("KUKA's A, B, C, in deg, since")), "{:?}", file.notes);
     }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::draft::Draft;
 use crate::table::orientation::OrientationForm;
+use poecal_arm::lie::MAKERS;
 use poecal_numerics::named_unit::units_of;
 use poecal_numerics::unit::Unit;
 
@@ -40,14 +41,6 @@ impl MappedChoice {
     }
 }
 
-/// Who writes orientations in a form.
-const MAKERS: [(&str, &str); 5] = [
-    ("intrinsic_zyx", "KUKA A, B, C"),
-    ("roll_pitch_yaw", "FANUC W, P, R; Yaskawa Rx, Ry, Rz"),
-    ("intrinsic_zyz", "Kawasaki O, A, T"),
-    ("rotation_vector", "Universal Robots Rx, Ry, Rz"),
-    ("intrinsic_xyz", "Stäubli Rx, Ry, Rz"),
-];
 /// Forms that are not three angles about axes, and the most frequent first.
 const FORMS: [&str; 6] = [
     "quaternion_xyzw",
@@ -69,9 +62,10 @@ fn forms() -> Vec<MappedChoice> {
     let words = FORMS.into_iter().map(str::to_owned).chain(angles.filter(|it| it != "extrinsic_xyz"));
     let choice = |word: String| {
         let form: OrientationForm = word.parse().ok()?;
-        let maker =
-            MAKERS.iter().find(|it| it.0 == word).map_or_else(String::new, |it| format!(": {}", it.1));
-        Some(MappedChoice::new(&word, format!("{form}{maker}")))
+        let own = MAKERS.iter().filter(|it| OrientationForm::Angles(it.angles) == form);
+        let makers: Vec<String> = own.map(|it| format!("{} {}", it.maker, it.names.join(", "))).collect();
+        let before = if makers.is_empty() { "" } else { ": " };
+        Some(MappedChoice::new(&word, format!("{form}{before}{}", makers.join("; "))))
     };
     std::iter::once(MappedChoice::new("", "none: positions alone")).chain(words.filter_map(choice)).collect()
 }

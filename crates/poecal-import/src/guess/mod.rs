@@ -23,6 +23,7 @@ use crate::table::header::Header;
 use crate::table::mapping::{ColumnMap, PositionSpec};
 use crate::table::number::Numbers;
 use crate::table::orientation::OrientationForm;
+use poecal_arm::lie::Angles;
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
 use poecal_numerics::named_unit::NamedUnit;
@@ -179,8 +180,8 @@ impl<'h> Sample<'h> {
         if let Some((form, columns)) = self.names.orientation(near.as_deref()) {
             let is_large = self.largest_of(columns.iter().copied()) > MOST_RADIANS;
             // Nobody writes a rotation vector in degrees.
-            let form = if form == "rotation_vector" && is_large { "intrinsic_xyz" } else { form };
-            draft.form = Some(form.to_owned());
+            let is_vector = form == Angles::RotationVector.to_string();
+            draft.form = Some(if is_vector && is_large { Angles::XYZ.to_string() } else { form });
             draft.parts = columns.into_iter().map(|it| self.name(it)).collect();
         }
         draft.target = self.names.named("target").and_then(|it| self.name(it));

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::table::conventions::CONVENTIONS;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::numbered::{OTHERS, numbered, plain};
 use crate::table::orientation::OrientationForm;
+use poecal_arm::lie::Angles;
 use poecal_model::robot::Robot;
 use poecal_numerics::named_unit::NamedUnit;
 
@@ -19,20 +21,22 @@ const STATISTICS: [&str; 9] = ["std", "sigma", "stdev", "dev", "err", "rms", "co
 const AXES: [[&str; 3]; 2] = [["x", "y", "z"], ["east", "north", "up"]];
 /// What is written before x, y and z without anything between.
 const BEFORE_AXIS: [&str; 8] = ["p", "t", "pos", "position", "tcp", "point", "meas", "target"];
-/// Three angles by the last words of their names, and the form that they have most often.
-const ANGLES: [([&str; 3], &str); 6] = [
-    (["rx", "ry", "rz"], "rotation_vector"),
-    (["roll", "pitch", "yaw"], "roll_pitch_yaw"),
-    (["a", "b", "c"], "intrinsic_zyx"),
-    (["w", "p", "r"], "roll_pitch_yaw"),
-    (["o", "a", "t"], "intrinsic_zyz"),
-    (["alpha", "beta", "gamma"], "intrinsic_xyz"),
-];
+/// Three angles that no maker calls so, and the form that they have most often.
+const GREEK: (&[&str], Angles) = (&["alpha", "beta", "gamma"], Angles::XYZ);
+
+/// Three angles by the last words of their names.
+fn angles() -> impl Iterator<Item = (&'static [&'static str], Angles)> {
+    let known = CONVENTIONS.iter().filter_map(|it| {
+        let OrientationForm::Angles(angles) = it.form else { return None };
+        Some((it.columns, angles))
+    });
+    known.chain([GREEK])
+}
 
 /// What the names of some columns begin with, and the columns.
 type Begun = (String, Vec<usize>);
 /// The form of an orientation, and its columns.
-type Oriented = (&'static str, Vec<usize>);
+type Oriented = (String, Vec<usize>);
 
 /// The name of a column in words.
 struct Words {
@@ -150,8 +154,8 @@ impl<'h> Names<'h> {
     /// The form of the orientation and its columns, beside a position whose columns begin with `near`.
     pub(crate) fn orientation(&self, near: Option<&str>) -> Option<Oriented> {
         let ends = |last: &[&str]| self.ending(last, near).map(|it| it.1);
-        let of_four = |last: [&str; 4], form| Some((form, ends(&last)?));
-        let of_three = || ANGLES.iter().find_map(|(last, form)| Some((*form, ends(last)?)));
+        let of_four = |last: [&str; 4], form: &str| Some((form.to_owned(), ends(&last)?));
+        let of_three = || angles().find_map(|(last, form)| Some((form.to_string(), ends(last)?)));
         of_four(["qx", "qy", "qz", "qw"], "quaternion_xyzw")
             .or_else(|| of_four(["q1", "q2", "q3", "q4"], "quaternion_wxyz"))
             .or_else(of_three)
@@ -160,7 +164,7 @@ impl<'h> Names<'h> {
     /// The columns of a form that was chosen, as far as their names say so.
     pub(crate) fn parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<usize>> {
         let found = self.ending(form.part_names(), near).or_else(|| {
-            let mut angles = ANGLES.iter().filter(|_| form.len() == 3);
+            let mut angles = angles().filter(|_| form.len() == 3);
             angles.find_map(|(last, _)| self.ending(last, near))
         });
         found.map_or_else(|| vec![None; form.len()], |it| it.1.into_iter().map(Some).collect())
@@ -189,7 +193,7 @@ mod tests {
             "Goal x,Goal y,Goal z,meas_x,meas_std_x,meas_y,meas_std_y,meas_z,meas_std_z,meas_rx,meas_ry,meas_rz",
         );
         assert_eq!(position, Some(("meas".to_owned(), vec![3, 5, 7])));
-        assert_eq!(orientation, Some(("rotation_vector", vec![9, 10, 11])));
+        assert_eq!(orientation, Some(("rotation_vector".to_owned(), vec![9, 10, 11])));
     }
 
     #[test]
@@ -203,6 +207,6 @@ mod tests {
             assert_eq!(found(header).0.map(|it| it.1), Some(columns), "{header}");
         }
         assert_eq!(found("x,y,sigma_x,sigma_y,sigma_z"), (None, None));
-        assert_eq!(found("x,y,z,a,b,c").1, Some(("intrinsic_zyx", vec![3, 4, 5])));
+        assert_eq!(found("x,y,z,a,b,c").1, Some(("intrinsic_zyx".to_owned(), vec![3, 4, 5])));
     }
 }

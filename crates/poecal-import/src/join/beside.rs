@@ -7,20 +7,15 @@ use crate::instruments::{MEASURED, Opening};
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::Table;
-use crate::table::configurations::{advice, is_folder};
+use crate::table::configurations::advice;
 use crate::table::header::HeaderCell;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{Error, ErrorKind};
-use poecal_storage::disk::is_file;
 
 /// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
 pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
-    // A pipe is read once.
-    if !is_file(path) && !is_folder(path) {
-        return false;
-    }
     let table = Blocks::open_or_join(path, MEASURED).and_then(|blocks| Table::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
@@ -75,7 +70,6 @@ pub(crate) fn beside(
         let blocks = Blocks::open(other, MEASURED);
         let table = blocks.and_then(|blocks| Table::open(other, blocks, map));
         **other != path
-            && is_file(other)
             && table.is_ok_and(|table| {
                 are_corners(&table.header, &robot.reading_names(), map).is_ok_and(|are_corners| are_corners)
             })

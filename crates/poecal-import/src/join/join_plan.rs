@@ -17,8 +17,6 @@ use crate::{Frames, ReadOptions};
 use poecal_model::measurement::{Clock, Measurement};
 use poecal_model::robot::{Controller, ReadingKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result, shown};
-use poecal_storage::disk::{self, is_file};
-use poecal_storage::source::is_standard_input;
 
 /// What a file has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -196,10 +194,8 @@ impl Found {
 /// # Errors
 /// Of a file in another form that cannot be one.
 pub(crate) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<Found> {
-    // A pipe is read once.
-    if !is_file(path) {
-        let is_pipe = is_standard_input(path) || !is_folder(path) && disk::here().follow(path).is_ok();
-        let error = if is_pipe { None } else { opening.opened(path, MEASURED).err() };
+    if is_folder(path) {
+        let error = opening.opened(path, MEASURED).err();
         return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
     }
     let opened = opening.opened(path, MEASURED)?;

@@ -9,13 +9,13 @@ use crate::instruments::{MEASURED, Opened};
 use crate::read::Reader;
 use crate::table::Table;
 use crate::table::cells::{Separator, split};
+use crate::table::configurations::is_folder;
 use crate::table::header::{Header, is_number};
 use crate::table::inputs::InputSource;
 use crate::table::layout::ColumnLayout;
 use poecal_fit::start::{Agreement, Pair, Unpaired};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind};
-use poecal_storage::disk::is_file;
 
 /// Most rows by which a header is judged.
 const SOME: usize = 600;
@@ -83,7 +83,7 @@ impl Reader<'_> {
     /// The error of a file with joint readings and measurements whose header is shifted; `None` if it is not. `first` is the first of its rows, if
     /// they were read.
     pub(crate) fn shifted_whole(&self, path: &Path, first: Option<usize>) -> Option<Error> {
-        if !is_file(path) {
+        if is_folder(path) {
             return None;
         }
         let blocks = || match self.opening().opened(path, MEASURED) {

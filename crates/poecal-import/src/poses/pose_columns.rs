@@ -1,5 +1,6 @@
 //! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
 
+use crate::table::conventions::{CONVENTIONS, OPENCV};
 use crate::table::header::{Header, unit_in_name};
 use crate::table::orientation::OrientationForm;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -22,71 +23,8 @@ const TARGET: [&str; 10] =
 /// Columns that name a row.
 const NAMES: [&str; 9] = ["image", "picture", "file", "filename", "name", "id", "index", "image_id", "frame"];
 
-/// A form of orientations: what its columns are called in the end, and what they mean.
-struct Form {
-    columns: &'static [&'static str],
-    form: OrientationForm,
-    /// Units of places and angles where nothing states them, as this maker has them.
-    usual: Option<(&'static str, &'static str)>,
-    words: &'static str,
-}
-
-const fn form(
-    columns: &'static [&'static str],
-    form: OrientationForm,
-    usual: Option<(&'static str, &'static str)>,
-    words: &'static str,
-) -> Form {
-    Form { columns, form, usual, words }
-}
-
-const MATRIX: &[&str] = &["m00", "m01", "m02", "m10", "m11", "m12", "m20", "m21", "m22"];
-const ZYX: OrientationForm = OrientationForm::Intrinsic([2, 1, 0]);
-const ZYZ: OrientationForm = OrientationForm::Intrinsic([2, 1, 2]);
-const CONTROLLER: Option<(&str, &str)> = Some(("mm", "deg"));
-
-/// OpenCV's rotation vector, by the keys of its columns.
-const OPENCV: &[&str] = &["rvx", "rvy", "rvz"];
-/// Angles about x, y, z as turned, which makers call rx, ry, rz, as others call rotation vectors.
-const AS_TURNED: &[&str] = &["ix", "iy", "iz"];
 /// Letters of makers, by the first of which the columns are the arm's.
 const MAKERS: [&str; 4] = ["a", "w", "o", "u"];
-
-const FORMS: [Form; 13] = [
-    form(&["qx", "qy", "qz", "qw"], OrientationForm::QuaternionXyzw, None, "quaternion by names"),
-    form(
-        &["q1", "q2", "q3", "q4"],
-        OrientationForm::QuaternionWxyz,
-        Some(("mm", "1")),
-        "ABB's quaternion, q1 real",
-    ),
-    form(&["q0", "q1", "q2", "q3"], OrientationForm::QuaternionWxyz, None, "quaternion, q0 real"),
-    form(OPENCV, OrientationForm::RotationVector, Some(("m", "rad")), "OpenCV's rvec and tvec"),
-    form(&["a", "b", "c"], ZYX, CONTROLLER, "KUKA's A, B, C"),
-    form(&["w", "p", "r"], OrientationForm::ROLL_PITCH_YAW, CONTROLLER, "FANUC's W, P, R"),
-    form(&["o", "a", "t"], ZYZ, CONTROLLER, "Kawasaki's O, A, T"),
-    form(&["a", "e", "r"], ZYZ, CONTROLLER, "Comau's A, E, R"),
-    form(&["u", "v", "w"], ZYX, CONTROLLER, "Epson's U, V, W"),
-    form(
-        AS_TURNED,
-        OrientationForm::Intrinsic([0, 1, 2]),
-        CONTROLLER,
-        "angles about x, y, z as turned (Stäubli's RX, RY, RZ)",
-    ),
-    form(
-        &["roll", "pitch", "yaw"],
-        OrientationForm::ROLL_PITCH_YAW,
-        None,
-        "roll, pitch, yaw about fixed axes x, y, z",
-    ),
-    form(
-        &["rx", "ry", "rz"],
-        OrientationForm::RotationVector,
-        Some(("m", "rad")),
-        "Universal Robots' rotation vector",
-    ),
-    form(MATRIX, OrientationForm::MatrixByRows, None, "matrix by rows"),
-];
 
 /// A column of numbers with its unit.
 #[derive(Clone, Copy, Debug)]
@@ -277,12 +215,12 @@ fn settle(named: &mut [Named]) {
     let all = |named: &[Named], keys: &[&str]| {
         keys.iter().all(|key| named.iter().any(|it| it.whose.is_none() && it.key == *key))
     };
-    for keys in FORMS.iter().map(|it| it.columns).chain([&["x", "y", "z"][..]]) {
+    for keys in CONVENTIONS.iter().map(|it| it.columns).chain([&["x", "y", "z"][..]]) {
         if !all(named, keys) {
             continue;
         }
         let is_place = keys[0] == "x";
-        let orientations: Vec<&str> = FORMS.iter().flat_map(|it| it.columns.iter().copied()).collect();
+        let orientations: Vec<&str> = CONVENTIONS.iter().flat_map(|it| it.columns.iter().copied()).collect();
         let others: &[&str] = if is_place { &["x", "y", "z", "m03"] } else { &orientations };
         let is_maker = MAKERS.contains(&keys[0]);
         let whose = if is_maker || !has(named, Whose::Arm, others) { Whose::Arm } else { Whose::Target };
@@ -336,7 +274,7 @@ fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnit
             .error(format!("found no position of {who} among the columns {}, expected x, y, z or tvec_x, tvec_y, tvec_z: name them so", names()))
             .at_line(header.path, header.line));
     };
-    let found = FORMS.iter().find_map(|form| Some((form, all(form.columns)?)));
+    let found = CONVENTIONS.iter().find_map(|form| Some((form, all(form.columns)?)));
     let Some((form, orientation)) = found else {
         return Err(ErrorKind::Measurement
             .error(format!(

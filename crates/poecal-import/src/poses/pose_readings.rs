@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::pose_columns::{PoseColumns, Whose, list_words};
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::Pose;
+use poecal_arm::lie::{Angles, Pose};
 use poecal_fit::hand_eye::Reading;
 
 /// A reading: its form, the factor of its numbers, and the advice.
@@ -50,9 +50,7 @@ fn ways(columns: &PoseColumns) -> Vec<Way> {
             ),
         ),
         OrientationForm::MatrixByColumns => Vec::new(),
-        OrientationForm::RotationVector | OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => {
-            ways_of_angles(columns, who)
-        }
+        OrientationForm::Angles(_) => ways_of_angles(columns, who),
     }
 }
 
@@ -63,21 +61,14 @@ fn ways_of_angles(columns: &PoseColumns, who: &str) -> Vec<Way> {
         if symbol == "deg" { ("radians", "rad", 1.0 / degree) } else { ("degrees", "deg", degree) };
     let unit = format!("angles of {who} in {other}: write `[{short}]` behind the names of these columns");
     let forms = [
-        (OrientationForm::Intrinsic([2, 1, 0]), "angles about z, y, x as turned (KUKA)", "A, B, C"),
-        (
-            OrientationForm::ROLL_PITCH_YAW,
-            "roll, pitch, yaw about fixed axes (FANUC, URDF)",
-            "roll, pitch, yaw",
-        ),
-        (
-            OrientationForm::Intrinsic([0, 1, 2]),
-            "angles about x, y, z as turned (Stäubli)",
-            "intrinsic_x, intrinsic_y, intrinsic_z",
-        ),
-        (OrientationForm::Intrinsic([2, 1, 2]), "angles about z, y, z as turned (Kawasaki)", "O, A, T"),
-        (OrientationForm::RotationVector, "rotation vectors (Universal Robots, OpenCV)", "rx, ry, rz"),
+        (Angles::ZYX, "angles about z, y, x as turned (KUKA)", "A, B, C"),
+        (Angles::ROLL_PITCH_YAW, "roll, pitch, yaw about fixed axes (FANUC, URDF)", "roll, pitch, yaw"),
+        (Angles::XYZ, "angles about x, y, z as turned (Stäubli)", "intrinsic_x, intrinsic_y, intrinsic_z"),
+        (Angles::ZYZ, "angles about z, y, z as turned (Kawasaki)", "O, A, T"),
+        (Angles::RotationVector, "rotation vectors (Universal Robots, OpenCV)", "rx, ry, rz"),
     ];
-    let conventions = forms.into_iter().filter(|it| it.0 != columns.form).map(|(form, words, names)| {
+    let conventions = forms.map(|it| (OrientationForm::Angles(it.0), it.1, it.2)).into_iter();
+    let conventions = conventions.filter(|it| it.0 != columns.form).map(|(form, words, names)| {
         let before = match columns.whose {
             Whose::Arm => "",
             Whose::Target => ", each behind `target_`",

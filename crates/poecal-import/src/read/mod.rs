@@ -35,6 +35,7 @@ use poecal_model::measurement::{Dataset, Observation};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::visible;
+use poecal_storage::document;
 
 /// Reads measurement files, joined in their order.
 ///
@@ -44,7 +45,7 @@ use poecal_numerics::text::visible;
 /// ([`ErrorKind::Option`]).
 pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
-    read_all(&paths, robot, options)
+    document::reading(|| read_all(&paths, robot, options))
 }
 
 /// Compiled once, and not for each kind of path.
@@ -63,7 +64,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     // Readings by picture come before the corners of the pictures, in whatever order the files are named.
     let mut order = paths.to_vec();
     if !options.cameras.is_empty() {
-        order.sort_by_key(|path| !has_readings_of_pictures(path, robot, reader.map));
+        order.sort_by_cached_key(|path| !has_readings_of_pictures(path, robot, reader.map));
     }
     for path in order {
         let opening = reader.opening();

@@ -217,7 +217,7 @@ impl<'a> Builder<'a> {
         name: &str,
         column: &str,
         quantity: Unit,
-        (mapped, unstated): (Option<NamedUnit>, Option<NamedUnit>),
+        (mapped, unstated): (Option<NamedUnit>, Option<(NamedUnit, UnitSource)>),
         purpose: &str,
     ) -> Result<usize> {
         let index = self.text_column(column, purpose)?;
@@ -225,7 +225,11 @@ impl<'a> Builder<'a> {
             Some(unit) => Some((unit, UnitSource::Mapping)),
             None => self.header.unit(index, quantity, purpose)?,
         };
-        let default = unstated.or(self.map.units.of(quantity)).map(|unit| (unit, UnitSource::Mapping));
+        let of_all = || self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
+        let default = match unstated {
+            Some((_, UnitSource::Maker)) => of_all().or(unstated),
+            _ => unstated.or_else(of_all),
+        };
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
             // With a line of units, an empty cell in it may have been forgotten or merged.
@@ -272,7 +276,8 @@ impl<'a> Builder<'a> {
         let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
         let at = self.inputs.len();
         for (column, _, unstated) in columns {
-            self.column_or(name, column, quantity, (unit, *unstated), purpose)?;
+            let unstated = unstated.map(|unit| (unit, UnitSource::Mapping));
+            self.column_or(name, column, quantity, (unit, unstated), purpose)?;
         }
         let parts = self.inputs.split_off(at);
         for (part, (_, factor, _)) in parts.iter().zip(columns) {

@@ -4,6 +4,7 @@ pub(crate) mod builder;
 pub(crate) mod cells;
 mod columns;
 pub(crate) mod configurations;
+pub(crate) mod conventions;
 pub(crate) mod encodings;
 pub(crate) mod fit_where;
 pub(crate) mod header;

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use nalgebra::{Matrix3, Vector3, Vector4};
+use nalgebra::{Matrix3, Vector4};
 
-use poecal_arm::lie::rotation;
+use poecal_arm::lie::{Angles, rotation};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
@@ -28,17 +28,20 @@ pub(crate) enum OrientationForm {
     MatrixByRows,
     /// The same, column by column.
     MatrixByColumns,
-    /// Axis times angle.
-    RotationVector,
-    /// Angles about moving axes (0 = x): `R = R_a R_b R_c`.
-    Intrinsic([usize; 3]),
-    /// Angles about fixed axes: `R = R_c R_b R_a`.
-    Extrinsic([usize; 3]),
+    /// Three angles.
+    Angles(Angles),
+}
+
+/// Three angles.
+const fn angles(of: Angles) -> OrientationForm {
+    OrientationForm::Angles(of)
 }
 
 impl OrientationForm {
+    /// Axis times angle.
+    pub(crate) const ROTATION_VECTOR: Self = angles(Angles::RotationVector);
     /// URDF's roll, pitch, yaw.
-    pub(crate) const ROLL_PITCH_YAW: Self = OrientationForm::Extrinsic([0, 1, 2]);
+    pub(crate) const ROLL_PITCH_YAW: Self = angles(Angles::ROLL_PITCH_YAW);
 
     /// Number of columns.
     pub(crate) fn len(self) -> usize {
@@ -53,14 +56,13 @@ impl OrientationForm {
     /// Column names in our own files, in order; empty for Euler angles, which these do not have.
     pub(crate) fn own_columns(self) -> &'static [&'static str] {
         match self {
-            OrientationForm::Extrinsic([0, 1, 2])
+            Self::ROLL_PITCH_YAW
+            | Self::ROTATION_VECTOR
             | OrientationForm::QuaternionXyzw
-            | OrientationForm::QuaternionWxyz
-            | OrientationForm::RotationVector => self.part_names(),
-            OrientationForm::MatrixByRows
-            | OrientationForm::MatrixByColumns
-            | OrientationForm::Intrinsic(_)
-            | OrientationForm::Extrinsic(_) => &[],
+            | OrientationForm::QuaternionWxyz => self.part_names(),
+            OrientationForm::MatrixByRows | OrientationForm::MatrixByColumns | OrientationForm::Angles(_) => {
+                &[]
+            }
         }
     }
 
@@ -73,11 +75,9 @@ impl OrientationForm {
             OrientationForm::MatrixByColumns => {
                 &["r11", "r21", "r31", "r12", "r22", "r32", "r13", "r23", "r33"]
             }
-            OrientationForm::RotationVector => &["rx", "ry", "rz"],
-            OrientationForm::Extrinsic([0, 1, 2]) => &["roll", "pitch", "yaw"],
-            OrientationForm::Intrinsic(_) | OrientationForm::Extrinsic(_) => {
-                &["first angle", "second angle", "third angle"]
-            }
+            Self::ROTATION_VECTOR => &["rx", "ry", "rz"],
+            Self::ROLL_PITCH_YAW => &["roll", "pitch", "yaw"],
+            OrientationForm::Angles(_) => &["first angle", "second angle", "third angle"],
         }
     }
 
@@ -90,13 +90,7 @@ impl OrientationForm {
             OrientationForm::QuaternionWxyz => quaternion(Vector4::new(b, c, d, a)),
             OrientationForm::MatrixByRows => matrix(&Matrix3::from_row_slice(&all)),
             OrientationForm::MatrixByColumns => matrix(&Matrix3::from_column_slice(&all)),
-            OrientationForm::RotationVector => Ok(rotation::exp(&Vector3::new(a, b, c))),
-            OrientationForm::Intrinsic([i, j, k]) => {
-                Ok(rotation::about(i, a) * rotation::about(j, b) * rotation::about(k, c))
-            }
-            OrientationForm::Extrinsic([i, j, k]) => {
-                Ok(rotation::about(k, c) * rotation::about(j, b) * rotation::about(i, a))
-            }
+            OrientationForm::Angles(angles) => Ok(angles.rotation([a, b, c])),
         }
     }
 }
@@ -131,23 +125,12 @@ impl FromStr for OrientationForm {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let euler = |axes: &str| -> Option<[usize; 3]> {
-            let indices: Vec<usize> = axes.chars().map(|c| "xyz".find(c)).collect::<Option<_>>()?;
-            let axes: [usize; 3] = indices.try_into().ok()?;
-            (axes[0] != axes[1] && axes[1] != axes[2]).then_some(axes)
-        };
         let form = match text {
             "quaternion_xyzw" => Some(OrientationForm::QuaternionXyzw),
             "quaternion_wxyz" => Some(OrientationForm::QuaternionWxyz),
             "rotation_matrix" => Some(OrientationForm::MatrixByRows),
             "rotation_matrix_by_columns" => Some(OrientationForm::MatrixByColumns),
-            "rotation_vector" => Some(OrientationForm::RotationVector),
-            "roll_pitch_yaw" => Some(OrientationForm::ROLL_PITCH_YAW),
-            _ => match text.split_once('_') {
-                Some(("intrinsic", axes)) => euler(axes).map(OrientationForm::Intrinsic),
-                Some(("extrinsic", axes)) => euler(axes).map(OrientationForm::Extrinsic),
-                _ => None,
-            },
+            _ => text.parse().ok().map(OrientationForm::Angles),
         };
         form.ok_or_else(|| ErrorKind::Syntax.error(format!(
                 "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
@@ -167,12 +150,10 @@ impl fmt::Display for OrientationForm {
             OrientationForm::QuaternionWxyz => f.write_str("quaternion w, x, y, z"),
             OrientationForm::MatrixByRows => f.write_str("rotation matrix by rows"),
             OrientationForm::MatrixByColumns => f.write_str("rotation matrix by columns"),
-            OrientationForm::RotationVector => f.write_str("rotation vector"),
-            OrientationForm::Extrinsic([0, 1, 2]) => {
-                f.write_str("roll, pitch, yaw (extrinsic Euler angles about x, y, z)")
-            }
-            OrientationForm::Intrinsic(axes) => euler(f, "intrinsic", axes),
-            OrientationForm::Extrinsic(axes) => euler(f, "extrinsic", axes),
+            &Self::ROLL_PITCH_YAW => f.write_str("roll, pitch, yaw (extrinsic Euler angles about x, y, z)"),
+            OrientationForm::Angles(Angles::RotationVector) => f.write_str("rotation vector"),
+            OrientationForm::Angles(Angles::Intrinsic(axes)) => euler(f, "intrinsic", axes),
+            OrientationForm::Angles(Angles::Extrinsic(axes)) => euler(f, "extrinsic", axes),
         }
     }
 }
@@ -180,16 +161,6 @@ impl fmt::Display for OrientationForm {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn extrinsic_angles_are_intrinsic_ones_backwards() {
-        let forward: OrientationForm = "intrinsic_zyx".parse().unwrap();
-        let backward: OrientationForm = "roll_pitch_yaw".parse().unwrap();
-        let one = forward.rotation(&[0.3, -0.5, 1.1, 0.0]).unwrap();
-        let other = backward.rotation(&[1.1, -0.5, 0.3, 0.0]).unwrap();
-        assert!((one - other).norm() < 1e-15);
-        assert!((other - rotation::from_rpy(1.1, -0.5, 0.3)).norm() < 1e-15);
-    }
 
     #[test]
     fn quaternions_are_normalised_only_when_they_are_nearly_unit() {
@@ -222,17 +193,5 @@ mod tests {
         assert!(error.contains("a reflection"), "{error}");
         let error = OrientationForm::MatrixByRows.rotation(&[0.5; 9]).unwrap_err();
         assert!(error.contains("rows are no rotation (off by 0.750)"), "{error}");
-    }
-
-    #[test]
-    fn only_sensible_axes_are_taken() {
-        for bad in ["intrinsic_xx", "intrinsic_xxy", "extrinsic_xyzx", "intrinsic_abc", "euler", "extrinsic_"]
-        {
-            assert!(bad.parse::<OrientationForm>().is_err(), "{bad}");
-        }
-        assert_eq!(
-            "intrinsic_zyz".parse::<OrientationForm>().unwrap(),
-            OrientationForm::Intrinsic([2, 1, 2])
-        );
     }
 }

@@ -4,15 +4,17 @@ use std::collections::BTreeMap;
 
 use super::builder::Builder;
 use super::column_spec::ColumnSpec;
+use super::conventions::{CONVENTIONS, Convention};
 use super::inputs::{InputSource, Term};
 use super::kinds::{self, Kind, KindColumns};
 use super::mapping::{OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 
 const DEFAULT_FORMS: [OrientationForm; 3] =
-    [OrientationForm::QuaternionXyzw, OrientationForm::RotationVector, OrientationForm::ROLL_PITCH_YAW];
+    [OrientationForm::QuaternionXyzw, OrientationForm::ROTATION_VECTOR, OrientationForm::ROLL_PITCH_YAW];
 
 /// Beginning of columns of expanded uncertainties (95 %), in place of `sigma_`, and their coverage factor.
 const EXPANDED: &str = "U95_";
@@ -26,6 +28,8 @@ pub(crate) struct TargetLayout {
     /// None in a file of other kinds of measurements.
     pub(crate) position: Option<[usize; 3]>,
     pub(crate) orientation: Option<(OrientationForm, Vec<usize>)>,
+    /// The convention of the orientation's columns, where these have the names of a maker.
+    pub(crate) convention: Option<&'static Convention>,
     pub(crate) sigma_position: Option<usize>,
     /// Of each component.
     pub(crate) sigma_components: [Option<usize>; 3],
@@ -58,15 +62,26 @@ impl Builder<'_> {
         let is_named = target.position.columns.is_some()
             || ["x", "y", "z"].iter().any(|name| self.has(name))
             || self.has_large_axes();
-        let position = match kinds.is_empty() || is_named {
-            true => Some(self.position(&prefix, &target.position)?),
-            false => None,
+        let is_placed = kinds.is_empty() || is_named;
+        let by_names = is_placed && is_only && target.orientation.is_none();
+        let own_form = if by_names { self.own_form()? } else { None };
+        let convention = if by_names && own_form.is_none() { self.convention() } else { None };
+        let usual = |quantity| convention.as_ref().and_then(|it| it.0.usual_unit(quantity));
+        let position = if is_placed {
+            Some(self.position(&prefix, &target.position, usual(Unit::Metre))?)
+        } else {
+            None
         };
-        let orientation = match &target.orientation {
-            Some(spec) => Some(self.mapped_orientation(&prefix, spec)?),
-            None if is_only && position.is_some() => self.default_orientation()?,
-            None => None,
+        let orientation = match (&target.orientation, own_form, &convention) {
+            (Some(spec), ..) => Some(self.mapped_orientation(&prefix, spec)?),
+            (None, Some(form), _) => Some(self.orientation(form, form.own_columns(), None)?),
+            (None, None, Some((it, columns))) => {
+                let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+                Some(self.orientation(it.form, &columns, usual(it.form.quantity()))?)
+            }
+            (None, None, None) => None,
         };
+        let convention = convention.map(|it| it.0);
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
             self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
         };
@@ -81,6 +96,7 @@ impl Builder<'_> {
             name,
             position,
             orientation,
+            convention,
             sigma_position,
             sigma_components,
             sigma_rotation,
@@ -147,14 +163,19 @@ impl Builder<'_> {
         Ok(index)
     }
 
-    fn position(&mut self, prefix: &str, spec: &PositionSpec) -> Result<[usize; 3]> {
+    fn position(
+        &mut self,
+        prefix: &str,
+        spec: &PositionSpec,
+        usual: Option<NamedUnit>,
+    ) -> Result<[usize; 3]> {
         let mut indices = [0; 3];
         for (i, (axis, index)) in ["x", "y", "z"].into_iter().zip(&mut indices).enumerate() {
             let own = if self.has_large_axes() { ["X", "Y", "Z"][i] } else { axis };
             let column = spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(own, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
-            *index =
-                self.column_input(&format!("{prefix}{axis}"), column, Unit::Metre, spec.unit, &purpose)?;
+            let units = (spec.unit, self.usual(usual));
+            *index = self.column_or(&format!("{prefix}{axis}"), column, Unit::Metre, units, &purpose)?;
         }
         Ok(indices)
     }
@@ -172,8 +193,27 @@ impl Builder<'_> {
         Ok((spec.form, indices))
     }
 
-    /// The orientation columns with our own names: all of one form, or none.
-    fn default_orientation(&mut self) -> Result<Option<(OrientationForm, Vec<usize>)>> {
+    /// The unit of a maker, where nothing states one; with a line of units, an empty cell in it may have been forgotten.
+    fn usual(&self, unit: Option<NamedUnit>) -> Option<(NamedUnit, UnitSource)> {
+        unit.filter(|_| self.header.units_line.is_none()).map(|unit| (unit, UnitSource::Maker))
+    }
+
+    /// The convention of a maker whose columns the header has, in large letters or small, and these.
+    fn convention(&self) -> Option<(&'static Convention, Vec<String>)> {
+        let column = |name: &&str| {
+            let mut cells = self.header.cells.iter().enumerate().filter(|(at, _)| !self.is_used(*at));
+            let cell = cells.find(|(_, cell)| cell.name.eq_ignore_ascii_case(name))?.1;
+            (!self.readings.contains(&cell.name)).then(|| cell.name.clone())
+        };
+        CONVENTIONS.iter().filter(|it| it.is_unique).find_map(|it| {
+            let columns = it.columns.iter().map(column).collect::<Option<_>>()?;
+            // Joints may be called q1 to q6.
+            (it.columns.len() < 4 || column(&"q5").is_none()).then_some((it, columns))
+        })
+    }
+
+    /// The form of the orientation columns with our own names: all of one form, or none.
+    fn own_form(&self) -> Result<Option<OrientationForm>> {
         let mut chosen: Option<(OrientationForm, &str)> = None;
         for form in DEFAULT_FORMS {
             for name in form.own_columns() {
@@ -192,11 +232,22 @@ impl Builder<'_> {
                 }
             }
         }
-        let Some((form, _)) = chosen else { return Ok(None) };
+        Ok(chosen.map(|it| it.0))
+    }
+
+    /// The orientation in columns of these names.
+    fn orientation(
+        &mut self,
+        form: OrientationForm,
+        columns: &[&str],
+        usual: Option<NamedUnit>,
+    ) -> Result<(OrientationForm, Vec<usize>)> {
         let purpose = format!("for the orientation ({form})");
-        let names = form.own_columns().iter();
-        let indices = names.map(|name| self.column_input(name, name, form.quantity(), None, &purpose));
-        Ok(Some((form, indices.collect::<Result<_>>()?)))
+        let units = (None, self.usual(usual));
+        let names = columns.iter().zip(form.part_names());
+        let indices =
+            names.map(|(column, name)| self.column_or(name, column, form.quantity(), units, &purpose));
+        Ok((form, indices.collect::<Result<_>>()?))
     }
 
     fn sigma(

@@ -51,6 +51,7 @@ impl Reader<'_> {
         self.take_controller(path, layout)?;
         let turns = turns::warning(&table.header, layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
+        self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
         self.found.understood.push(FileUnderstanding {
             path: path.to_path_buf(),
             form: table.form(),

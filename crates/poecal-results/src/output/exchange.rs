@@ -11,6 +11,7 @@ use super::staging::{self, OLD, Staging};
 use super::{NewFile, interrupted, leftovers};
 use poecal_numerics::error::{Error, Result};
 use poecal_storage::disk::{Disk, Lock};
+use poecal_storage::document;
 
 /// Most attempts to lock a folder that others exchange.
 const ATTEMPTS: usize = 1000;
@@ -36,6 +37,7 @@ impl FolderPlace {
             refused(&place, format!("the results cannot be put in place ({cause}): nothing was changed"))
         };
         self.staging.sync().map_err(failed)?;
+        document::forget();
         if !self.was_there {
             match self.staging.disk.rename_new(&self.staging.new_files(), &self.folder) {
                 Ok(()) => return Ok(self.synced(self.folder.parent())),

@@ -8,6 +8,7 @@ use super::staging::{self, Staging};
 use super::{NewFile, Page, interrupted, leftovers};
 use poecal_numerics::error::{Error, Result};
 use poecal_storage::disk::{self, Disk, ObjectKind};
+use poecal_storage::document;
 
 /// Name of the file in its staging folder.
 const NAME: &str = "file";
@@ -172,6 +173,7 @@ impl FilePlace {
     /// Puts the new text in place.
     pub(crate) fn put(self) -> Result<Put> {
         let Way::Staged { path, existing, replaces, staging } = self.way else { return Ok(Put(None)) };
+        document::forget();
         let (disk, new, old) = (staging.disk.clone(), staging.new_files().join(NAME), staging.old_files());
         let replaces = replaces && disk.look(&path).is_ok();
         if replaces && !may_go(disk.as_ref(), &path, existing) {

@@ -40,12 +40,12 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let mut hashing = Hashing::new(Box::new(io::empty()) as Box<dyn io::Read>);
     let mut unpacked = 0_u64;
     for part in &parts {
-        let (mut input, _) = source::open_any(part, EXPECTED, Limit::Bag)?;
+        let (mut input, _) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
         let stated = container::stated_size(&mut input);
         let stated = stated.map_err(|error| source::unreadable(part, &error, EXPECTED))?;
         unpacked = unpacked.saturating_add(stated);
         refuse_large(unpacked).map_err(|error| error.in_file(path))?;
-        let (input, head) = source::open_any(part, EXPECTED, Limit::Bag)?;
+        let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
         if !head.starts_with(container::MAGIC) {
             let message = format!("found a file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));

@@ -1,6 +1,5 @@
 //! The files of a bag: one, or those of a folder.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use super::EXPECTED;
@@ -8,8 +7,8 @@ use super::container::MAGIC;
 use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_storage::disk::{self, is_file};
 use poecal_storage::folder::{self, LeftOut};
+use poecal_storage::limits::Limit;
 use poecal_storage::source;
 
 /// Ending of the names of files.
@@ -20,13 +19,7 @@ pub(crate) fn is_bag(path: &Path) -> bool {
     if is_folder(path) {
         return names(path).is_ok_and(|it| !it.0.is_empty());
     }
-    // A pipe is read once.
-    if source::is_standard_input(path) || !is_file(path) {
-        return false;
-    }
-    let mut head = Vec::new();
-    let read = disk::here().open(path).and_then(|file| file.take(MAGIC.len() as u64).read_to_end(&mut head));
-    read.is_ok() && head == MAGIC
+    source::open_any(path, EXPECTED, Limit::Bag).is_ok_and(|(_, head)| head.starts_with(MAGIC))
 }
 
 /// Names of files of a folder that are parts of a bag, and what has such a name and is none.
