@@ -98,6 +98,18 @@ struct Inner {
     place: Option<Place>,
     message: String,
     choices: Option<Choices>,
+    missing: Option<MissingColumn>,
+}
+
+/// What a column that a file lacks would have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissingColumn {
+    /// The readings of a joint.
+    Joint,
+    /// A coordinate of a position.
+    Position,
+    /// Something else.
+    Other,
 }
 
 /// What an option could be, where nothing else decides.
@@ -125,7 +137,13 @@ impl Error {
     /// quotes are written out, so that it is one line and moves no terminal's cursor.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let message = with_names_shown(message.into());
-        Error(Box::new(Inner { kind, place: None, message: visible(&message).into_owned(), choices: None }))
+        Error(Box::new(Inner {
+            kind,
+            place: None,
+            message: visible(&message).into_owned(),
+            choices: None,
+            missing: None,
+        }))
     }
 
     /// The same error at a line and column (both from 1) of a file.
@@ -185,6 +203,23 @@ impl Error {
     pub fn with_choices(mut self, option: &'static str, of: Vec<String>) -> Self {
         self.0.choices = Some(Choices { option, of });
         self
+    }
+
+    /// The same error, with what a missing column would have.
+    pub fn of_missing(mut self, column: MissingColumn) -> Self {
+        self.0.missing = Some(column);
+        self
+    }
+
+    /// The same error, with what its column would have, if one is missing.
+    pub fn if_missing(self, column: MissingColumn) -> Self {
+        if self.missing().is_some() { self.of_missing(column) } else { self }
+    }
+
+    /// What a missing column would have, if one is missing.
+    #[must_use]
+    pub fn missing(&self) -> Option<MissingColumn> {
+        self.0.missing
     }
 
     /// What could be chosen, where one of several things is missing.

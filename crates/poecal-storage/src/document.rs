@@ -5,7 +5,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::io::{self, Read};
+use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -29,6 +29,29 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
+/// The same with an input of these bytes, which has this name and is on no disk.
+pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
+    reading(|| {
+        let before = keep(name, Some(Document::new(Box::new(Cursor::new(text.as_bytes().to_vec())))));
+        let done = work();
+        keep(name, before);
+        done
+    })
+}
+
+/// Keeps this as the input of a path, or nothing; gives what was kept.
+fn keep(path: &Path, document: Option<Document>) -> Option<Document> {
+    OPEN.with_borrow_mut(|all| match document {
+        Some(document) => all.as_mut()?.insert(path.to_path_buf(), document),
+        None => all.as_mut()?.remove(path),
+    })
+}
+
+/// Whether a path is that of an input that is kept: no folder.
+pub fn is_kept(path: &Path) -> bool {
+    OPEN.with_borrow(|all| all.as_ref().is_some_and(|all| all.contains_key(path)))
+}
+
 /// Forgets all inputs, also after a panic.
 struct End;
 
@@ -50,9 +73,8 @@ pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result
         None => open()?,
         Some(Some(document)) => Box::new(document),
         Some(None) => {
-            let document =
-                Document { kept: Arc::new(Mutex::new(Kept { bytes: Vec::new(), rest: open()? })), at: 0 };
-            OPEN.with_borrow_mut(|all| Some(all.as_mut()?.insert(path.to_path_buf(), document.clone())));
+            let document = Document::new(open()?);
+            keep(path, Some(document.clone()));
             Box::new(document)
         }
     })
@@ -88,11 +110,15 @@ struct Document {
 }
 
 impl Document {
+    fn new(rest: Source) -> Self {
+        Document { kept: Arc::new(Mutex::new(Kept { bytes: Vec::new(), rest })), at: 0 }
+    }
+
     fn into_stream(self) -> Source {
         match Arc::try_unwrap(self.kept) {
             Ok(kept) => {
                 let Kept { bytes, rest } = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-                Box::new(io::Cursor::new(bytes).chain(rest))
+                Box::new(Cursor::new(bytes).chain(rest))
             }
             // Somebody reads it at the moment.
             Err(kept) => Box::new(Document { kept, at: 0 }),

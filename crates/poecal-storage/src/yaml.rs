@@ -1,13 +1,10 @@
 //! YAML as its values, each with its keys and its place.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
-use granit_parser::{Event, Parser, Span};
-
 use super::numbers::LARGEST_NUMBER;
+use super::yaml_tree::{Node, NodeKind, of_yaml};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_numerics::text::visible;
 
 /// A value of a mapping.
 #[derive(Debug)]
@@ -23,10 +20,9 @@ pub struct Value {
 }
 
 impl Value {
-    fn new(open: &[Open], span: &Span, text: &str, in_degrees: bool) -> Self {
-        let keys = open.iter().filter_map(Open::key).collect();
-        let (line, column) = (span.start.line(), span.start.col() + 1);
-        Value { keys, text: text.to_owned(), in_degrees, line, column }
+    fn new(keys: &[&str], node: &Node, text: &str, in_degrees: bool) -> Self {
+        let keys = keys.iter().map(|it| (*it).to_owned()).collect();
+        Value { keys, text: text.to_owned(), in_degrees, line: node.line, column: node.column }
     }
 
     /// An error at the value.
@@ -53,118 +49,52 @@ impl Value {
 
 /// The values of the mappings of a text, in its order; a list is one without its entries. `expected` describes the file in messages.
 pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
-    let error = |span: &Span, found: &str| {
-        ErrorKind::Syntax.error(format!("found {found}, expected {expected}")).at(
-            path,
-            span.start.line(),
-            span.start.col() + 1,
-        )
+    let refuse = |node: &Node, found: &str| {
+        let message = format!("found {found}, expected {expected}");
+        ErrorKind::Syntax.error(message).at(path, node.line, node.column)
     };
-    let mut open: Vec<Open> = Vec::new();
-    let mut found = Vec::new();
-    let mut has_begun = false;
-    for event in Parser::new_from_str(text) {
-        let (event, span) = event.map_err(|error| {
-            let place = error.marker();
-            ErrorKind::Syntax
-                .error(format!("found broken YAML ({}), expected {expected}", visible(&error.info())))
-                .at(path, place.line(), place.col() + 1)
-        })?;
-        match event {
-            Event::Scalar(text, _, _, tag) => {
-                let tag = tag.as_ref().map(|tag| (tag.handle(), tag.suffix()));
-                let value = scalar(&mut open, &text, tag).map_err(|it| error(&span, &it))?;
-                if let Some(in_degrees) = value {
-                    found.push(Value::new(&open, &span, &text, in_degrees));
-                    close_value(&mut open);
-                }
-            }
-            Event::MappingStart(..) | Event::SequenceStart(..) => {
-                if let Some(Open::Map { key: None, .. }) = open.last() {
-                    return Err(error(&span, "a key that is no text"));
-                }
-                if open.len() > DEEPEST {
-                    return Err(error(&span, "more than 64 mappings in each other"));
-                }
-                let is_list = matches!(event, Event::SequenceStart(..));
-                if is_list && open.iter().all(|it| matches!(it, Open::Map { .. })) && !open.is_empty() {
-                    found.push(Value::new(&open, &span, "[...]", false));
-                }
-                open.push(if is_list { Open::List } else { Open::Map { key: None, seen: BTreeSet::new() } });
-            }
-            Event::MappingEnd | Event::SequenceEnd => {
-                open.pop();
-                close_value(&mut open);
-            }
-            Event::Alias(_) | Event::UnresolvedAlias(_) => {
-                return Err(error(&span, "a reference to another place of the file"));
-            }
-            Event::DocumentStart(..) if std::mem::replace(&mut has_begun, true) => {
-                return Err(error(&span, "a second document"));
-            }
-            Event::StreamStart
-            | Event::StreamEnd
-            | Event::DocumentStart(..)
-            | Event::DocumentEnd
-            | Event::Anchor(..)
-            | _ => {}
-        }
+    let documents = of_yaml(text, path, (0, expected))?;
+    if let Some(second) = documents.get(1) {
+        return Err(refuse(second, "a second document"));
     }
+    let mut found = Vec::new();
+    let Some(root) = documents.first() else { return Ok(found) };
+    if let NodeKind::Text(_) = root.kind {
+        return Err(refuse(root, "a text alone"));
+    }
+    let values = values_of(root, (&mut Vec::new(), false), &mut found);
+    values.map_err(|(node, words)| refuse(node, &words))?;
     Ok(found)
 }
 
-/// Most mappings in each other.
-const DEEPEST: usize = 64;
-
-/// A mapping or list that has begun.
-enum Open {
-    Map {
-        /// The key whose value comes next.
-        key: Option<String>,
-        seen: BTreeSet<String>,
-    },
-    List,
-}
-
-impl Open {
-    fn key(&self) -> Option<String> {
-        match self {
-            Open::Map { key, .. } => key.clone(),
-            Open::List => None,
+/// The values below a node whose keys are these; whether one of what it is in is a list.
+fn values_of<'n>(
+    node: &'n Node,
+    (keys, is_in_list): (&mut Vec<&'n str>, bool),
+    found: &mut Vec<Value>,
+) -> std::result::Result<(), (&'n Node, String)> {
+    match &node.kind {
+        NodeKind::Text(text) => {
+            let in_degrees = node.is_in_degrees().map_err(|words| (node, words))?;
+            found.push(Value::new(keys, node, text, in_degrees));
         }
-    }
-}
-
-/// Takes a text where a key or a value comes next; of a value of a mapping, whether it is marked as degrees, and what is wrong with it.
-fn scalar(
-    open: &mut [Open],
-    text: &str,
-    tag: Option<(&str, &str)>,
-) -> std::result::Result<Option<bool>, String> {
-    match open.last_mut() {
-        Some(Open::Map { key: key @ None, seen }) => {
-            if !seen.insert(text.to_owned()) {
-                return Err(format!("the key `{}` twice", visible(text)));
+        NodeKind::List(entries) => {
+            if !is_in_list && !keys.is_empty() {
+                found.push(Value::new(keys, node, "[...]", false));
             }
-            *key = Some(text.to_owned());
-            Ok(None)
+            for entry in entries.iter().filter(|it| it.text().is_none()) {
+                values_of(entry, (keys, true), found)?;
+            }
         }
-        Some(Open::Map { .. }) => match tag {
-            // As xacro reads them; others would be other numbers.
-            None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => Ok(Some(false)),
-            Some(("!", "degrees")) => Ok(Some(true)),
-            Some((_, name)) => Err(format!("the unknown tag `!{}`", visible(name))),
-        },
-        Some(Open::List) => Ok(None),
-        None => Err("a text alone".to_owned()),
+        NodeKind::Map(entries) => {
+            for (key, value) in entries {
+                keys.push(key);
+                values_of(value, (keys, is_in_list), found)?;
+                keys.pop();
+            }
+        }
     }
-}
-
-/// The value of the innermost key has ended.
-fn close_value(open: &mut [Open]) {
-    if let Some(Open::Map { key, .. }) = open.last_mut() {
-        *key = None;
-    }
+    Ok(())
 }
 
 /// A number or word of a file with all the keys and places in lists that lead to it.
@@ -180,73 +110,33 @@ pub struct Leaf {
 
 /// All numbers and words of a text, entries of lists too; the directive of OpenCV, which is no YAML, and tags are passed over.
 pub fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
-    let text = match text.strip_prefix("%YAML:") {
-        Some(rest) => format!("#{rest}"),
-        None => text.to_owned(),
-    };
-    let text = text.replacen("\n---", "\n#--", 1);
-    // Each open mapping with the key whose value comes next, each open list with the number of its next entry.
-    let mut open: Vec<Nesting> = Vec::new();
+    let text = text.trim_start_matches('\u{feff}');
+    let text = text.strip_prefix("%YAML:").map_or_else(|| text.to_owned(), |rest| format!("#{rest}"));
     let mut found = Vec::new();
-    for event in Parser::new_from_str(&text) {
-        let (event, span) = event.map_err(|error| {
-            let place = error.marker();
-            let message = format!("found broken YAML ({}), expected {expected}", visible(&error.info()));
-            Error::new(ErrorKind::Syntax, message).at(path, place.line(), place.col() + 1)
-        })?;
-        match event {
-            Event::Scalar(text, ..) => match open.last_mut() {
-                Some(Nesting::Map(key @ None)) => *key = Some(text.to_string()),
-                _ => {
-                    let keys = open.iter().map(Nesting::step).collect();
-                    found.push(Leaf { path: keys, text: text.to_string(), line: span.start.line() });
-                    next(&mut open);
-                }
-            },
-            Event::MappingStart(..) | Event::SequenceStart(..) if open.len() > DEEPEST => {
-                let message =
-                    format!("found more than {DEEPEST} mappings in each other, expected {expected}");
-                return Err(Error::new(ErrorKind::Syntax, message).at_line(path, span.start.line()));
-            }
-            Event::MappingStart(..) => open.push(Nesting::Map(None)),
-            Event::SequenceStart(..) => open.push(Nesting::List(0)),
-            Event::MappingEnd | Event::SequenceEnd => {
-                open.pop();
-                next(&mut open);
-            }
-            Event::StreamStart
-            | Event::StreamEnd
-            | Event::DocumentStart(..)
-            | Event::DocumentEnd
-            | Event::Alias(_)
-            | Event::UnresolvedAlias(_)
-            | Event::Anchor(..)
-            | _ => {}
-        }
+    for document in of_yaml(&text, path, (0, expected))? {
+        leaves_of(&document, &mut Vec::new(), &mut found);
     }
     Ok(found)
 }
 
-/// A mapping or list that has begun.
-enum Nesting {
-    Map(Option<String>),
-    List(usize),
-}
-
-impl Nesting {
-    fn step(&self) -> String {
-        match self {
-            Nesting::Map(key) => key.clone().unwrap_or_default(),
-            Nesting::List(at) => at.to_string(),
+fn leaves_of(node: &Node, steps: &mut Vec<String>, found: &mut Vec<Leaf>) {
+    match &node.kind {
+        NodeKind::Text(text) => {
+            found.push(Leaf { path: steps.clone(), text: text.clone(), line: node.line });
         }
-    }
-}
-
-/// The value of the innermost key or place has ended.
-fn next(open: &mut [Nesting]) {
-    match open.last_mut() {
-        Some(Nesting::Map(key)) => *key = None,
-        Some(Nesting::List(at)) => *at += 1,
-        None => {}
+        NodeKind::List(entries) => {
+            for (at, entry) in entries.iter().enumerate() {
+                steps.push(at.to_string());
+                leaves_of(entry, steps, found);
+                steps.pop();
+            }
+        }
+        NodeKind::Map(entries) => {
+            for (key, value) in entries {
+                steps.push(key.clone());
+                leaves_of(value, steps, found);
+                steps.pop();
+            }
+        }
     }
 }

@@ -21,6 +21,8 @@ pub struct Node {
     pub line: usize,
     /// The column of that.
     pub column: usize,
+    /// Its tag: handle and name.
+    pub tag: Option<Box<(String, String)>>,
 }
 
 /// A text, list or mapping.
@@ -56,6 +58,16 @@ impl Node {
         match &self.kind {
             NodeKind::Text(text) => Some(text),
             NodeKind::List(_) | NodeKind::Map(_) => None,
+        }
+    }
+
+    /// Whether a number is marked as degrees, or what is wrong with its mark.
+    pub(crate) fn is_in_degrees(&self) -> std::result::Result<bool, String> {
+        match self.tag.as_ref().map(|tag| (tag.0.as_str(), tag.1.as_str())) {
+            // As xacro reads them; others would be other numbers.
+            None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => Ok(false),
+            Some(("!", "degrees")) => Ok(true),
+            Some((_, name)) => Err(format!("the unknown tag `!{}`", visible(name))),
         }
     }
 
@@ -114,7 +126,8 @@ struct Open {
     seen: BTreeSet<String>,
 }
 
-fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
+/// The documents of YAML, with so many lines before it.
+pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
     let refuse = |span: &Span, found: &str| {
         let message = format!("found {found}, expected {expected}");
         let (line, column) = (before + span.start.line(), span.start.col() + 1);
@@ -127,17 +140,22 @@ fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result
             let message = format!("found broken YAML ({message}), expected {expected}");
             Error::new(ErrorKind::Syntax, message).at(path, before + place.line(), place.col() + 1)
         })?;
-        let node =
-            |kind: NodeKind| Node { kind, line: before + span.start.line(), column: span.start.col() + 1 };
+        let node = |kind: NodeKind| {
+            let (line, column) = (before + span.start.line(), span.start.col() + 1);
+            Node { kind, line, column, tag: None }
+        };
         match event {
-            Event::Scalar(text, ..) => match open.last_mut() {
+            Event::Scalar(text, _, _, tag) => match open.last_mut() {
                 Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: key @ None, seen }) => {
                     if !seen.insert(text.to_string()) {
                         return refuse(&span, &format!("the key `{}` twice", visible(&text)));
                     }
                     *key = Some(text.to_string());
                 }
-                _ => close(node(NodeKind::Text(text.to_string())), &mut open, &mut found),
+                _ => {
+                    let tag = tag.map(|it| Box::new((it.handle().to_owned(), it.suffix().to_owned())));
+                    close(Node { tag, ..node(NodeKind::Text(text.to_string())) }, &mut open, &mut found);
+                }
             },
             Event::MappingStart(..) | Event::SequenceStart(..) => {
                 if matches!(

@@ -5,6 +5,7 @@ use super::maker::{Made, Refused, Value};
 use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
 use crate::Separator;
+use crate::table::header::bracketed;
 
 pub(crate) const FORM: Form = Form { title: "measurements of a Leica tracker", is_it, table };
 
@@ -26,10 +27,8 @@ const COLUMNS: [(&str, &str); 10] = [
 
 /// A column's name without its unit, and the unit.
 fn parts(text: &str) -> (String, Option<&str>) {
-    let (name, unit) = match text.strip_suffix(']').and_then(|it| it.rsplit_once('[')) {
-        Some((name, unit)) => (name, Some(unit.trim())),
-        None => (text, None),
-    };
+    let (name, unit) =
+        bracketed(text, '[', ']').map_or((text, None), |(name, unit)| (name, Some(unit.trim())));
     (name.split_whitespace().collect::<Vec<_>>().join(" "), unit)
 }
 

@@ -5,6 +5,8 @@ use super::maker::{Called, Made, Refused, Value};
 use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
 use crate::Separator;
+use crate::table::header::bracketed;
+use crate::table::numbered::plain;
 
 pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinates", is_it, table };
 
@@ -49,11 +51,6 @@ struct Sets {
     called: [Called; 2],
 }
 
-/// Letters and digits, small.
-fn plain(text: &str) -> String {
-    text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
 fn called(word: &str) -> Option<Called> {
     let is = |words: &[&str]| words.contains(&word);
     if is(&MEASURED) { Some(Called::Measured) } else { is(&NOMINAL).then_some(Called::Nominal) }
@@ -75,11 +72,8 @@ fn coordinate(name: &str) -> Option<(&'static str, Option<Called>)> {
 
 /// A cell of a header without its unit, and the unit.
 fn parts(cell: &str) -> (&str, Option<&str>) {
-    let of = |open, close| {
-        let (name, unit) = cell.strip_suffix(close)?.rsplit_once(open)?;
-        Some((name.trim(), unit))
-    };
-    of('[', ']').or_else(|| of('(', ')')).map_or((cell.trim(), None), |(name, unit)| (name, Some(unit)))
+    let found = bracketed(cell, '[', ']').or_else(|| bracketed(cell, '(', ')'));
+    found.map_or((cell.trim(), None), |(name, unit)| (name.trim(), Some(unit)))
 }
 
 impl Sets {

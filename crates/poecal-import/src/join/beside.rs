@@ -12,7 +12,7 @@ use crate::table::header::HeaderCell;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_model::robot::Robot;
-use poecal_numerics::error::{Error, ErrorKind};
+use poecal_numerics::error::{Error, ErrorKind, MissingColumn};
 
 /// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
 pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
@@ -22,9 +22,7 @@ pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnM
 
 /// The error of a file that has joint readings alone, or measurements alone, and no other beside it.
 pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &ColumnMap) -> Error {
-    if error.kind() != ErrorKind::Measurement || !error.message().contains("found no column") {
-        return error;
-    }
+    let Some(missing) = error.missing() else { return error };
     let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {
         Ok(Part::Joints) => (true, "joint readings and nothing that was measured", "measurements"),
         Ok(Part::Measured { .. }) => (false, "measurements and no joint readings", "joint readings"),
@@ -48,9 +46,9 @@ pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
             && !letters.next().is_some_and(char::is_alphanumeric)
     };
     let says_it = if is_lone {
-        error.message().contains("for the position") && !header().any(is_axis)
+        missing == MissingColumn::Position && !header().any(is_axis)
     } else {
-        error.message().contains("for joint") && !header().any(|it| names.contains(&it.name))
+        missing == MissingColumn::Joint && !header().any(|it| names.contains(&it.name))
     };
     if !says_it {
         return error;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::table::cells::{Separator, split};
 use crate::table::header::{Header, header_cells, is_number, unit_in_name};
-use poecal_numerics::error::{Error, ErrorKind, Result, first_few, nearest};
+use poecal_numerics::error::{Error, ErrorKind, MissingColumn, Result, first_few, nearest};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
@@ -34,13 +34,14 @@ impl Header<'_> {
         }
         let hint = self.no_header(name).unwrap_or_else(|| self.other_names(name, is_known) + advice);
         let message = format!("found no column `{name}`, expected one {purpose}; {hint}");
-        Err(match &self.sheet {
+        let error = match &self.sheet {
             Some(sheet) => {
                 let message = format!("sheet `{}`, row {}: {message}", sheet.name, self.line);
                 ErrorKind::Measurement.error(message).in_file(self.path)
             }
             None => ErrorKind::Measurement.error(message).at_line(self.path, self.line),
-        })
+        };
+        Err(error.of_missing(MissingColumn::Other))
     }
 
     /// Message if this line is no header.

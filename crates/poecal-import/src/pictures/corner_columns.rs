@@ -4,6 +4,7 @@ use crate::table::header::{Header, HeaderCell, unit_in_name};
 use crate::table::inputs::Range;
 use crate::table::kinds;
 use crate::table::mapping::ColumnMap;
+use crate::table::numbered::plain;
 use crate::table::understanding::ColumnUnderstanding;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
@@ -52,9 +53,6 @@ pub(crate) struct CornerColumns {
 
 /// Letters and digits of a column's name, in small letters, with `px` behind them if that is its unit.
 fn key(cell: &HeaderCell) -> String {
-    let plain = |text: &str| -> String {
-        text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-    };
     let name = plain(&cell.name);
     let short = ["pixels", "pixel"].iter().find_map(|end| name.strip_suffix(end));
     let name = short.filter(|start| !start.is_empty()).map_or(name.clone(), |start| format!("{start}px"));

@@ -19,6 +19,7 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::visible;
 use poecal_plan::plan::{PlannedRow, RowPart};
+use poecal_storage::document;
 
 /// Configurations from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +63,7 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
     of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
 }
 
-/// Reads the text of such a file; `path` is for the messages only.
+/// Reads the text of such a file; `path` is what messages call it.
 ///
 /// # Errors
 /// As [`crate::read`], of what concerns joints.
@@ -73,7 +74,7 @@ pub fn parse_joints(
     options: &ReadOptions,
 ) -> Result<JointsTable> {
     let path = path.as_ref();
-    of_blocks(path, Blocks::new(path, text.as_bytes()), robot, options)
+    document::reading_text(path, text, || read_joints(path, robot, options))
 }
 
 fn of_blocks<'p>(

@@ -83,7 +83,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     reader.finish()
 }
 
-/// Reads the text of a measurement file; `path` is for the messages only.
+/// Reads the text of a measurement file as [`read()`] reads the file; `path` is what messages call it.
 ///
 /// # Errors
 /// As [`read()`].
@@ -93,16 +93,8 @@ pub fn parse(
     robot: &Robot,
     options: &ReadOptions,
 ) -> Result<MeasurementFile> {
-    parse_at(text, path.as_ref(), robot, options)
-}
-
-/// Compiled once, and not for each kind of path.
-fn parse_at(text: &str, path: &Path, robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
-    let no_map = ColumnMap::default();
-    let mut reader = Reader::new(robot, options, &no_map);
-    let blocks = reader.opening().of_text(path, Blocks::new(path, text.as_bytes()))?;
-    reader.file(path, blocks.blocks(path, "a table (CSV)"))?;
-    reader.finish()
+    let path = path.as_ref();
+    document::reading_text(path, text, || read_all(&[path], robot, options))
 }
 
 /// The warning of rows that have some components of a position beside rows that have all.

@@ -10,7 +10,7 @@ use super::mapping::ColumnMap;
 use super::numbered::numbered;
 use super::times::seconds_of;
 use poecal_model::robot::{Controller, FactorReading, ReadingKind, Robot, sum_words};
-use poecal_numerics::error::{ErrorKind, Result, first_few};
+use poecal_numerics::error::{ErrorKind, MissingColumn, Result, first_few};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 use poecal_storage::numbers::LARGEST_NUMBER;
@@ -105,7 +105,8 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let spec = map.joints.get(name).or_else(|| numbers.get(name)).unwrap_or(&default);
-            builder.spec_input(name, spec, reading_quantity(robot, name), &purpose)?;
+            let found = builder.spec_input(name, spec, reading_quantity(robot, name), &purpose);
+            found.map_err(|error| error.if_missing(MissingColumn::Joint))?;
         }
         if let Some(counts) = map.third_axis {
             builder.third_axis(robot, &names, counts)?;

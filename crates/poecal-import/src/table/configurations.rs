@@ -7,6 +7,7 @@ use super::picture_names::number_at_end;
 use poecal_numerics::error::{Error, ErrorKind, Result, shown};
 use poecal_storage::csv_text::cell;
 use poecal_storage::disk::{self, ObjectKind};
+use poecal_storage::document;
 use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::hashes::sha256_of;
 use poecal_storage::limits::Limit;
@@ -43,7 +44,9 @@ struct Readings {
 /// Whether a path is a folder.
 pub(crate) fn is_folder(path: &Path) -> bool {
     let is_folder = |found: disk::Object| found.kind == ObjectKind::Folder;
-    !source::is_standard_input(path) && disk::here().follow(path).is_ok_and(is_folder)
+    !source::is_standard_input(path)
+        && !document::is_kept(path)
+        && disk::here().follow(path).is_ok_and(is_folder)
 }
 
 /// An error in the table of a folder, in the file that made the line.

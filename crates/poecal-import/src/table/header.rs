@@ -71,7 +71,7 @@ impl HeaderCell {
 }
 
 /// A text that ends with brackets: the parts before and in them.
-fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
+pub(crate) fn bracketed(text: &str, open: char, close: char) -> Option<(&str, &str)> {
     text.strip_suffix(close)?.rsplit_once(open)
 }
 

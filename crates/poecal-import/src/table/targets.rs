@@ -9,7 +9,7 @@ use super::inputs::{InputSource, Term};
 use super::kinds::{self, Kind, KindColumns};
 use super::mapping::{OrientationSpec, PositionSpec, TargetSpec};
 use super::orientation::OrientationForm;
-use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, MissingColumn, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 
@@ -175,7 +175,8 @@ impl Builder<'_> {
             let column = spec.columns.as_ref().and_then(|columns| columns.get(i)).map_or(own, String::as_str);
             let purpose = format!("for the position {prefix}{axis}");
             let units = (spec.unit, self.usual(usual));
-            *index = self.column_or(&format!("{prefix}{axis}"), column, Unit::Metre, units, &purpose)?;
+            let found = self.column_or(&format!("{prefix}{axis}"), column, Unit::Metre, units, &purpose);
+            *index = found.map_err(|error| error.if_missing(MissingColumn::Position))?;
         }
         Ok(indices)
     }

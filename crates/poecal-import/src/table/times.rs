@@ -1,5 +1,7 @@
 //! Columns with the times of rows.
 
+use super::numbered::plain;
+
 /// What columns with the time of a row are called, in small letters without what separates.
 const NAMES: [&str; 8] = ["time", "t", "timestamp", "stamp", "times", "timeseconds", "seconds", "elapsed"];
 /// Units of times, with their seconds.
@@ -8,7 +10,7 @@ const UNITS: [(&str, f64); 6] =
 
 /// Seconds of one in a column of times with this name and unit; `None` of another column.
 pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
-    let plain: String = name.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let plain = plain(name);
     let own = |unit: &str| UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(unit)).map(|it| it.1);
     match unit {
         Some(unit) => own(unit).filter(|_| NAMES.contains(&plain.as_str())),
