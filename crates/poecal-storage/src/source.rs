@@ -15,7 +15,7 @@ const HEAD: u64 = 16;
 
 /// What a bag is where it cannot be read.
 const BAG: &str = if cfg!(feature = "bags") {
-    "a ROS 2 bag (.mcap), which is read as a measurement file by its path, and not from standard input"
+    "a ROS 2 bag (.mcap), which is read as a measurement file"
 } else {
     "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"
 };

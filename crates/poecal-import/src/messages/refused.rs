@@ -15,15 +15,14 @@ const JOINTS: &str = "joint_states";
 
 /// Whether the beginning of a file is that of messages; other YAML, which is no table either, is refused.
 pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
-    let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
-    let is = |endings: &[&str]| ending.as_deref().is_some_and(|it| endings.contains(&it));
     let begin = head.trim_start();
     let is_json = begin.starts_with(['{', '[']);
-    let is_yaml = is(&["yaml", "yml"]) || BEGINNINGS.iter().any(|it| begin.starts_with(it));
+    let has_keys = begins_with_keys(head);
+    let is_yaml = has_keys || BEGINNINGS.iter().any(|it| begin.starts_with(it));
     if (is_json || is_yaml) && head.contains(JOINTS) {
         return Ok(true);
     }
-    if is(&["yaml", "yml"]) {
+    if has_keys {
         let has =
             |key: &str| head.lines().any(|line| line.trim_start().trim_start_matches("- ").starts_with(key));
         let message = if has("target_finder:") || has("image:") && has("pose:") {
@@ -37,4 +36,21 @@ pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
         return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
     }
     Ok(false)
+}
+
+/// Lines by which YAML is known.
+const LOOKED_AT: usize = 20;
+
+/// Whether the first lines that are no comments are keys of YAML, entries of its lists, or further in than these; a table may have a line of a title.
+fn begins_with_keys(head: &str) -> bool {
+    let is_content = |it: &&str| !it.trim().is_empty() && !it.starts_with(['#', '%']) && *it != "---";
+    let is_word = |it: char| it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/' | '"' | '\'');
+    let is_key = |line: &str| {
+        let key = line.split_once(':').filter(|it| it.1.is_empty() || it.1.starts_with(' ')).map(|it| it.0);
+        key.is_some_and(|key| !key.is_empty() && key.chars().all(is_word))
+    };
+    let is_inside = |line: &str| line.starts_with([' ', '-', ']', '}']);
+    let mut lines = head.lines().filter(is_content).take(LOOKED_AT).peekable();
+    lines.peek().is_some_and(|it| is_key(it.trim_start_matches("- ")))
+        && lines.all(|it| is_key(it) || is_inside(it))
 }

@@ -23,6 +23,7 @@ use super::recording::{OwnTable, Recording};
 use super::{BAG, Opening};
 use crate::GivenBag;
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::disk::is_file;
 use poecal_storage::hashes::Hashing;
 use poecal_storage::limits::{Limit, amount};
 use poecal_storage::source;
@@ -40,7 +41,11 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let mut hashing = Hashing::new(Box::new(io::empty()) as Box<dyn io::Read>);
     let mut unpacked = 0_u64;
     for part in &parts {
-        let (mut input, _) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
+        // What can be read once is held.
+        let (mut input, _) = match is_file(part) {
+            true => source::open_streamed(part, EXPECTED, Limit::Bag)?,
+            false => source::open_any(part, EXPECTED, Limit::Bag)?,
+        };
         let stated = container::stated_size(&mut input);
         let stated = stated.map_err(|error| source::unreadable(part, &error, EXPECTED))?;
         unpacked = unpacked.saturating_add(stated);
