@@ -6,7 +6,7 @@
 # What happens: so it is down to 1.5e-4 rad. Below, all three eigenvalues of R count as one, since they differ
 # from it by less than 1e-8, and the last of their vectors is taken: a vector at right angles to the axis
 # in more than a quarter of all cases. The angle is then formed with that axis, by a division by one of its
-# components: a turn of 0.13 mrad comes back as one of 1 to 900 mrad, about another axis. Nothing is said;
+# components: a turn of 0.13 mrad comes back as one of up to 900 mrad, about another axis. Nothing is said;
 # the example of its documentation fails there.
 # Whom it hurts: whoever states a correction, a drift or a repeatability as axis and angle: 0.1 mrad are
 # 0.1 mm at 1 m, which is what a calibrated arm is good for. The module is copied into tf of ROS, too.

@@ -35,7 +35,8 @@ def miss(one, other):
 
 random = np.random.default_rng(1)
 unchanged = True
-print("turned by   poses whose screw is another pose's   of these with w < 0   largest angle between them   by pow(1)   with w made positive")
+print("turned by, poses whose screw is another pose's, of these with w < 0, the largest angle between them,")
+print("the same by pow(1), and with w made positive:")
 for degrees in (30, 60, 89, 100, 130, 150, 179):
     wrong, negative, worst, by_power, mended = 0, 0, 0.0, 0.0, 0.0
     for _ in range(COUNT):
@@ -50,9 +51,13 @@ for degrees in (30, 60, 89, 100, 130, 150, 179):
         worst, by_power = max(worst, angle), max(by_power, miss(dual.pow(1).homogeneous_matrix(), pose)[0])
         positive = DualQuaternion(-dual.q_r, -dual.q_d) if dual.q_r.w < 0 else dual
         mended = max(mended, miss(DualQuaternion.from_screw(*positive.screw()).homogeneous_matrix(), pose)[0])
-    print(f"{degrees:5} deg {wrong:14} of {COUNT} {negative:24} {np.degrees(worst):24.1f} deg {np.degrees(by_power):15.1f} deg {np.degrees(mended):14.0e} deg")
+    angles = [np.degrees(angle) for angle in (worst, by_power, mended)]
+    print(f"{degrees:5} deg {wrong:6} of {COUNT} {negative:6} {angles[0]:10.1f} deg {angles[1]:8.1f} deg {angles[2]:8.0e} deg")
     unchanged = unchanged and mended < 1e-9 and wrong == negative
-    unchanged = unchanged and (wrong == 0 if degrees < 90 else wrong > 10 and abs(np.degrees(worst) - 2 * (180 - degrees)) < 1e-6 and by_power > 0.9 * worst)
+    if degrees < 90:
+        unchanged = unchanged and wrong == 0
+    else:
+        unchanged = unchanged and wrong > 10 and abs(angles[0] - 2 * (180 - degrees)) < 1e-6 and by_power > 0.9 * worst
 print("as described" if unchanged else "CHANGED: the behaviour is not what this file describes")
 sys.exit(not unchanged)
 PY

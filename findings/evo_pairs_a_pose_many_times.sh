@@ -41,7 +41,10 @@ def compared(seconds, method):
     pairs, apart = len(reference.timestamps), len(np.unique(reference.timestamps))
     step = 1000 * np.diff(fast.positions_xyz[:, 0]).mean()
     miss = 1000 * error.get_statistic(StatisticsType.rmse)
-    print(f"  reference of {seconds:2} s, {method.value:13} {pairs:4} pairs with {apart:3} poses of the reference; relative error {miss:.3f} mm, motion between pairs {step:.1f} mm")
+    print(
+        f"  reference of {seconds:2} s, {method.value:13} {pairs:4} pairs with {apart:3} poses of the reference; "
+        f"relative error {miss:.3f} mm, motion between pairs {step:.1f} mm"
+    )
     return pairs, apart, miss, step
 
 
