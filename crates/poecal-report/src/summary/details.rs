@@ -184,7 +184,11 @@ fn trust(out: &mut String, file: &CalibrationFile) {
         let worst = worst.map_or_else(String::new, |worst| {
             format!("; worst block: {}, {}", worst.left_out, leading_words(&worst.rms))
         });
-        let words = format!("{} (RMS) on random rows{worst}", leading_words(&found.random.rms));
+        let outside = found.outside.as_ref().map_or_else(String::new, |it| {
+            let (rows, all) = (it.rows, found.random.rows);
+            format!(" ({rows} of {all} beyond the range of the others: {})", leading_words(&it.rms))
+        });
+        let words = format!("{} (RMS) on random rows{outside}{worst}", leading_words(&found.random.rms));
         line(out, "predicted", &format!("in cross-validation by calibrated models {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();

@@ -46,7 +46,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
     calibrate(
         robot,
         data,
-        &CalibrationOptions { held_out: 0.0, robust, diagnose: false, ..Default::default() },
+        &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() },
     )
     .unwrap()
 }
@@ -399,7 +399,7 @@ fn rows_that_alone_tell_something_are_kept() {
                         + random::normal_vector(&mut generator) * 3e-5;
                     data.push(&readings, None, Measurement::point(position)).unwrap();
                 }
-                let options = CalibrationOptions { robust, held_out: 0.0, ..geometry() };
+                let options = CalibrationOptions { robust, held_out: Some(0.0), ..geometry() };
                 let found = calibrate(&robot, &data, &options).unwrap();
                 let squares: f64 = (0..100)
                     .map(|_| {

@@ -196,7 +196,7 @@ pub(crate) fn rms(deviations: &[Vector6<f64>]) -> [f64; 2] {
 
 /// Options with all rows fitted.
 pub(crate) fn all_rows() -> CalibrationOptions {
-    CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() }
+    CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() }
 }
 
 /// A calibration, as the program makes it, with the data as they were fitted.
