@@ -62,13 +62,21 @@ fn rows_words(file: &CalibrationFile) -> String {
 
 /// What is known of the noise of pictures.
 fn pictures_words(pictures: &PicturesEntry) -> String {
-    let CommonEntry { shift_mm, turn_deg, about } = pictures.common;
+    let CommonEntry { shift_mm, turn_deg, about, corners } = pictures.common;
     let about = match about {
         Centre::Board => "the board",
         Centre::Camera => "the camera",
     };
+    let shape = if corners > 1.0 {
+        format!(
+            ", which move the board by {} times more than that, as a lens or board of another shape does",
+            number(corners)
+        )
+    } else {
+        String::new()
+    };
     format!(
-        "{} with {} corners to {} px; in each, all are off together by {} mm and {} deg about {about} (standard deviations of a component)",
+        "{} with {} corners to {} px{shape}; in each, all are off together by {} mm and {} deg about {about} (standard deviations of a component)",
         pictures.count,
         pictures.corners,
         number(pictures.sigma_px),

@@ -36,7 +36,7 @@ pub(crate) struct Session {
 /// An error of each configuration, of what is on the tip and about it.
 pub(crate) fn common(millis: f64, in_hand: bool) -> CommonError {
     let about = if in_hand { Centre::Camera } else { Centre::Board };
-    CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about }
+    CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about, corners: 1.0 }
 }
 
 /// A usual session of the elbow.
