@@ -61,7 +61,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     as in the model, and the point is the target "measured".
 /// held_out
 ///     Share of the configurations held out, where nothing else says which rows are (default 0.3, or 0 where that were fewer than 12
-///     configurations and nothing is to be accepted); 0 fits every row.
+///     configurations, without pictures and `accept`); 0 fits every row.
 /// seed
 ///     Seed of that choice (default 1).
 /// robust

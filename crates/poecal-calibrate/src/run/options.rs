@@ -57,7 +57,7 @@ pub struct CalibrationOptions {
     /// Stated standard deviation of each component of a quantity, metres or radians; estimated from the data if absent.
     pub sigma: ByQuantity<Option<f64>>,
     /// Share of the configurations held out, 0 to below 1, if rows do not state their set. Where none is asked for, 0.3, or nothing where that
-    /// were fewer than 12 configurations and no limits are to be accepted: then cross-validation judges.
+    /// were fewer than 12 configurations, none of them a picture, and no limits are to be accepted: then cross-validation judges.
     pub held_out: Option<f64>,
     /// Seed of that choice and of further starts.
     pub seed: u64,

@@ -122,7 +122,7 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     let most = configurations.len().saturating_sub(1);
     let share = options.held_out.unwrap_or(USUAL);
     let mut count = ((share * configurations.len() as f64).round() as usize).min(most);
-    if is_open(options) && count < FEWEST_HELD_OUT {
+    if is_open(data, options) && count < FEWEST_HELD_OUT {
         count = 0;
     }
     let mut chosen = vec![false; data.len()];
@@ -132,9 +132,10 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     configuration.iter().map(|&first| chosen[first as usize]).collect()
 }
 
-/// Whether it may be decided here that all rows are fitted: limits are decided by rows that were not.
-fn is_open(options: &CalibrationOptions) -> bool {
-    options.held_out.is_none() && options.accept.is_none()
+/// Whether it may be decided here that all rows are fitted: limits are decided by rows that were not, and so are pictures, whose corners
+/// cross-validation does not predict.
+fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
+    options.held_out.is_none() && options.accept.is_none() && data.pictures.is_empty()
 }
 
 /// Number of configurations where all are fitted although nothing asks for it: those that would have been held out are too few.
@@ -144,7 +145,7 @@ pub(crate) fn too_few_to_hold_out(
     held_out: &[u32],
 ) -> Option<usize> {
     let is_stated = data.observations.iter().any(|row| row.set.is_some());
-    let is_chosen = is_open(options) && held_out.is_empty() && !is_stated;
+    let is_chosen = is_open(data, options) && held_out.is_empty() && !is_stated;
     is_chosen.then(|| data.configurations(&data.all_rows()).len())
 }
 

@@ -62,17 +62,25 @@ impl CalibrationFile {
     /// otherwise on training rows; millimetres or degrees.
     #[must_use]
     pub fn own_rms(&self, model: AcceptedModel) -> f64 {
-        let accuracy = &self.accuracy;
-        let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
+        self.own_error(model).0
+    }
+
+    /// The same with which rows these are, in the words of files.
+    #[must_use]
+    pub fn own_error(&self, model: AcceptedModel) -> (f64, &'static str) {
+        let (set, rows) = match &self.accuracy.held_out {
+            Some(set) => (set, "held_out"),
+            None => (&self.accuracy.training, "training"),
+        };
         let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
         let errors = corrected.unwrap_or(&set.calibrated);
+        let rms = errors.lead().rms;
         let left_out = errors.leading().and_then(|(quantity, _)| self.left_out(model, quantity));
-        left_out.map_or(errors.lead().rms, |it| it.max(errors.lead().rms))
+        left_out.map_or((rms, rows), |it| (it.max(rms), "cross_validation"))
     }
 
     /// Root mean square error of a model in cross-validation, where no row was held out; millimetres or degrees.
-    #[must_use]
-    pub fn left_out(&self, model: AcceptedModel, quantity: Quantity) -> Option<f64> {
+    fn left_out(&self, model: AcceptedModel, quantity: Quantity) -> Option<f64> {
         let found = self.cross_validation.as_ref().filter(|_| self.accuracy.held_out.is_none())?;
         let corrected =
             self.corrected.as_ref().filter(|it| model == AcceptedModel::Corrected && it.has_terms());

@@ -154,12 +154,7 @@ impl LedgerRow {
         let set = held.unwrap_or(&file.accuracy.training);
         let is_corrected = set.corrected.is_some();
         let model = if is_corrected { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
-        let leading = set.calibrated.leading().and_then(|(quantity, _)| file.left_out(model, quantity));
-        let error_of = match leading {
-            _ if held.is_some() => "held_out",
-            Some(_) => "cross_validation",
-            None => "training",
-        };
+        let (error_rms, error_of) = file.own_error(model);
         let length = |it: &[f64; 3]| it.iter().map(|part| part * part).sum::<f64>().sqrt();
         let correction = |entry: &crate::calibration_file::CorrectionEntry| {
             let change = entry.change.as_ref()?;
@@ -202,7 +197,7 @@ impl LedgerRow {
             reason: limits.or(reason),
             accepted: file.acceptance.as_ref().and_then(|it| word(it.decision)),
             rows: Some(file.accuracy.training.count as u64 + held.map_or(0, |it| it.count as u64)),
-            error_rms: Some(shown(file.own_rms(model))),
+            error_rms: Some(shown(error_rms)),
             error_of: Some(error_of.to_owned()),
             noise: sigma.map(shown),
             corrections: file.corrections.iter().filter_map(correction).collect(),

@@ -466,12 +466,13 @@ fn a_stale_row_that_was_held_out_does_not_decide_the_verdict() {
         ..Simulation::default()
     };
     let made = simulation.run(&elbow(), Kind::POINT).unwrap();
-    let usual = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let some = CalibrationOptions { held_out: Some(0.3), ..CalibrationOptions::default() };
+    let usual = calibrate(&made.nominal, &made.data, &some).unwrap();
     assert!(usual.verdict.level > Level::DoNotUse);
     for &row in usual.held_out_rows.iter().filter(|row| **row > 0) {
         let mut data = made.data.clone();
         data.observations[row as usize].measurement = data.observations[row as usize - 1].measurement;
-        let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
+        let options = CalibrationOptions { repair: Repairs::Off, ..some.clone() };
         let found = calibrate(&made.nominal, &data, &options).unwrap();
         println!("row {row}: {:?}", found.verdict.reasons);
         assert!(found.robustness.suspects().any(|it| it == row), "row {row}");
