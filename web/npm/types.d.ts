@@ -570,6 +570,8 @@ export type AcceptedStatistic = "rms" | "p95" | "max";
 
 /** Errors on training and held-out rows. */
 export type Accuracy = {
+  /** Number of configurations where all were fitted because too few would have been held out; absent otherwise. */
+  few_configurations?: number | null;
   /** On the held-out rows; null if there are none. */
   held_out?: SetAccuracy | null;
   /** On the training rows. */
@@ -667,6 +669,11 @@ export type CommonDirectionEntry = {
 export type CommonEntry = {
   /** What it turns about. */
   about: Centre;
+  /**
+   * By how many times more than by their own noise the corners move the pose of the board, as in the picture of another lens or board; 1
+   * where it is absent.
+   */
+  corners?: number;
   /** Shift, millimetres. */
   shift_mm: number;
   /** Turn, degrees. */
@@ -842,6 +849,11 @@ export type CorrelationsEntry = {
 export type CrossValidationEntry = {
   /** The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it. */
   blocked: LeftOutEntry[];
+  /**
+   * Those of their rows with a joint beyond the range of the rows by which they were predicted, by more than a tenth of it. Absent if there
+   * are none.
+   */
+  outside?: LeftOutEntry | null;
   /** Random folds, all together. */
   random: LeftOutEntry;
 };

@@ -38,7 +38,7 @@ pub use crate::run::noise::{NoiseSource, estimate_noise};
 pub use crate::run::options::{CalibrationOptions, DeviceFrameKnowledge};
 pub use crate::run::pixels::{CornerError, PixelAccuracy, corner_error};
 pub use crate::run::placed::{CalibratedStation, CalibratedTarget};
-pub use crate::run::split::{settle_sets, split_rows};
+pub use crate::run::split::{FEWEST_HELD_OUT, settle_sets, split_rows};
 pub use crate::run::stage::Stage;
 pub use crate::steps::accepted::accepted_by;
 pub use crate::steps::calibrate::{calibrate, calibrate_repairing};

@@ -68,6 +68,19 @@ pub struct CommonEntry {
     pub turn_deg: f64,
     /// What it turns about.
     pub about: Centre,
+    /// By how many times more than by their own noise the corners move the pose of the board, as in the picture of another lens or board; 1 where it
+    /// is absent.
+    #[serde(default = "once", skip_serializing_if = "is_once")]
+    pub corners: f64,
+}
+
+fn once() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_once(times: &f64) -> bool {
+    *times <= 1.0
 }
 
 /// A camera with its lens.
@@ -104,6 +117,7 @@ impl PicturesEntry {
                 shift_mm: 1e3 * pictures.common.shift_m,
                 turn_deg: pictures.common.turn_rad.to_degrees(),
                 about: pictures.common.about,
+                corners: pictures.common.corners,
             },
             cameras: pictures.cameras.iter().map(CameraEntry::of).collect(),
             boards: pictures.boards.iter().map(BoardEntry::of).collect(),
@@ -136,8 +150,8 @@ impl PicturesEntry {
     /// What the corners of a picture share.
     #[must_use]
     pub fn common_error(&self) -> CommonError {
-        let CommonEntry { shift_mm, turn_deg, about } = self.common;
-        CommonError { shift_m: 1e-3 * shift_mm, turn_rad: turn_deg.to_radians(), about }
+        let CommonEntry { shift_mm, turn_deg, about, corners } = self.common;
+        CommonError { shift_m: 1e-3 * shift_mm, turn_rad: turn_deg.to_radians(), about, corners }
     }
 
     /// What to say where pictures were read with another lens or board than those that the calibration found.

@@ -95,7 +95,7 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
         calibrate(
             robot,
             data,
-            &CalibrationOptions { held_out: 0.0, robust, diagnose: false, ..Default::default() },
+            &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() },
         )
     };
     let clean = held_out_m(robot, &judging, &fit(&made.data, Robust::Off)?.models);

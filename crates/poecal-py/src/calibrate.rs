@@ -60,7 +60,8 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
 ///     as in the model, and the point is the target "measured".
 /// held_out
-///     Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
+///     Share of the configurations held out, where nothing else says which rows are (default 0.3, or 0 where that were fewer than 12
+///     configurations, without pictures and `accept`); 0 fits every row.
 /// seed
 ///     Seed of that choice (default 1).
 /// robust
@@ -152,7 +153,7 @@ pub(crate) fn calibrate(
         corrections: corrections.unwrap_or_default(),
         harmonics: orders(harmonics)?,
         gravity: gravity.unwrap_or(usual.gravity),
-        held_out: held_out.unwrap_or(usual.held_out),
+        held_out,
         seed: seed.unwrap_or(usual.seed),
         robust: robust_word(robust)?,
         repair: chosen("repair", repair, &[("auto", Repairs::Auto), ("off", Repairs::Off)])?,

@@ -77,6 +77,15 @@ def test_all_options_are_taken(made):
     assert told == ["finding the device frame and the targets", "fitting the screws", "judging the result"]
 
 
+def test_few_configurations_are_all_fitted():
+    few = session(count=20)
+    all_fitted = poecal.calibrate(few.nominal, few.measurements)
+    assert (all_fitted.accuracy.held_out, all_fitted.accuracy.few_configurations) == (None, 20)
+    assert "all 20 configurations were fitted, since fewer than 12 would judge" in " ".join(str(all_fitted).split())
+    some = poecal.calibrate(few.nominal, few.measurements, held_out=0.3).accuracy
+    assert (some.held_out.count, some.few_configurations) == (6, None)
+
+
 def test_rows_are_held_out_as_asked(made):
     judged = poecal.calibrate(made.nominal, made.measurements, validate=made.held_out)
     assert (judged.accuracy.training.count, judged.accuracy.held_out.count) == (50, 40)

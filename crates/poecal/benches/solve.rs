@@ -154,7 +154,7 @@ fn calibrated(bencher: Bencher<'_, '_>, rows: usize, corrections: Corrections) {
     let simulation = Simulation { terms, ..simulation(rows) };
     let made = simulation.run(&elbow(), Kind::POSE).expect("a simulation of a finite robot");
     let frame = DeviceFrameKnowledge::Unknown;
-    let options = CalibrationOptions { held_out: 0.0, frame, corrections, ..Default::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), frame, corrections, ..Default::default() };
     bencher.bench_local(|| black_box(calibrate(&made.nominal, &made.data, &options)));
 }
 

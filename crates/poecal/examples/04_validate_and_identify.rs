@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
 
-    let options = CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() };
     let calibration = calibrate(&nominal, &made.data, &options)?;
     let judgement =
         CalibrationFile::new(&calibration, &made.data, Inputs::default()).judge(&others, false, false)?;

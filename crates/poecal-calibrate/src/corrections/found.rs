@@ -7,7 +7,7 @@ use super::effect::Effects;
 use super::effects::effects;
 use super::frames::{Model, frames};
 use crate::run::Run;
-use crate::run::accuracy::ModelAccuracy;
+use crate::run::accuracy::{JudgingError, ModelAccuracy};
 use crate::run::options::DeviceFrameKnowledge;
 use crate::run::placed::{CalibratedStation, CalibratedTarget, Tip, place_tip, stations};
 use crate::steps::calibrated::CalibratedFit;
@@ -173,8 +173,14 @@ impl Correction {
         Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
     }
 
-    /// Errors of the rows that were held out, or of those that were fitted where there are no such.
-    pub(crate) fn judging_errors(&self) -> &ModelAccuracy {
-        self.held_out.as_ref().unwrap_or(&self.training)
+    /// By what it is judged on so many rows: those held out, or where there are none those fitted, as cross-validation predicts their positions.
+    pub(crate) fn judging(&self, rows: usize) -> JudgingError {
+        if let Some(errors) = &self.held_out {
+            return errors.judging(rows);
+        }
+        let found = self.training.judging(rows);
+        let is_position = self.training.leading().is_some_and(|(it, _)| it == Quantity::Position);
+        let left_out_m = self.left_out_m.filter(|_| is_position && self.training.of_pictures(rows).is_none());
+        JudgingError { rms: left_out_m.map_or(found.rms, |it| 1e3 * it), ..found }
     }
 }

@@ -108,7 +108,8 @@ impl Run<'_> {
         let differs = |a: f64, b: f64| (a / b).ln().abs() > CHANGE;
         let same = common.about == before.about
             && !differs(common.shift_m, before.shift_m)
-            && !differs(common.turn_rad, before.turn_rad);
+            && !differs(common.turn_rad, before.turn_rad)
+            && !differs(common.corners, before.corners);
         if !has_moved && same {
             return None;
         }
@@ -187,7 +188,7 @@ mod tests {
 
     #[test]
     fn steps_that_shrink_evenly_are_gone_at_once() {
-        let at = |log: f64| CommonError { shift_m: log.exp(), turn_rad: log.exp(), about: Centre::Board };
+        let at = |log: f64| CommonError { shift_m: log.exp(), turn_rad: log.exp(), ..CommonError::NONE };
         let mut pace = Pace::default();
         // The first step alone, then half of it: together they end at -4 - 1.
         assert_eq!(pace.ahead(at(-3.0), at(-4.0)), at(-4.0));

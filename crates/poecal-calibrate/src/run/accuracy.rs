@@ -236,6 +236,9 @@ pub struct Accuracy {
     pub training: SetAccuracy,
     /// On the held-out rows; null if there are none.
     pub held_out: Option<SetAccuracy>,
+    /// Number of configurations where all were fitted because too few would have been held out; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub few_configurations: Option<usize>,
 }
 
 /// Errors of the three models on some rows (at least one): theory.md §9.

@@ -42,7 +42,7 @@ pub enum DeviceFrameKnowledge {
 /// #     pub use poecal_calibrate::CalibrationOptions;
 /// # }
 /// use poecal::CalibrationOptions;
-/// let options = CalibrationOptions { held_out: 0.2, ..Default::default() };
+/// let options = CalibrationOptions { held_out: Some(0.2), ..Default::default() };
 /// assert_eq!(options.seed, 1);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +56,9 @@ pub struct CalibrationOptions {
     pub devices: Vec<Pose>,
     /// Stated standard deviation of each component of a quantity, metres or radians; estimated from the data if absent.
     pub sigma: ByQuantity<Option<f64>>,
-    /// Share of the configurations held out, 0 to below 1, if rows do not state their set.
-    pub held_out: f64,
+    /// Share of the configurations held out, 0 to below 1, if rows do not state their set. Where none is asked for, 0.3, or nothing where that
+    /// were fewer than 12 configurations, none of them a picture, and no limits are to be accepted: then cross-validation judges.
+    pub held_out: Option<f64>,
     /// Seed of that choice and of further starts.
     pub seed: u64,
     /// Parameterisation, residual and method of the fit. All but the default are for comparison.
@@ -99,7 +100,7 @@ impl Default for CalibrationOptions {
             blocks: BlockChoice::default(),
             devices: Vec::new(),
             sigma: ByQuantity::default(),
-            held_out: 0.3,
+            held_out: None,
             seed: 1,
             formulation: Formulation::default(),
             tolerance: Some(Tolerance::default()),

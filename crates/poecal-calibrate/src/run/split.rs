@@ -10,20 +10,23 @@ use poecal_model::measurement::{Dataset, Set};
 use poecal_model::simulate::random;
 use poecal_numerics::error::{ErrorKind, Result};
 
+/// Share of the configurations that is held out where none is asked for.
+const USUAL: f64 = 0.3;
+/// Fewest configurations that are held out where nothing is asked for: of fewer, cross-validation of all judges better.
+pub const FEWEST_HELD_OUT: usize = 12;
 /// Option that names measurements for validation.
 const VALIDATE: &str = "--validate";
 
 /// Training and held-out rows, each in the order of the data. Sets stated by rows hold (rows without one are fitted); otherwise a seeded
-/// share of the *configurations* is held out, so that targets of one configuration are never in both sets.
+/// share of the *configurations* is held out, so that targets of one configuration are never in both sets; none of few, unless it is asked
+/// for ([`CalibrationOptions::held_out`]).
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if no row is left to fit.
 pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u32>, Vec<u32>)> {
-    if !(0.0..1.0).contains(&options.held_out) {
-        return ErrorKind::Option.refuse(format!(
-            "found a held-out share of {}, expected a number from 0 to below 1",
-            options.held_out
-        ));
+    if let Some(share) = options.held_out.filter(|share| !(0.0..1.0).contains(share)) {
+        return ErrorKind::Option
+            .refuse(format!("found a held-out share of {share}, expected a number from 0 to below 1"));
     }
     let count = u32::try_from(data.len()).map_err(|_| {
         ErrorKind::Problem.error(format!("found {} rows, expected at most {}", data.len(), u32::MAX))
@@ -117,12 +120,33 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     random::shuffle(&mut generator, &mut configurations);
     // At least one stays fitted: a share too large is then refused by the count of numbers.
     let most = configurations.len().saturating_sub(1);
-    let count = ((options.held_out * configurations.len() as f64).round() as usize).min(most);
+    let share = options.held_out.unwrap_or(USUAL);
+    let mut count = ((share * configurations.len() as f64).round() as usize).min(most);
+    if is_open(data, options) && count < FEWEST_HELD_OUT {
+        count = 0;
+    }
     let mut chosen = vec![false; data.len()];
     for &first in &configurations[..count] {
         chosen[first as usize] = true;
     }
     configuration.iter().map(|&first| chosen[first as usize]).collect()
+}
+
+/// Whether it may be decided here that all rows are fitted: limits are decided by rows that were not, and so are pictures, whose corners
+/// cross-validation does not predict.
+fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
+    options.held_out.is_none() && options.accept.is_none() && data.pictures.is_empty()
+}
+
+/// Number of configurations where all are fitted although nothing asks for it: those that would have been held out are too few.
+pub(crate) fn too_few_to_hold_out(
+    data: &Dataset,
+    options: &CalibrationOptions,
+    held_out: &[u32],
+) -> Option<usize> {
+    let is_stated = data.observations.iter().any(|row| row.set.is_some());
+    let is_chosen = is_open(data, options) && held_out.is_empty() && !is_stated;
+    is_chosen.then(|| data.configurations(&data.all_rows()).len())
 }
 
 /// Rows in motion that are near in time are nearly of one configuration: those of each two seconds are held out together.

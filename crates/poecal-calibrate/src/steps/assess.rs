@@ -145,7 +145,7 @@ fn verdict(judged: &Judged, correction: Option<&Correction>, accuracy: &Accuracy
     match correction.filter(|it| it.has_terms()) {
         Some(found) => {
             let rows = accuracy.held_out.map_or(accuracy.training.count, |set| set.count);
-            judged.of_corrected(&found.judging_errors().judging(rows), [&found.expected, &trust.expected])
+            judged.of_corrected(&found.judging(rows), [&found.expected, &trust.expected])
         }
         None => judged.of_calibrated(&trust.expected),
     }

@@ -7,6 +7,7 @@ use crate::corrections::CorrectedFit;
 use crate::robust::RobustFit;
 use crate::run::Run;
 use crate::run::located::located;
+use crate::run::split::too_few_to_hold_out;
 use crate::trust::coverage_check::held_out_check;
 use crate::trust::domain::Domain;
 use crate::{Accuracy, Correction, JointEffect, Models, Robustness, Trust, set_accuracy};
@@ -89,7 +90,8 @@ impl CalibratedFit<'_> {
         let of_calibrated = (&session, &models.calibrated);
         trust.held_out = held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted);
         let held_out = (!run.held_out_rows.is_empty()).then(|| of(&run.held_out_rows));
-        let mut accuracy = Accuracy { training: of(&run.fit_rows), held_out };
+        let few_configurations = too_few_to_hold_out(&run.data, &run.options, &run.held_out_rows);
+        let mut accuracy = Accuracy { training: of(&run.fit_rows), held_out, few_configurations };
         if let Some(found) = &correction {
             accuracy.training.corrected = Some(found.training);
             accuracy.held_out.iter_mut().for_each(|set| set.corrected = found.held_out);

@@ -45,7 +45,7 @@ pub(crate) fn paired(
 }
 
 /// (50) of sums of squares before and after, by configuration.
-fn improvement(sums: &[[f64; 2]], is_measured: bool) -> Option<Improvement> {
+pub(crate) fn improvement(sums: &[[f64; 2]], is_measured: bool) -> Option<Improvement> {
     let [before, after] = sums.iter().fold([0.0, 0.0], |[a, b], [c, d]| [a + c, b + d]);
     let groups = sums.len() as f64;
     if !is_measured || groups < 2.0 || before <= 0.0 || after <= 0.0 {

@@ -13,6 +13,7 @@ pub(crate) mod corrected;
 pub(crate) mod figures;
 pub(crate) mod found;
 pub(crate) mod improvement;
+pub(crate) mod judging;
 pub(crate) mod level;
 pub(crate) mod repeatability;
 pub(crate) mod result;

@@ -2,10 +2,10 @@
 
 use super::calibrated::CalibratedFit;
 use super::figures::Figures;
+use super::judging::{Judging, WORTH};
 use super::level::{Gain, Level, Verdict};
 use super::summary::FitSummary;
 use crate::doubts::signs::Signs;
-use crate::run::Run;
 use crate::run::accuracy::JudgingError;
 use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
@@ -23,6 +23,8 @@ pub(crate) struct Judged {
     calibrated: JudgingError,
     /// That the screws are no better than nominal: nothing was shown of this robot.
     no_better: Option<String>,
+    /// That the rows do not tell whether they are better.
+    unclear: Option<String>,
     /// That the errors of the calibrated model are too large.
     too_large: Option<String>,
     /// Axes that ended where none of this robot is; said where nothing else speaks against use.
@@ -54,7 +56,7 @@ impl Judged {
 
     /// The verdict on the calibrated model, with these expected errors.
     pub(crate) fn of_calibrated(&self, expected: &Expectations) -> Verdict {
-        let against = [self.no_better.as_ref(), self.too_large.as_ref()];
+        let against = [self.no_better.as_ref(), self.too_large.as_ref(), self.unclear.as_ref()];
         self.verdict(AcceptedModel::Calibrated, against, [expected, expected])
     }
 
@@ -63,14 +65,16 @@ impl Judged {
     pub(crate) fn of_corrected(&self, error: &JudgingError, expected: [&Expectations; 2]) -> Verdict {
         // Terms may describe what no rigid robot does, and improve a model whose axes are right.
         let too_large = self.too_large.as_ref().filter(|_| is_too_large(error, self.reach_m));
-        let no_better = self.no_better.as_ref().filter(|_| is_no_better(error, &self.nominal));
-        self.verdict(AcceptedModel::Corrected, [no_better, too_large], expected)
+        let is_no_better = error.rms > (1.0 - WORTH) * self.nominal.rms;
+        let [no_better, unclear] =
+            [&self.no_better, &self.unclear].map(|it| it.as_ref().filter(|_| is_no_better));
+        self.verdict(AcceptedModel::Corrected, [no_better, too_large, unclear], expected)
     }
 
     fn verdict(
         &self,
         model: AcceptedModel,
-        [no_better, too_large]: [Option<&String>; 2],
+        [no_better, too_large, unclear]: [Option<&String>; 3],
         [expected, of_calibrated]: [&Expectations; 2],
     ) -> Verdict {
         let confirmed = self.confirmed(of_calibrated);
@@ -87,12 +91,16 @@ impl Judged {
             (Level::Located, vec!["the axes of the joints were held".to_owned()])
         } else {
             let (level, mut reasons) = self.use_of_axes(expected);
-            let is_gain = confirmed.is_some() || gain == Some(Gain::Clear);
-            if is_gain {
-                (level, reasons)
-            } else {
-                reasons.insert(0, no_clear_gain(expected));
+            let no_gain = match gain {
+                _ if confirmed.is_some() => None,
+                Some(Gain::Clear) => unclear.cloned(),
+                _ => Some(no_clear_gain(expected)),
+            };
+            if let Some(reason) = no_gain {
+                reasons.insert(0, reason);
                 (Level::MeasuredConfigurations, reasons)
+            } else {
+                (level, reasons)
             }
         };
         if level == Level::Good {
@@ -147,11 +155,6 @@ impl Judged {
     }
 }
 
-/// Whether an error is not clearly below that of the nominal model on the same rows.
-fn is_no_better(error: &JudgingError, nominal: &JudgingError) -> bool {
-    error.rms > (1.0 - WORTH) * nominal.rms
-}
-
 /// That the nominal model may be better inside the sampled range.
 fn no_clear_gain(expected: &Expectations) -> String {
     let (Some(sampled), Some(nominal)) = (expected.sampled, expected.nominal) else {
@@ -165,10 +168,6 @@ fn no_clear_gain(expected: &Expectations) -> String {
     )
 }
 
-/// Least relative reduction of the error on held-out rows.
-const WORTH: f64 = 0.02;
-/// Held-out configurations up to which cross-validation of the others may tell more.
-const FEW: usize = 12;
 /// Calibrated error over the reach above which no rigid robot is described: elastic gears and links have a tenth of it.
 const TOO_LARGE: f64 = 1e-2;
 /// Error over the reach above which no model of a robot is confirmed: that of nominal models is half as large.
@@ -206,25 +205,16 @@ pub(crate) struct Grounds<'a> {
 
 /// The verdict, but for the expected errors of the model.
 pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
-    // Suspected rows do not count.
-    let Figures { accuracy, robustness, .. } = grounds.figures;
     let (run, reach_m) = (&grounds.fit.run, grounds.fit.reach_m());
-    let (set, name) = match &accuracy.held_out {
-        Some(set) => (robustness.held_out_rest.as_ref().unwrap_or(set), "held-out"),
-        None => (robustness.training_rest.as_ref().unwrap_or(&accuracy.training), "fitted"),
-    };
-    let [before, after] = [&set.registered, &set.calibrated].map(|model| model.judging(set.count));
-    let (registered, calibrated, unit) = (before.rms, after.rms, after.unit.symbol());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
-    let no_better = (moves_joints && is_no_better(&after, &before) && !is_better_left_out(grounds)).then(|| {
-        format!(
-            "on {name} rows the calibrated screws are no better than the nominal ones ({calibrated:.3} {unit} against {registered:.3} {unit})"
-        )
-    });
+    let judging = Judging::of(grounds.fit, grounds.figures);
+    let [no_better, unclear] = if moves_joints { judging.no_better() } else { [None, None] };
+    let Judging { place, errors: [before, after], .. } = judging;
     let too_large = is_too_large(&after, reach_m).then(|| {
+        let JudgingError { what, rms, unit } = &after;
         format!(
-            "the {} of the calibrated model on {name} rows is {calibrated:.1} {unit} (RMS), more than 1 % of the robot's reach",
-            after.what
+            "the {what} of the calibrated model {place} is {rms:.1} {} (RMS), more than 1 % of the robot's reach",
+            unit.symbol()
         )
     });
     Judged {
@@ -233,28 +223,13 @@ pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
         nominal: before,
         calibrated: after,
         no_better,
+        unclear,
         too_large,
         drifted: drifted(grounds),
         everywhere: against_use_everywhere(grounds),
         weakly: grounds.figures.identifiability.weakly(),
         reach_m,
     }
-}
-
-/// Whether too few configurations were held out to tell, and cross-validation of the fitted ones predicts them better than the nominal screws
-/// explain them.
-fn is_better_left_out(grounds: &Grounds<'_>) -> bool {
-    let Run { data, held_out_rows, .. } = &grounds.fit.run;
-    let held_out = data.configurations(held_out_rows).len();
-    let Figures { accuracy, trust, .. } = grounds.figures;
-    let left_out = trust.cross_validation.as_ref().map(|it| it.random.rms);
-    let registered = &accuracy.training.registered;
-    (1..FEW).contains(&held_out)
-        && left_out.and_then(|it| it.leading()).is_some_and(|(quantity, rms)| {
-            registered
-                .get(quantity)
-                .is_some_and(|before| quantity.unit().shown(rms) < (1.0 - WORTH) * before.rms)
-        })
 }
 
 fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
@@ -359,7 +334,7 @@ fn against_use_everywhere(grounds: &Grounds<'_>) -> Vec<String> {
     }
     if let Some((found, worst)) = trust.cross_validation.as_ref().and_then(|it| Some((it, it.worst()?)))
         && let Some((quantity, rms)) = worst.rms.leading()
-        && let Some(of_random) = found.random.rms.get(quantity)
+        && let Some(of_random) = found.inside.get(quantity).or(found.random.rms.get(quantity))
         && rms > BLOCKS * of_random
     {
         let unit = quantity.unit();

@@ -57,7 +57,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     let usual = geometry();
     let (tolerance, same) =
         if seed.is_multiple_of(2) { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };
-    let options = CalibrationOptions { frame, held_out: 0.0, diagnose: false, tolerance, ..usual };
+    let options = CalibrationOptions { frame, held_out: Some(0.0), diagnose: false, tolerance, ..usual };
     let fit =
         |robot: &Robot| mean_square(&calibrate(robot, &made.data, &options).unwrap(), &made.data, robot);
     let optimum = fit(&elbow());

@@ -269,7 +269,7 @@ fn a_thousand_targets_are_looked_through() {
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].kind, DiagnosisKind::JointSign);
     let (session, data) = of_targets(1000, -1.0);
-    let options = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..Default::default() };
     let error = calibrate(&session.robot, &data, &options).unwrap_err();
     assert_eq!(
         error.to_string(),

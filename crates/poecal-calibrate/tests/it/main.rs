@@ -5,6 +5,7 @@
 mod basin;
 mod events;
 mod fast_path;
+mod few_rows;
 mod forensics;
 mod gauge;
 mod identifiability;

@@ -87,7 +87,7 @@ fn papers_elbow_is_calibrated_in_fewer_iterations_than_in_the_paper() {
         let made = simulated_elbow(kind, fitted + 50);
         let options = CalibrationOptions {
             frame: DeviceFrameKnowledge::Base,
-            held_out: 50.0 / (fitted + 50) as f64,
+            held_out: Some(50.0 / (fitted + 50) as f64),
             // The paper believes nothing of the drawing.
             tolerance: None,
             ..Default::default()
@@ -116,7 +116,8 @@ fn exact_points_of_the_elbow_take_few_iterations_whatever_its_errors() {
         let mut actual = simulation.perturbed(&nominal, &mut generator);
         actual.home.translation.z += TOOL_ERROR_M;
         let made = simulation.measure(&nominal, actual, Kind::POINT, &mut generator).unwrap();
-        let options = CalibrationOptions { frame: DeviceFrameKnowledge::Base, held_out: 0.0, ..geometry() };
+        let options =
+            CalibrationOptions { frame: DeviceFrameKnowledge::Base, held_out: Some(0.0), ..geometry() };
         let result = calibrate(&made.nominal, &made.data, &options).unwrap();
         let off_m = result.accuracy.training.calibrated.position_mm().max * 1e-3;
         let solver = &result.solver;

@@ -194,8 +194,8 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
     let is_stated = seed.is_multiple_of(2);
     let usual = CalibrationOptions { diagnose: true, move_tip: true, ..geometry() };
     let options = match below(&mut generator, 4) {
-        0 => CalibrationOptions { held_out: 0.0, ..usual },
-        1 => CalibrationOptions { held_out: 0.5, ..usual },
+        0 => CalibrationOptions { held_out: Some(0.0), ..usual },
+        1 => CalibrationOptions { held_out: Some(0.5), ..usual },
         2 => CalibrationOptions { robust: Robust::Off, ..usual },
         _ => usual,
     };

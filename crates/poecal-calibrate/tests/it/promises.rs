@@ -41,7 +41,7 @@ fn stated() -> CalibrationOptions {
 }
 
 fn everything() -> CalibrationOptions {
-    CalibrationOptions { held_out: 0.0, ..geometry() }
+    CalibrationOptions { held_out: Some(0.0), ..geometry() }
 }
 
 /// Errors of predictions of the true place with their 95 % bounds, metres; `real` makes the joint values of readings.

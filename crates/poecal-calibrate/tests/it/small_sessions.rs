@@ -22,7 +22,7 @@ fn stiff_wrist() -> Robot {
 }
 
 fn all_fitted() -> CalibrationOptions {
-    CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() }
+    CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() }
 }
 
 /// Root mean square error of the delivered and of the located nominal model in configurations of the same kind, metres.

@@ -45,7 +45,7 @@ fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> (Simulation, S
 }
 
 fn fit(robot: &Robot, data: &Dataset) -> Calibration {
-    calibrate(robot, data, &CalibrationOptions { held_out: 0.0, ..Default::default() }).unwrap()
+    calibrate(robot, data, &CalibrationOptions { held_out: Some(0.0), ..Default::default() }).unwrap()
 }
 
 /// Root mean square distance from the truth in configurations that no fit saw, metres, in the first place's frame.
@@ -172,7 +172,7 @@ fn places_that_cannot_be_found_are_refused() {
     );
     let mut few = data.clone();
     few.observations.iter_mut().skip(32).for_each(|observation| observation.station = 0);
-    let all = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    let all = CalibrationOptions { held_out: Some(0.0), ..Default::default() };
     assert_eq!(
         refusal(&robot, &few, &all),
         "found 2 measurements of instrument `tracker 1` to find its frame from, expected at least 3: measure more from there, hold \

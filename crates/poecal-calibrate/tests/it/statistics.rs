@@ -111,7 +111,7 @@ fn run(kind: Kind, seed: u64) -> (Squares, Squares) {
         ..Simulation::default()
     };
     let made = simulation.run(&elbow(), kind).unwrap();
-    let options = CalibrationOptions { held_out: 0.0, tolerance: None, ..Default::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), tolerance: None, ..Default::default() };
     let result = calibrate(&made.nominal, &made.data, &options).unwrap();
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xabcd);
     let readings: Vec<f64> =

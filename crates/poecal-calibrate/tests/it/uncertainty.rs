@@ -40,7 +40,7 @@ fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
     let simulated = Simulation::default();
     // Nothing unmodelled: the noise is stated, and nothing is believed of the drawing.
     let options = CalibrationOptions {
-        held_out: 0.0,
+        held_out: Some(0.0),
         tolerance: None,
         sigma: Noise::new(simulated.noise_position_m, simulated.noise_rotation_rad).map(Some),
         ..geometry()
@@ -155,7 +155,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
             let point = poecal_model::measurement::Measurement::point(position);
             data.push(made.data.readings(row), None, point).unwrap();
         }
-        let options = CalibrationOptions { held_out: 0.0, ..geometry() };
+        let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
         let found = calibrate(&robot, &data, &options).unwrap();
         let uncertainty = found.trust.uncertainty.unwrap();
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x7a12);
@@ -220,7 +220,7 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
             data.push(&readings, None, point).unwrap();
         }
     }
-    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
     let found = calibrate(&robot, &data, &options).unwrap();
     let bootstrap = found.trust.bootstrap.unwrap();
     let ratio = bootstrap.sigma_m / bootstrap.formal_sigma_m;

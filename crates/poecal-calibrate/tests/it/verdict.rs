@@ -156,7 +156,7 @@ fn stragglers_do_not_count_as_coverage() {
         data.push(made.data.readings(row), None, Measurement::of_pose(&pose)).unwrap();
     }
     made.data = data;
-    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let coverage = &found.trust.coverage[1];
     println!("{} rows, {coverage:?}", made.data.len());
@@ -236,7 +236,7 @@ fn registered_positions_are_the_best_there_are() {
             points.push(made.data.readings(row), None, seen).unwrap();
         }
         let rms = |data: &Dataset| {
-            let options = CalibrationOptions { held_out: 0.0, ..geometry() };
+            let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
             calibrate(&made.nominal, data, &options).unwrap().accuracy.training.registered.position_mm().rms
         };
         let (poses, best) = (rms(&made.data), rms(&points));

@@ -193,7 +193,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
         corrections: arguments.corrections,
         harmonics: arguments.harmonics,
         gravity: arguments.gravity,
-        held_out: arguments.held_out.unwrap_or(usual.held_out),
+        held_out: arguments.held_out,
         seed: arguments.seed.unwrap_or(usual.seed),
         robust: arguments.robust,
         move_tip: arguments.move_tip,

@@ -1,5 +1,6 @@
 //! Every command end to end, on simulated measurements.
 
+use poecal_calibrate::AcceptedModel;
 use poecal_import as measurements;
 use poecal_import::ReadOptions;
 use poecal_model::simulate::{Kind, Simulation};
@@ -107,6 +108,22 @@ fn what_is_held_out_can_be_said() {
     let json: serde_json::Value = serde_json::from_str(&folder.read("all/calibration.json")).unwrap();
     assert_eq!(json["accuracy"]["held_out"], serde_json::Value::Null);
     assert_eq!(json["accuracy"]["training"]["count"], 60);
+
+    folder.done("simulate robot.urdf --count 20 --out few");
+    let of_few = "calibrate few/nominal.urdf few/measurements.csv --force --out few/out";
+    let said = "all 20 configurations were fitted, since fewer than 12 would judge (--held-out 0.3 holds them out); cross-validation ";
+    let out = folder.done(of_few);
+    let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(said), "{out}");
+    let file = calibration(&folder, "few/out");
+    let left_out = file.cross_validation.as_ref().unwrap().random.rms.lead();
+    let accuracy = &file.accuracy;
+    assert_eq!((accuracy.few_configurations, accuracy.held_out.is_none()), (Some(20), true));
+    // Other checks compare with the error of rows that were left out.
+    assert_eq!(file.own_rms(AcceptedModel::Calibrated), left_out);
+    assert!(left_out > accuracy.training.calibrated.position_mm().rms);
+    folder.done(&format!("{of_few} --held-out 0.3"));
+    assert_eq!(calibration(&folder, "few/out").accuracy.held_out.unwrap().count, 6);
 
     let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
     assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows, at most "), "{out}");

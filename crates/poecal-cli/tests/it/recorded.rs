@@ -63,7 +63,7 @@ fn own(rows: &[Row], is_posed: bool) -> String {
 
 /// What a calibration found of held-out rows, mm.
 pub(crate) fn held_out(folder: &Folder, files: &str) -> (f64, String) {
-    let run = folder.run(&format!("calibrate {MODEL} {files} --out out --force"));
+    let run = folder.run(&format!("calibrate {MODEL} {files} --held-out 0.3 --out out --force"));
     assert!(run.code <= 1, "{files}: {}", run.err);
     let found: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
     let rms = &found["accuracy"]["held_out"]["calibrated"]["position_mm"]["rms"];

@@ -100,7 +100,7 @@ fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
     if pictures.is_empty() || !view.rows.iter().all(is_picture) {
         return None;
     }
-    let CommonError { shift_m, turn_rad, about } = pictures.common;
+    let CommonError { shift_m, turn_rad, about, .. } = pictures.common;
     // Where it turns about the other of camera and board, what the row is of is carried along: two thirds of the square in each direction.
     let is_other = |picture: &&Picture| (about == Centre::Camera) != picture.of_camera;
     let arms = pictures.all.iter().filter(is_other);

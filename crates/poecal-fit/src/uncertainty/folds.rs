@@ -9,6 +9,7 @@ use rand_core::SeedableRng;
 use super::clusters::clusters;
 use super::view::View;
 use super::{TOGETHER, covariance, factor, motions};
+use crate::analysis::ranges;
 use crate::problem::{Layout, Problem};
 use crate::state::{Estimate, Linkage, RowError, sample_rows};
 use poecal_model::measurement::{ByQuantity, Measured};
@@ -28,6 +29,10 @@ const MOST_GROUPS: usize = 30;
 const LEAST_ROWS: usize = 4;
 /// Fewest rows of each station outside a block.
 const FEWEST_OF_STATION: usize = 6;
+
+/// Share of the range of the other rows by which a value beyond it counts as outside, and the least such way, radians or metres.
+const BEYOND: f64 = 0.1;
+const JITTER: f64 = 1e-3;
 
 /// Step over which errors change as to first order, metres.
 const SMALL_M: f64 = 1e-4;
@@ -53,11 +58,26 @@ pub struct LeftOut {
     pub growth: f64,
 }
 
+/// Rows of random folds with a joint beyond the range of the rows by which they were predicted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutsideRange {
+    /// Number of rows.
+    pub rows: usize,
+    /// Root mean square error of each measured quantity, metres or radians.
+    pub rms: Measured<f64>,
+}
+
 /// Cross-validation of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossValidation {
     /// Random folds, left out in turn; one entry for all of them.
     pub random: LeftOut,
+    /// The rows of random folds, in order, with their errors.
+    pub errors: Vec<(u32, RowError)>,
+    /// Those of them outside the range of the others; `None` if there are none.
+    pub outside: Option<OutsideRange>,
+    /// Root mean square error of each measured quantity in those that are not.
+    pub inside: Measured<f64>,
     /// Blocks, left out in turn: the ends of each joint's range, files, groups of equal `id`.
     pub blocked: Vec<LeftOut>,
     /// Share of the fitted rows in the subsample of the cross-validation.
@@ -82,16 +102,44 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     }
     let downdated = Downdated::new(view, &sample)?;
     let mut random = ErrorSums::default();
+    let (mut inside, mut outside) = (ErrorSums::default(), ErrorSums::default());
+    let mut errors: Vec<(u32, RowError)> = Vec::with_capacity(sample.len());
     for fold in random_folds(view, &sample, FOLDS, seed) {
-        random.add(&downdated.errors_without(&fold.rows)?);
+        let (sums, each) = downdated.errors_without(&fold.rows)?;
+        random.add(&sums);
+        let is_outside = outside_of_others(view, &sample, &fold.rows);
+        for ((&row, error), is_outside) in fold.rows.iter().zip(each).zip(is_outside) {
+            if is_outside {
+                outside.add_row(&error)
+            } else {
+                inside.add_row(&error)
+            }
+            errors.push((row, error));
+        }
     }
+    errors.sort_unstable_by_key(|(row, _)| *row);
     let name = format!("random, {FOLDS} folds");
     let blocked = blocks(view, &sample)
         .into_iter()
-        .filter_map(|fold| Some(downdated.errors_without(&fold.rows)?.result(fold.name)))
+        .filter_map(|fold| Some(downdated.errors_without(&fold.rows)?.0.result(fold.name)))
         .collect();
     let sampled = sample.len() as f64 / view.rows.len() as f64;
-    Some(CrossValidation { random: random.result(name), blocked, sampled })
+    let outside = (outside.rows > 0).then(|| OutsideRange { rows: outside.rows, rms: outside.rms() });
+    let inside = inside.rms();
+    Some(CrossValidation { random: random.result(name), errors, outside, inside, blocked, sampled })
+}
+
+/// Whether each row of a fold has a joint beyond the range of the other rows.
+fn outside_of_others(view: &View<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool> {
+    let others: Vec<u32> = sample.iter().copied().filter(|row| !fold.contains(row)).collect();
+    let ranges = ranges(&view.session, &others);
+    let is_outside = |row: &u32| {
+        view.values(*row).iter().zip(&ranges).any(|(value, (least, most))| {
+            let beyond = (BEYOND * (most - least)).max(JITTER);
+            *value < least - beyond || *value > most + beyond
+        })
+    };
+    fold.iter().map(is_outside).collect()
 }
 
 /// Parts of a subsample of the rows, of at most so many, that are left out in turn: the ends of every joint's range, each file and each
@@ -191,14 +239,28 @@ impl ErrorSums {
         self.expected += other.expected;
     }
 
+    /// Adds the error of a row.
+    fn add_row(&mut self, error: &RowError) {
+        self.rows += 1;
+        for (quantity, (squares, count)) in self.parts.values_mut() {
+            *squares += error.square(quantity);
+            *count += usize::from(!error.part(quantity).is_empty());
+        }
+        self.lengths += error.square_m2();
+    }
+
+    fn rms(&self) -> Measured<f64> {
+        Measured::of(|quantity| {
+            let (squares, count) = self.parts[quantity];
+            (count > 0).then(|| (squares / count as f64).sqrt())
+        })
+    }
+
     fn result(self, name: String) -> LeftOut {
         LeftOut {
             name,
             rows: self.rows,
-            rms: Measured::of(|quantity| {
-                let (squares, count) = self.parts[quantity];
-                (count > 0).then(|| (squares / count as f64).sqrt())
-            }),
+            rms: self.rms(),
             growth: (self.lengths - self.before) / self.expected.max(f64::MIN_POSITIVE),
         }
     }
@@ -239,7 +301,7 @@ impl<'a> Downdated<'a> {
 
     /// Errors of some rows by the fit of the others: at the optimum of all rows, `N - N_b` and `-g_b` are information and gradient
     /// without the block b (theory.md §9 (42)).
-    fn errors_without(&self, rows: &[u32]) -> Option<ErrorSums> {
+    fn errors_without(&self, rows: &[u32]) -> Option<(ErrorSums, Vec<RowError>)> {
         let problem = self.view.problem(rows.to_vec());
         let part = problem.normal(&self.estimate);
         let rest: Vec<f64> = self.gram.iter().zip(&part.gram).map(|(all, part)| all - part).collect();
@@ -252,16 +314,10 @@ impl<'a> Downdated<'a> {
         let covariance = covariance(&factor, self.variance)?;
         let both = DMatrix::from_iterator(n, n, covariance.iter().zip(&self.covariance).map(|(a, b)| a + b));
         let expected = self.position_variance(problem.layout(), rows, &both);
-        let mut sums = ErrorSums { rows: rows.len(), expected, ..ErrorSums::default() };
-        for error in without {
-            for (quantity, (squares, count)) in sums.parts.values_mut() {
-                *squares += error.square(quantity);
-                *count += usize::from(!error.part(quantity).is_empty());
-            }
-            sums.lengths += error.square_m2();
-        }
+        let mut sums = ErrorSums { expected, ..ErrorSums::default() };
+        without.iter().for_each(|error| sums.add_row(error));
         sums.before = before.iter().map(RowError::square_m2).sum();
-        Some(sums)
+        Some((sums, without))
     }
 
     /// Sum over rows of `tr P_p`, the variance of the predicted place in square metres (theory.md §9 (43)).

@@ -97,7 +97,7 @@ fn what_corners_share_is_eliminated() {
         let packed = Packed::of(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, true);
         let start = start(&made);
-        let common = CommonError { shift_m: 1e-3, turn_rad: 2e-3, about };
+        let common = CommonError { shift_m: 1e-3, turn_rad: 2e-3, about, corners: 1.0 };
         let numbers = DVector::zeros(8);
         let lens = [PictureUnknown::Lens(0)];
         let of = |common| bundle(session, &start, &lens, common).normal(&start, &numbers);

@@ -152,7 +152,7 @@ fn actual(robot: &Robot, seed: u64) -> Robot {
 }
 
 fn fitted(robot: &Robot, data: &Dataset) -> Calibration {
-    let options = CalibrationOptions { held_out: 0.0, ..geometry() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..geometry() };
     calibrate(robot, data, &options).unwrap()
 }
 
@@ -343,7 +343,7 @@ fn what_the_data_tell_is_not_touched() {
                 };
                 let made = simulation.run(&robot, kind).unwrap();
                 [Some(Tolerance::default()), None].map(|tolerance| {
-                    let options = CalibrationOptions { held_out: 0.0, tolerance, ..geometry() };
+                    let options = CalibrationOptions { held_out: Some(0.0), tolerance, ..geometry() };
                     let found = calibrate(&robot, &made.data, &options).unwrap();
                     missed(&robot, &made.actual, &found.models.calibrated, seed).powi(2)
                 })
@@ -423,7 +423,7 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
         for (open, far) in far.iter_mut().enumerate() {
             let free = if open == 1 { vec!["targets".to_owned()] } else { Vec::new() };
             let blocks = BlockChoice { free, fix: Vec::new() };
-            let options = CalibrationOptions { blocks, held_out: 0.0, ..geometry() };
+            let options = CalibrationOptions { blocks, held_out: Some(0.0), ..geometry() };
             let found = calibrate(&robot, &data, &options).unwrap();
             let registered = found.models.registered.base_from_target[0].translation - robot.home.translation;
             far[0] = far[0].max(registered.norm());

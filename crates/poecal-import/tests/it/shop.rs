@@ -163,7 +163,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
             let mut made = noisy.run(&elbow(), kind).unwrap();
             let options = CalibrationOptions {
                 robust: Robust::Off,
-                held_out: 0.0,
+                held_out: Some(0.0),
                 // Without a length noise would have it shrink.
                 tolerance: kind.is_touched().then(Tolerance::default),
                 sigma: sigma.map(Some),

@@ -93,7 +93,7 @@ fn formulations_part_with_noise() {
     let made = session(&elbow(), Kind::POINT, noise, false);
     let fit = |formulation, method| {
         let mut options = options(&made, formulation);
-        options.held_out = 0.0;
+        options.held_out = Some(0.0);
         // A belief is held by none of the formulations for comparison.
         options.tolerance = None;
         options.formulation = formulated(formulation, Residual::Tool, method);
@@ -141,7 +141,7 @@ fn spatial_residual_costs_accuracy() {
                 frame: DeviceFrameKnowledge::Base,
                 formulation: with(residual),
                 sigma: noise.map(Some),
-                held_out: 0.0,
+                held_out: Some(0.0),
                 move_tip: true,
                 ..CalibrationOptions::default()
             };

@@ -737,6 +737,9 @@ class Accuracy:
     @property
     def held_out(self) -> SetAccuracy | None:
         """On the rows that were not; None if none was held out."""
+    @property
+    def few_configurations(self) -> int | None:
+        """Number of configurations where all were fitted because too few would have been held out; None otherwise."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
@@ -1857,7 +1860,8 @@ def calibrate(
         Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
         as in the model, and the point is the target "measured".
     held_out
-        Share of the configurations held out, where nothing else says which rows are (default 0.3); 0 fits every row.
+        Share of the configurations held out, where nothing else says which rows are (default 0.3, or 0 where that were fewer than 12
+        configurations, without pictures and `accept`); 0 fits every row.
     seed
         Seed of that choice (default 1).
     robust

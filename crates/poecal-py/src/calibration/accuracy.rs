@@ -151,6 +151,9 @@ pub(crate) struct Accuracy {
     /// On the rows that were not; None if none was held out.
     #[pyo3(get)]
     held_out: Option<SetAccuracy>,
+    /// Number of configurations where all were fitted because too few would have been held out; None otherwise.
+    #[pyo3(get)]
+    few_configurations: Option<usize>,
     /// The model that is delivered.
     delivered: AcceptedModel,
 }
@@ -177,7 +180,8 @@ impl Accuracy {
 impl Accuracy {
     pub(crate) fn new(found: calibration::Accuracy, delivered: AcceptedModel) -> Self {
         let held_out = found.held_out.map(Into::into);
-        Accuracy { training: found.training.into(), held_out, delivered }
+        let few_configurations = found.few_configurations;
+        Accuracy { training: found.training.into(), held_out, few_configurations, delivered }
     }
 }
 

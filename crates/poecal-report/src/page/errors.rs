@@ -7,7 +7,7 @@ use super::html::{HtmlTable, capital, count, facts, figure, figure_or, path, plo
 use super::lead::{kinds_words, sign, spaced};
 use super::{corners, figures};
 use crate::found::found_words;
-use crate::summary::{ModelRow, cross_validated, delivered, has_terms, leading};
+use crate::summary::{ModelRow, cross_validated, delivered, has_terms, leading, none_held_out};
 use crate::table::{STATISTICS, further_words, models};
 use poecal_calibrate::{Improvements, ModelAccuracy, NoiseSource, SetAccuracy};
 use poecal_model::measurement::{Device, Quantity};
@@ -57,6 +57,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                         "judge."
                     }
                 }
+                @if file.accuracy.few_configurations.is_some() { p.note { (capital(&none_held_out(file))) "." } }
                 @if let (None, Some(found)) = (held_out, cross_validated(file)) {
                     p.note { "Cross-validation: " (figure(found.rms, found.key)) " " (sign(found.quantity.unit())) " (RMS) on rows that were not fitted." }
                 }

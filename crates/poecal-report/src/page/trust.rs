@@ -120,6 +120,9 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
         table.cells(cells);
     };
     add(&found.random, "cross_validation.random");
+    if let Some(outside) = &found.outside {
+        add(outside, "cross_validation.outside");
+    }
     for (k, entry) in found.blocked.iter().enumerate() {
         add(entry, &format!("cross_validation.blocked.{k}"));
     }

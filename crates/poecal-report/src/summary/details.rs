@@ -62,13 +62,21 @@ fn rows_words(file: &CalibrationFile) -> String {
 
 /// What is known of the noise of pictures.
 fn pictures_words(pictures: &PicturesEntry) -> String {
-    let CommonEntry { shift_mm, turn_deg, about } = pictures.common;
+    let CommonEntry { shift_mm, turn_deg, about, corners } = pictures.common;
     let about = match about {
         Centre::Board => "the board",
         Centre::Camera => "the camera",
     };
+    let shape = if corners > 1.0 {
+        format!(
+            ", which move the board by {} times more than that, as a lens or board of another shape does",
+            number(corners)
+        )
+    } else {
+        String::new()
+    };
     format!(
-        "{} with {} corners to {} px; in each, all are off together by {} mm and {} deg about {about} (standard deviations of a component)",
+        "{} with {} corners to {} px{shape}; in each, all are off together by {} mm and {} deg about {about} (standard deviations of a component)",
         pictures.count,
         pictures.corners,
         number(pictures.sigma_px),
@@ -184,7 +192,11 @@ fn trust(out: &mut String, file: &CalibrationFile) {
         let worst = worst.map_or_else(String::new, |worst| {
             format!("; worst block: {}, {}", worst.left_out, leading_words(&worst.rms))
         });
-        let words = format!("{} (RMS) on random rows{worst}", leading_words(&found.random.rms));
+        let outside = found.outside.as_ref().map_or_else(String::new, |it| {
+            let (rows, all) = (it.rows, found.random.rows);
+            format!(" ({rows} of {all} beyond the range of the others: {})", leading_words(&it.rms))
+        });
+        let words = format!("{} (RMS) on random rows{outside}{worst}", leading_words(&found.random.rms));
         line(out, "predicted", &format!("in cross-validation by calibrated models {words}"));
     }
     let mut joints: Vec<_> = file.corrections.iter().collect();

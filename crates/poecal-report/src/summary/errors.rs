@@ -7,7 +7,8 @@ use super::super::table::{
 use super::look::reasons;
 use super::{Expectation, expected};
 use poecal_calibrate::{
-    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, Level, ModelAccuracy, SetAccuracy,
+    AcceptedLimit, AcceptedStatistic, DeviceFrameKnowledge, FEWEST_HELD_OUT, Level, ModelAccuracy,
+    SetAccuracy,
 };
 use poecal_model::measurement::Quantity;
 use poecal_results::calibration_file::CalibrationFile;
@@ -148,8 +149,18 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
         let validated = cross_validated(file).map_or_else(String::new, |it| {
             format!("; cross-validation {} {} (RMS)", number(it.rms), it.quantity.unit().symbol())
         });
-        line(out, "", &format!("no row was held out{validated}"));
+        line(out, "", &format!("{}{validated}", none_held_out(file)));
     }
+}
+
+/// That no row was held out; of few configurations why.
+pub(crate) fn none_held_out(file: &CalibrationFile) -> String {
+    file.accuracy.few_configurations.map_or_else(
+        || "no row was held out".to_owned(),
+        |count| {
+            format!("all {count} configurations were fitted, since fewer than {FEWEST_HELD_OUT} would judge (--held-out 0.3 holds them out)")
+        },
+    )
 }
 
 /// The error to expect, and where that is valid.

@@ -20,13 +20,17 @@ impl CalibrationFile {
         Ok(hashes::sha256_of(&self.to_text()?))
     }
 
-    /// The position errors that the calibration left, of rows that were held out, else of those fitted.
+    /// The position errors that the calibration left, of rows that were held out, else in cross-validation, else of those fitted.
     #[must_use]
     pub fn left_error(&self) -> Option<RobotError> {
         let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
-        let position_m = |errors: &ModelAccuracy| errors.get(Quantity::Position).map(|it| 1e-3 * it.rms);
-        let calibrated_m = position_m(&set.calibrated)?;
-        let corrected_m = set.corrected.as_ref().and_then(position_m).map(|it| it.min(calibrated_m));
+        let position_m = |errors: &ModelAccuracy, model| {
+            let own = errors.get(Quantity::Position)?.rms;
+            Some(1e-3 * self.left_out(model, Quantity::Position).map_or(own, |it| it.max(own)))
+        };
+        let calibrated_m = position_m(&set.calibrated, AcceptedModel::Calibrated)?;
+        let corrected = set.corrected.as_ref().and_then(|it| position_m(it, AcceptedModel::Corrected));
+        let corrected_m = corrected.map(|it| it.min(calibrated_m));
         Some(RobotError { calibrated_m, corrected_m })
     }
 
@@ -54,14 +58,36 @@ impl CalibrationFile {
         Ok(ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity).unwrap_or(UNSEEN))))
     }
 
-    /// Root mean square error of a model's leading quantity, of poses and points the position, on held-out rows, otherwise on training rows;
-    /// millimetres or degrees.
+    /// Root mean square error of a model's leading quantity, of poses and points the position, on held-out rows, otherwise in cross-validation,
+    /// otherwise on training rows; millimetres or degrees.
     #[must_use]
     pub fn own_rms(&self, model: AcceptedModel) -> f64 {
-        let accuracy = &self.accuracy;
-        let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
+        self.own_error(model).0
+    }
+
+    /// The same with which rows these are, in the words of files.
+    #[must_use]
+    pub fn own_error(&self, model: AcceptedModel) -> (f64, &'static str) {
+        let (set, rows) = match &self.accuracy.held_out {
+            Some(set) => (set, "held_out"),
+            None => (&self.accuracy.training, "training"),
+        };
         let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
-        corrected.unwrap_or(&set.calibrated).lead().rms
+        let errors = corrected.unwrap_or(&set.calibrated);
+        let rms = errors.lead().rms;
+        let left_out = errors.leading().and_then(|(quantity, _)| self.left_out(model, quantity));
+        left_out.map_or((rms, rows), |it| (it.max(rms), "cross_validation"))
+    }
+
+    /// Root mean square error of a model in cross-validation, where no row was held out; millimetres or degrees.
+    fn left_out(&self, model: AcceptedModel, quantity: Quantity) -> Option<f64> {
+        let found = self.cross_validation.as_ref().filter(|_| self.accuracy.held_out.is_none())?;
+        let corrected =
+            self.corrected.as_ref().filter(|it| model == AcceptedModel::Corrected && it.has_terms());
+        match corrected {
+            Some(corrected) => corrected.left_out_position_mm.filter(|_| quantity == Quantity::Position),
+            None => found.random.rms.get(quantity),
+        }
     }
 
     /// `base_from_device` of each station of some measurements, by the names of the instruments.

@@ -28,6 +28,10 @@ pub struct LeftOutEntry {
 pub struct CrossValidationEntry {
     /// Random folds, all together.
     pub random: LeftOutEntry,
+    /// Those of their rows with a joint beyond the range of the rows by which they were predicted, by more than a tenth of it. Absent if there
+    /// are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<LeftOutEntry>,
     /// The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it.
     pub blocked: Vec<LeftOutEntry>,
 }
@@ -200,6 +204,11 @@ impl CrossValidationEntry {
         let found = trust.cross_validation.as_ref()?;
         Some(CrossValidationEntry {
             random: LeftOutEntry::of(&found.random),
+            outside: found.outside.as_ref().map(|it| LeftOutEntry {
+                left_out: "beyond the range of the others".to_owned(),
+                rows: it.rows,
+                rms: shown(|quantity| it.rms.get(quantity)),
+            }),
             blocked: found.blocked.iter().map(LeftOutEntry::of).collect(),
         })
     }

@@ -105,7 +105,7 @@ pub struct LedgerRow {
     pub rows: Option<u64>,
     /// Error of the delivered model on the rows that judge it (RMS), millimetres or degrees.
     pub error_rms: Option<f64>,
-    /// Which rows these are: held_out, or training.
+    /// Which rows these are: held_out, cross_validation, or training.
     pub error_of: Option<String>,
     /// Noise of the measurements, millimetres or degrees a component.
     pub noise: Option<f64>,
@@ -154,6 +154,7 @@ impl LedgerRow {
         let set = held.unwrap_or(&file.accuracy.training);
         let is_corrected = set.corrected.is_some();
         let model = if is_corrected { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
+        let (error_rms, error_of) = file.own_error(model);
         let length = |it: &[f64; 3]| it.iter().map(|part| part * part).sum::<f64>().sqrt();
         let correction = |entry: &crate::calibration_file::CorrectionEntry| {
             let change = entry.change.as_ref()?;
@@ -196,8 +197,8 @@ impl LedgerRow {
             reason: limits.or(reason),
             accepted: file.acceptance.as_ref().and_then(|it| word(it.decision)),
             rows: Some(file.accuracy.training.count as u64 + held.map_or(0, |it| it.count as u64)),
-            error_rms: Some(shown(file.own_rms(model))),
-            error_of: Some(if held.is_some() { "held_out" } else { "training" }.to_owned()),
+            error_rms: Some(shown(error_rms)),
+            error_of: Some(error_of.to_owned()),
             noise: sigma.map(shown),
             corrections: file.corrections.iter().filter_map(correction).collect(),
             terms,

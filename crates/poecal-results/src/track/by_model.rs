@@ -154,12 +154,10 @@ pub(crate) fn level(
 /// How much larger squares of errors are of rows that the calibration has not seen, over those of its own rows.
 fn shrunk(model: &Model, visit: &Visit) -> f64 {
     let accuracy = &model.file.accuracy;
-    let Some(held) = accuracy.held_out.as_ref() else { return 1.0 };
-    let lead = |set: &poecal_calibrate::SetAccuracy| {
-        let corrected = set.corrected.as_ref().filter(|_| model.is_corrected);
-        corrected.unwrap_or(&set.calibrated).leading().map(|(quantity, it)| (quantity, it.rms))
-    };
-    let Some((quantity, rms)) = lead(held) else { return 1.0 };
+    let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);
+    let corrected = set.corrected.as_ref().filter(|_| model.is_corrected);
+    let Some((quantity, _)) = corrected.unwrap_or(&set.calibrated).leading() else { return 1.0 };
+    let rms = model.own_rms();
     let own = visit.residual.iter().zip(&visit.quantities).filter(|(_, it)| **it == quantity);
     let (squares, count) =
         own.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value * value, count + 1.0));

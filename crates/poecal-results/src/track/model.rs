@@ -41,7 +41,12 @@ impl Model {
 
     /// Error of the calibration itself, metres a coordinate or distance.
     pub(crate) fn own_m(&self) -> f64 {
+        1e-3 * self.own_rms()
+    }
+
+    /// The same in millimetres or degrees.
+    pub(crate) fn own_rms(&self) -> f64 {
         let model = if self.is_corrected { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
-        1e-3 * self.file.own_rms(model)
+        self.file.own_rms(model)
     }
 }

@@ -219,8 +219,12 @@ fn what_is_planted_is_found_and_nothing_else() {
                     Gives::Tilting => Corrections::Auto,
                     Gives::All => Corrections::All,
                 };
-                let options =
-                    CalibrationOptions { held_out: 0.0, diagnose: false, corrections, ..Default::default() };
+                let options = CalibrationOptions {
+                    held_out: Some(0.0),
+                    diagnose: false,
+                    corrections,
+                    ..Default::default()
+                };
                 let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                 let found = calibration.correction.as_ref().unwrap();
                 let missed = |robot: &Robot, estimate: &Estimate| {
@@ -359,7 +363,7 @@ fn noise_of_few_poses_stays() {
     (sizes[TermGroup::Sag], sizes[TermGroup::Tilt]) = (1e-3, 1e-3);
     for count in 11..16 {
         let (robot, data) = measured(count);
-        let options = CalibrationOptions { held_out: 0.0, diagnose: false, ..Default::default() };
+        let options = CalibrationOptions { held_out: Some(0.0), diagnose: false, ..Default::default() };
         let found = with_sizes(&robot, &data, sizes, &options);
         let bounds =
             found.uncertainty.as_ref().map(|it| it.predictions(&Packed::of(&found.model.robot, &data), 0));
@@ -414,7 +418,7 @@ fn a_freed_term_is_fitted_once() {
 #[test]
 fn effects_are_what_predictions_lose_without_them() {
     let (robot, data) = measured(120);
-    let options = CalibrationOptions { held_out: 0.0, move_tip: true, ..Default::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), move_tip: true, ..Default::default() };
     let calibration = calibrate(&robot, &data, &options).unwrap();
     let found = with_sizes(&robot, &data, Sizes::COMMON, &options);
     for effect in &found.effects.each {

@@ -25,7 +25,7 @@ fn judged(robot: &Robot, kind: Kind, seed: u64, refit_tool: bool) -> Judgement {
     let simulation = Simulation { count: 60, seed, ..Simulation::default() };
     let made = simulation.run(robot, kind).unwrap();
     let options = CalibrationOptions {
-        held_out: 0.0,
+        held_out: Some(0.0),
         sigma: Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad).map(Some),
         ..geometry()
     };

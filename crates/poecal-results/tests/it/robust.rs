@@ -46,7 +46,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
     calibrate(
         robot,
         data,
-        &CalibrationOptions { held_out: 0.0, robust, diagnose: false, ..Default::default() },
+        &CalibrationOptions { held_out: Some(0.0), robust, diagnose: false, ..Default::default() },
     )
     .unwrap()
 }
@@ -399,7 +399,7 @@ fn rows_that_alone_tell_something_are_kept() {
                         + random::normal_vector(&mut generator) * 3e-5;
                     data.push(&readings, None, Measurement::point(position)).unwrap();
                 }
-                let options = CalibrationOptions { robust, held_out: 0.0, ..geometry() };
+                let options = CalibrationOptions { robust, held_out: Some(0.0), ..geometry() };
                 let found = calibrate(&robot, &data, &options).unwrap();
                 let squares: f64 = (0..100)
                     .map(|_| {
@@ -466,12 +466,13 @@ fn a_stale_row_that_was_held_out_does_not_decide_the_verdict() {
         ..Simulation::default()
     };
     let made = simulation.run(&elbow(), Kind::POINT).unwrap();
-    let usual = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+    let some = CalibrationOptions { held_out: Some(0.3), ..CalibrationOptions::default() };
+    let usual = calibrate(&made.nominal, &made.data, &some).unwrap();
     assert!(usual.verdict.level > Level::DoNotUse);
     for &row in usual.held_out_rows.iter().filter(|row| **row > 0) {
         let mut data = made.data.clone();
         data.observations[row as usize].measurement = data.observations[row as usize - 1].measurement;
-        let options = CalibrationOptions { repair: Repairs::Off, ..CalibrationOptions::default() };
+        let options = CalibrationOptions { repair: Repairs::Off, ..some.clone() };
         let found = calibrate(&made.nominal, &data, &options).unwrap();
         println!("row {row}: {:?}", found.verdict.reasons);
         assert!(found.robustness.suspects().any(|it| it == row), "row {row}");

@@ -36,7 +36,7 @@ pub(crate) struct Session {
 /// An error of each configuration, of what is on the tip and about it.
 pub(crate) fn common(millis: f64, in_hand: bool) -> CommonError {
     let about = if in_hand { Centre::Camera } else { Centre::Board };
-    CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about }
+    CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about, corners: 1.0 }
 }
 
 /// A usual session of the elbow.
@@ -196,7 +196,7 @@ pub(crate) fn rms(deviations: &[Vector6<f64>]) -> [f64; 2] {
 
 /// Options with all rows fitted.
 pub(crate) fn all_rows() -> CalibrationOptions {
-    CalibrationOptions { held_out: 0.0, ..CalibrationOptions::default() }
+    CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() }
 }
 
 /// A calibration, as the program makes it, with the data as they were fitted.

@@ -113,7 +113,7 @@ fn a_calibration_says_the_same_as_what_was_foreseen() {
     let told: Vec<(&str, Identifiability, Identifiability)> = fitted_cases()
         .map(|case| {
             let (nominal, data) = measured(case, 1.0);
-            let options = CalibrationOptions { held_out: 0.0, ..Default::default() };
+            let options = CalibrationOptions { held_out: Some(0.0), ..Default::default() };
             let found = calibrate(&nominal, &data, &options).unwrap().identifiability;
             (case.name, case.foreseen(), found)
         })
@@ -191,7 +191,7 @@ fn a_target_seen_once_is_named() {
             }
         }
     }
-    let options = CalibrationOptions { held_out: 0.0, ..Default::default() };
+    let options = CalibrationOptions { held_out: Some(0.0), ..Default::default() };
     let found = calibrate(&robot, &data, &options).unwrap().identifiability;
     let told = words(&found);
     println!("{told}");
