@@ -117,6 +117,13 @@ fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<
     Ok(Some(found))
 }
 
+impl Open {
+    /// Whether a key comes next.
+    fn wants_key(&self) -> bool {
+        matches!(self.node.kind, NodeKind::Map(_)) && self.key.is_none()
+    }
+}
+
 /// A list or mapping that has begun.
 struct Open {
     node: Node,
@@ -158,10 +165,7 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
                 }
             },
             Event::MappingStart(..) | Event::SequenceStart(..) => {
-                if matches!(
-                    open.last(),
-                    Some(Open { node: Node { kind: NodeKind::Map(_), .. }, key: None, .. })
-                ) {
+                if open.last().is_some_and(Open::wants_key) {
                     return refuse(&span, "a key that is no text");
                 }
                 if open.len() > DEEPEST {

@@ -93,7 +93,7 @@ pub(crate) struct Form {
 }
 
 /// All forms of texts; the last one is what is left.
-const FORMS: [Form; 11] = [
+const FORMS: &[Form] = &[
     spatial_analyzer::FORM,
     motive::FORM,
     qualisys::FORM,
@@ -228,7 +228,7 @@ impl Opening<'_> {
         }
         // A mapping that names columns reads the text as it is; where it says nothing of joints, lists of them are what they are without it.
         let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
-            None => &FORMS,
+            None => FORMS,
             Some(map) if map.names_joints() => &[headerless::FORM],
             Some(_) => &[programs::FORM, headerless::FORM],
         };
