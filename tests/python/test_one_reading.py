@@ -85,6 +85,34 @@ def test_a_shifted_header_is_refused_however_it_comes(tmp_path):
         assert answer("check", ELBOW, "-", stdin=content) == expected
 
 
+def test_joint_readings_are_predicted_however_they_come(tmp_path):
+    header, *rows = [line.split(",")[:6] for line in (ROOT / "examples/elbow/points.csv").read_text().splitlines() if not line.startswith("#")]
+    table = tmp_path / "joints.csv"
+    table.write_text("# comment\n" + "\n".join(",".join(row) for row in [header, *rows]) + "\n")
+    expected = answer("predict", ELBOW, table, named=[table])
+    assert expected[0] == 0
+    with table.open("rb") as content:
+        assert answer("predict", ELBOW, "-", stdin=content) == expected
+    found = through_pipe(table.read_bytes(), lambda pipe, end: answer("predict", ELBOW, pipe, named=[pipe], pass_fds=[end]))
+    assert found == expected
+
+
+TITLED = [
+    ("a key as title", "Robot: KR16\n", "{}"),
+    ("blanks before each line", "Project: cell 4\n", "  {}"),
+    ("many keys as titles", "".join(f"Key{number}: value\n" for number in range(30)), "{}"),
+]
+
+
+@pytest.mark.parametrize(("title", "row"), [it[1:] for it in TITLED], ids=[it[0] for it in TITLED])
+def test_a_table_below_titles_is_no_yaml(title, row, tmp_path):
+    lines = [line for line in (ROOT / "examples/elbow/points.csv").read_text().splitlines() if not line.startswith("#")]
+    table = tmp_path / "titled.csv"
+    table.write_text(title + "\n".join(row.format(line) for line in lines) + "\n")
+    said = answer("check", ELBOW, table)[1]
+    assert "YAML" not in said, said
+
+
 def test_columns_of_a_maker_have_its_units_in_every_command(tmp_path):
     _, *rows = [line for line in (ROOT / "examples/elbow/points.csv").read_text().splitlines() if not line.startswith("#")]
     joints = ",".join(f"joint{number}[deg]" for number in range(1, 7))

@@ -119,7 +119,7 @@ export interface CalibrateOptions {
   repairLimit?: Value | readonly Value[];
   /**
    * Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row
-   * [default: 0.3]
+   * [default: 0.3; 0 if fewer than 12 would be held out, but for pictures, rows in motion and --accept]
    */
   heldOut?: Value | readonly Value[];
   /** Seed of that choice [default: 1] */

@@ -1,18 +1,25 @@
 //! Inputs that are opened once: what was read of one is kept, for each later question about the same path.
 //!
 //! So a pipe answers like a file, and all answers are of the same bytes while a log grows. Within [`reading`] alone; elsewhere, and for what is
-//! [streamed](super::source::open_streamed), nothing is kept.
+//! [streamed](super::source::open_streamed), nothing is kept. Of a file, whose beginning is all that most questions are about, no more is kept than
+//! [`MOST_KEPT`], and of many files few stay open: those are opened again.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::{self, Cursor, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::disk;
+use super::source::unreadable;
 use poecal_numerics::error::Result;
 
 /// Bytes that are read of an input at a time.
 const BLOCK: usize = 1 << 16;
+/// Most bytes of a file that are kept.
+const MOST_KEPT: usize = 64 << 20;
+/// Most files that stay open.
+const MOST_OPEN: usize = 64;
 
 thread_local! {
     /// The inputs of this thread that were opened, within [`reading`].
@@ -32,7 +39,7 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
 /// The same with an input of these bytes, which has this name and is on no disk.
 pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
     reading(|| {
-        let before = keep(name, Some(Document::new(Box::new(Cursor::new(text.as_bytes().to_vec())))));
+        let before = keep(name, Some(Document::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
         let done = work();
         keep(name, before);
         done
@@ -71,25 +78,36 @@ pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result
     let kept = OPEN.with_borrow(|all| all.as_ref().map(|all| all.get(path).cloned()));
     Ok(match kept {
         None => open()?,
-        Some(Some(document)) => Box::new(document),
+        Some(Some(document)) => Box::new(Reader::Kept(document)),
         Some(None) => {
-            let document = Document::new(open()?);
+            close_most();
+            let document = Document::new(open()?, disk::is_file(path).then(|| path.to_path_buf()));
             keep(path, Some(document.clone()));
-            Box::new(document)
+            Box::new(Reader::Kept(document))
         }
     })
 }
 
+/// Closes the files that are kept, if they are many.
+fn close_most() {
+    OPEN.with_borrow(|all| {
+        let all = all.iter().flatten().map(|it| it.1);
+        if all.clone().count() >= MOST_OPEN {
+            all.for_each(|document| document.kept().close());
+        }
+    });
+}
+
 /// A reader of an input from its beginning, if it is kept.
 pub(crate) fn again(path: &Path) -> Option<Source> {
-    OPEN.with_borrow(|all| Some(Box::new(all.as_ref()?.get(path)?.clone()) as Source))
+    OPEN.with_borrow(|all| Some(Box::new(Reader::Kept(all.as_ref()?.get(path)?.clone())) as Source))
 }
 
 /// The same of an input whose bytes are kept no longer: what was read before is read again.
 pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<Source> {
     match OPEN.with_borrow_mut(|all| all.as_mut()?.remove(path)) {
         None => open(),
-        Some(document) => Ok(document.into_stream()),
+        Some(document) => document.into_stream().map_err(|error| unreadable(path, &error, "an input")),
     }
 }
 
@@ -99,7 +117,28 @@ pub(crate) type Source = Box<dyn Read + Send>;
 /// What was read of an input, and the rest of it.
 struct Kept {
     bytes: Vec<u8>,
-    rest: Source,
+    /// None of a file that was closed.
+    rest: Option<Source>,
+    /// Of a file, which can be opened again.
+    path: Option<PathBuf>,
+}
+
+impl Kept {
+    fn close(&mut self) {
+        if self.path.is_some() {
+            self.rest = None;
+        }
+    }
+
+    /// The rest, opened again if it was closed.
+    fn take_rest(&mut self) -> io::Result<Source> {
+        let Some(path) = self.path.as_ref().filter(|_| self.rest.is_none()) else {
+            return Ok(self.rest.take().unwrap_or_else(|| Box::new(io::empty())));
+        };
+        let mut again = disk::here().open(path)?;
+        io::copy(&mut again.by_ref().take(self.bytes.len() as u64), &mut io::sink())?;
+        Ok(again)
+    }
 }
 
 /// An input, read from its beginning.
@@ -110,34 +149,58 @@ struct Document {
 }
 
 impl Document {
-    fn new(rest: Source) -> Self {
-        Document { kept: Arc::new(Mutex::new(Kept { bytes: Vec::new(), rest })), at: 0 }
+    fn new(rest: Source, path: Option<PathBuf>) -> Self {
+        Document { kept: Arc::new(Mutex::new(Kept { bytes: Vec::new(), rest: Some(rest), path })), at: 0 }
     }
 
-    fn into_stream(self) -> Source {
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn into_stream(self) -> io::Result<Source> {
         match Arc::try_unwrap(self.kept) {
             Ok(kept) => {
-                let Kept { bytes, rest } = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
-                Box::new(Cursor::new(bytes).chain(rest))
+                let mut kept = kept.into_inner().unwrap_or_else(PoisonError::into_inner);
+                let rest = kept.take_rest()?;
+                Ok(Box::new(Cursor::new(kept.bytes).chain(rest)))
             }
             // Somebody reads it at the moment.
-            Err(kept) => Box::new(Document { kept, at: 0 }),
+            Err(kept) => Ok(Box::new(Reader::Kept(Document { kept, at: 0 }))),
         }
     }
 }
 
-impl Read for Document {
+/// A reader of an input: of what is kept, or of the rest of a file, of which no more is kept.
+enum Reader {
+    Kept(Document),
+    Rest(Source),
+}
+
+impl Read for Reader {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let Kept { bytes, rest } = &mut *kept;
-        if self.at == bytes.len() {
-            let count = rest.take(BLOCK.max(into.len()) as u64).read_to_end(bytes)?;
-            if count == 0 {
-                *rest = Box::new(io::empty());
+        let document = match self {
+            Reader::Rest(rest) => return rest.read(into),
+            Reader::Kept(document) => document,
+        };
+        let mut kept = document.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if document.at == kept.bytes.len() {
+            let mut rest = kept.take_rest()?;
+            if kept.path.is_some() && kept.bytes.len() >= MOST_KEPT {
+                drop(kept);
+                let count = rest.read(into)?;
+                *self = Reader::Rest(rest);
+                return Ok(count);
             }
+            let read = rest.by_ref().take(BLOCK.max(into.len()) as u64).read_to_end(&mut kept.bytes);
+            // At its end it is closed, and not opened again; what fails may fail again.
+            match read {
+                Ok(0) => kept.path = None,
+                _ => kept.rest = Some(rest),
+            }
+            read?;
         }
-        let count = bytes.get(self.at..).unwrap_or_default().read(into)?;
-        self.at += count;
+        let count = kept.bytes.get(document.at..).unwrap_or_default().read(into)?;
+        document.at += count;
         Ok(count)
     }
 }
@@ -190,6 +253,46 @@ mod tests {
             stream(Path::new("a"), || unreachable!()).unwrap().read_to_string(&mut read).unwrap();
             assert_eq!(read, "begun");
             assert_eq!(text_of("a", &mut opened, b"again"), "again");
+        });
+    }
+
+    /// More files than stay open, each longer than what is read at a time: their beginnings first, then the rest.
+    #[test]
+    fn files_that_were_closed_are_opened_again_where_they_were_left() {
+        let folder = std::env::temp_dir().join(format!("poecal_documents_{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let text = |k: usize| format!("{k:06}").repeat(BLOCK / 4).into_bytes();
+        let paths: Vec<PathBuf> = (0..MOST_OPEN + 6).map(|k| folder.join(k.to_string())).collect();
+        paths.iter().enumerate().for_each(|(k, path)| std::fs::write(path, text(k)).unwrap());
+        let source = |path: &PathBuf| open(path, || Ok(disk::here().open(path).unwrap())).unwrap();
+        reading(|| {
+            let mut begun: Vec<Source> = paths.iter().map(source).collect();
+            let mut head = [0; 10];
+            begun.iter_mut().for_each(|it| it.read_exact(&mut head).unwrap());
+            for (k, (path, begun)) in paths.iter().zip(&mut begun).enumerate() {
+                let (mut rest, mut whole) = (Vec::new(), Vec::new());
+                begun.read_to_end(&mut rest).unwrap();
+                source(path).read_to_end(&mut whole).unwrap();
+                assert!(whole == text(k) && rest == whole[10..], "{k}");
+            }
+        });
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn what_fails_while_it_is_read_fails_for_all() {
+        struct Broken;
+        impl Read for Broken {
+            fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+                Err(io::Error::other("the cable was pulled"))
+            }
+        }
+        reading(|| {
+            for _ in 0..2 {
+                let source = open(Path::new("a"), || Ok(Box::new(b"begun".chain(Broken)))).unwrap();
+                let read = io::read_to_string(source);
+                assert_eq!(read.unwrap_err().to_string(), "the cable was pulled");
+            }
         });
     }
 }

@@ -13,6 +13,13 @@ use nalgebra::{Matrix3, Vector3};
 use super::rotation;
 
 /// A convention of three angles, radians.
+///
+/// ```
+/// use poecal_arm::lie::angles::Angles;
+/// let turned = Angles::ZYX.rotation([0.3, -0.2, 0.1]);
+/// let same = Angles::ROLL_PITCH_YAW.of(&turned);
+/// assert!((same[0] - 0.1).abs() < 1e-15 && (same[2] - 0.3).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Angles {
     /// About moving axes (0 = x): `R = R_i(a) R_j(b) R_k(c)`.
@@ -40,6 +47,12 @@ const SEQUENCES: [[usize; 3]; 12] = [
 ];
 
 /// The angles of a maker of controllers.
+///
+/// ```
+/// use poecal_arm::lie::angles::{Angles, MakersAngles};
+/// let fanuc = MakersAngles { maker: "FANUC", names: ["W", "P", "R"], angles: Angles::ROLL_PITCH_YAW };
+/// assert_eq!(Angles::ROLL_PITCH_YAW.maker(), Some(&fanuc));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MakersAngles {
     /// The maker.
@@ -55,6 +68,11 @@ const fn of(maker: &'static str, names: [&'static str; 3], angles: Angles) -> Ma
 }
 
 /// Makers with their angles; the first of each convention is its best known.
+///
+/// ```
+/// use poecal_arm::lie::angles::{Angles, MAKERS};
+/// assert!(MAKERS.iter().any(|it| it.maker == "KUKA" && it.angles == Angles::ZYX));
+/// ```
 pub const MAKERS: [MakersAngles; 8] = [
     of("KUKA", ["A", "B", "C"], Angles::ZYX),
     of("FANUC", ["W", "P", "R"], Angles::ROLL_PITCH_YAW),
@@ -167,6 +185,12 @@ impl fmt::Display for Angles {
 }
 
 /// A word that is no convention.
+///
+/// ```
+/// use poecal_arm::lie::angles::{Angles, NoConvention};
+/// assert_eq!("intrinsic_zyx".parse(), Ok(Angles::ZYX));
+/// assert_eq!("intrinsic_zz".parse::<Angles>(), Err(NoConvention));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoConvention;
 

@@ -3,7 +3,7 @@
 //! Conventions (docs/conventions.md): a twist is `ξ = (v; ω)`, linear part first; perturbations are on the left,
 //! `T ← exp(δ) T`; poses are named `a_from_b` and take coordinates in `b` to coordinates in `a`.
 
-mod angles;
+pub mod angles;
 mod freedom;
 mod pose;
 pub mod rotation;
@@ -11,7 +11,6 @@ mod screw;
 pub mod series;
 mod twist;
 
-pub use angles::{Angles, MAKERS, MakersAngles, NoConvention};
 pub use freedom::Freedom;
 pub use pose::Pose;
 pub use screw::Screw;

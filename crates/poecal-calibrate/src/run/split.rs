@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use crate::CalibrationOptions;
+use poecal_fit::uncertainty::FEWEST_VALIDATED;
 use poecal_model::measurement::{Dataset, Set};
 use poecal_model::simulate::random;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -133,9 +134,13 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
 }
 
 /// Whether it may be decided here that all rows are fitted: limits are decided by rows that were not, and so are pictures, whose corners
-/// cross-validation does not predict.
+/// cross-validation does not predict. Neither of rows in motion, which are no configurations, nor of fewer than cross-validation leaves out.
 fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
-    options.held_out.is_none() && options.accept.is_none() && data.pictures.is_empty()
+    options.held_out.is_none()
+        && options.accept.is_none()
+        && data.pictures.is_empty()
+        && data.observations.iter().all(|row| data.motion(row).is_none())
+        && data.len() >= FEWEST_VALIDATED
 }
 
 /// Number of configurations where all are fitted although nothing asks for it: those that would have been held out are too few.

@@ -72,8 +72,8 @@ pub(crate) struct Calibrate {
     /// model, and the point is the target `measured`
     #[arg(long, help_heading = FIT)]
     pub(crate) move_tip: bool,
-    /// Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row [default: 0.3,
-    /// or 0 where that were fewer than 12 configurations, without pictures and --accept]
+    /// Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row [default: 0.3;
+    /// 0 if fewer than 12 would be held out, but for pictures, rows in motion and --accept]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = JUDGED)]
     pub(crate) held_out: Option<f64>,
     /// Seed of that choice [default: 1]

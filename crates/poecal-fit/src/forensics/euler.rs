@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
-use poecal_arm::lie::Angles;
+use poecal_arm::lie::angles::Angles;
 
 /// A convention in words: `extrinsic xyz angles`.
 pub(crate) fn words(angles: Angles) -> String {

@@ -21,6 +21,8 @@ use poecal_numerics::solve::LeastSquares;
 const SAMPLE: usize = 2000;
 /// Number of random folds. An end of a joint's range has as many rows as one of them.
 const FOLDS: usize = 5;
+/// Fewest rows that are cross-validated.
+pub const FEWEST_VALIDATED: usize = 2 * FOLDS;
 /// Number of clusters, and of random folds, where sizes of terms are chosen.
 const NEIGHBOURHOODS: usize = 8;
 /// An id column defines groups if it has at most [`MOST_GROUPS`] values with [`LEAST_ROWS`] rows each on average; otherwise its values
@@ -97,7 +99,7 @@ impl CrossValidation {
 #[must_use]
 pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     let sample = sample_rows(view.rows, SAMPLE);
-    if sample.len() < 2 * FOLDS {
+    if sample.len() < FEWEST_VALIDATED {
         return None;
     }
     let downdated = Downdated::new(view, &sample)?;

@@ -23,7 +23,8 @@ pub use bootstrap::{Bootstrap, bootstrap};
 pub use correlation::Correlations;
 pub use discrepancy::{Discrepancy, discrepancy};
 pub use folds::{
-    CrossValidation, LeftOut, OutsideRange, cross_validate, leave_clusters_out, parts_to_leave_out,
+    CrossValidation, FEWEST_VALIDATED, LeftOut, OutsideRange, cross_validate, leave_clusters_out,
+    parts_to_leave_out,
 };
 pub use held::held_covariance;
 pub use pattern::{Pattern, strongest_pattern};

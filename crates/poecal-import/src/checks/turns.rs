@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::table::Row;
-use crate::table::header::Header;
+use crate::table::conventions::CONVENTIONS;
+use crate::table::header::{Header, HeaderCell};
 use crate::table::inputs::{InputReader, InputSource};
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::{Angles, MAKERS};
+use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
 
@@ -129,7 +130,13 @@ pub(crate) fn note(layout: &ColumnLayout) -> Option<String> {
         [] => String::new(),
         some => format!(", in {}, since no unit is stated: --units says another", some.join(" and ")),
     };
-    Some(format!("took the columns {} for {}{units}", names.join(", "), convention.words))
+    let ignored: Vec<String> = names.iter().map(|it| format!("\"{it}\"")).collect();
+    Some(format!(
+        "took the columns {} for {}{units}; `ignore = [{}]` in a mapping leaves them out",
+        names.join(", "),
+        convention.words,
+        ignored.join(", ")
+    ))
 }
 
 /// Columns of makers that the layout does not use.
@@ -138,16 +145,25 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
         let mut cells = header.cells.iter().filter(|cell| cell.name.eq_ignore_ascii_case(name));
         cells.find(|cell| layout.ignored.iter().any(|(text, _)| *text == cell.text))
     };
-    let cells = AMBIGUOUS.iter().map(|name| left_alone(name)).collect::<Option<Vec<_>>>()?;
-    let unit = if cells.iter().all(|cell| cell.unit.is_some()) { "" } else { ", unit = \"deg\"" };
-    let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
-    let own = MAKERS.iter().filter(|it| it.names == AMBIGUOUS);
-    let forms: Vec<String> = own.map(|it| format!("{} of {}", it.angles, it.maker)).collect();
+    let all = |names: &[&str]| names.iter().map(|name| left_alone(name)).collect::<Option<Vec<_>>>();
+    let mapping = |form: &str, cells: &[&HeaderCell]| {
+        let is_stated = cells.len() > 3 || cells.iter().all(|cell| cell.unit.is_some());
+        let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
+        (columns.join(", "), mapped(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }))
+    };
+    let known = CONVENTIONS.iter().filter(|it| it.is_unique).find_map(|it| {
+        // Joints may be called q1 to q6.
+        let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
+        let form = it.form.mapped();
+        all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.to_owned()))
+    });
+    let ((columns, mapping), words) = known.or_else(|| {
+        let own = MAKERS.iter().filter(|it| it.names == AMBIGUOUS);
+        let forms: Vec<String> = own.map(|it| format!("{} of {}", it.angles, it.maker)).collect();
+        Some((mapping(&Angles::RotationVector.to_string(), &all(&AMBIGUOUS)?), forms.join(", ")))
+    })?;
     Some(format!(
-        "the columns {} may be {}; they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses",
-        columns.join(", "),
-        forms.join(", "),
-        mapped(&Angles::RotationVector.to_string(), &columns, unit)
+        "the columns {columns} may be {words}; they are ignored and the rows read as points: a mapping (--columns) with {mapping} reads them as poses"
     ))
 }
 
@@ -239,6 +255,12 @@ mod tests {
              new x: if they are these, a mapping (--columns) with `orientation = { form = \"intrinsic_zyx\", columns = [\"rz\", \"ry\", \
              \"rx\"] }` has them read so"
         );
+        // Beside a position in other letters, one with a unit, or with words: points, as before.
+        assert!(told("A,B,C", "10,20,30").contains(
+            "the columns A, B, C may be KUKA's A, B, C; they are ignored and the rows read as points: a mapping (--columns) with \
+             `orientation = { form = \"intrinsic_zyx\", columns = [\"A\", \"B\", \"C\"], unit = \"deg\" }` reads them as poses"
+        ));
+        assert!(told("q1,q2,q3,q4", "1,0,0,0").contains("form = \"quaternion_wxyz\""));
         for (header, turn) in
             [("rx,ry,rz", "0.1,0.2,0.3"), ("A,B", "1,2"), ("q1,q2,q3,q4,q5,q6", "1,2,3,4,5,6")]
         {
@@ -265,13 +287,13 @@ mod tests {
                 "A, B, C for KUKA's A, B, C, in mm and deg, since",
             ),
             (
-                "x,y,z,w,p,r",
+                "X,Y,Z,W,P,R",
                 "10,20,30",
                 turned(10.0, 20.0, 30.0),
-                "w, p, r for FANUC's W, P, R, in mm and deg, since",
+                "W, P, R for FANUC's W, P, R, in mm and deg, since",
             ),
             (
-                "x[mm],y[mm],z[mm],A[deg],B[deg],C[deg]",
+                "X[mm],Y[mm],Z[mm],A[deg],B[deg],C[deg]",
                 "10,20,30",
                 turned(30.0, 20.0, 10.0),
                 "KUKA's A, B, C",
@@ -289,6 +311,29 @@ mod tests {
             assert!((pose.translation - Vector3::new(0.6, 0.05, 0.1)).amax() < 1e-15, "{header}");
             assert!(file.notes.iter().any(|it| it.contains(note)), "{:?}", file.notes);
         }
+        // Words, a unit of the place alone, numbers that are no quaternion.
+        for (header, turn) in [
+            ("X,Y,Z,A,B,C", "ok,20,30"),
+            ("X[mm],Y[mm],Z[mm],A,B,C", "10,20,30"),
+            ("X[mm],Y[mm],Z[mm],q1,q2,q3,q4", "21,22,23,24"),
+        ] {
+            let text = format!(
+                "joint1,joint2,joint3,joint4,{}\n{row},{turn}\n",
+                header.replace("X,Y,Z", "X[mm],Y[mm],Z[mm]")
+            );
+            let file = parse(&text, "t.csv", &scara(), &ReadOptions::default()).unwrap();
+            assert!(file.data.observations[0].measurement.orientation().is_none(), "{header}");
+            assert!(
+                file.warnings.iter().any(|it| it.contains("the rows read as points")),
+                "{:?}",
+                file.warnings
+            );
+        }
+        let noisy =
+            "joint1,joint2,joint3,joint4,X,Y,Z,A,B,C,sigma_position\n0,0.1,0.1,0,600,50,100,10,20,30,0.05\n";
+        let file = parse(noisy, "t.csv", &scara(), &ReadOptions::default()).unwrap();
+        let sigma = file.understood[0].columns.iter().find(|it| it.name == "sigma_position").unwrap();
+        assert_eq!(sigma.unit, Some("mm"));
         let mut options = ReadOptions::default();
         options.state_units("m").unwrap();
         let text = "joint1,joint2,joint3,joint4,X,Y,Z,A,B,C\n0,0.1,0.1,0,0.6,0.05,0.1,10,20,30\n";

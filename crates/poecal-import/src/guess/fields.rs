@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::draft::Draft;
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::MAKERS;
+use poecal_arm::lie::angles::MAKERS;
 use poecal_numerics::named_unit::units_of;
 use poecal_numerics::unit::Unit;
 

@@ -23,7 +23,7 @@ use crate::table::header::Header;
 use crate::table::mapping::{ColumnMap, PositionSpec};
 use crate::table::number::Numbers;
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::Angles;
+use poecal_arm::lie::angles::Angles;
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
 use poecal_numerics::named_unit::NamedUnit;

@@ -7,7 +7,7 @@ use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::numbered::{OTHERS, numbered, plain};
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::Angles;
+use poecal_arm::lie::angles::Angles;
 use poecal_model::robot::Robot;
 use poecal_numerics::named_unit::NamedUnit;
 
@@ -26,7 +26,11 @@ const GREEK: (&[&str], Angles) = (&["alpha", "beta", "gamma"], Angles::XYZ);
 
 /// Three angles by the last words of their names.
 fn angles() -> impl Iterator<Item = (&'static [&'static str], Angles)> {
-    let known = CONVENTIONS.iter().filter_map(|it| {
+    // Our own names come first, as where they are read.
+    let known = [false, true]
+        .into_iter()
+        .flat_map(|is_unique| CONVENTIONS.iter().filter(move |it| it.is_unique == is_unique));
+    let known = known.filter_map(|it| {
         let OrientationForm::Angles(angles) = it.form else { return None };
         Some((it.columns, angles))
     });

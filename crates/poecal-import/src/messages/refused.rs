@@ -17,7 +17,8 @@ const JOINTS: &str = "joint_states";
 pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
     let begin = head.trim_start();
     let is_json = begin.starts_with(['{', '[']);
-    let has_keys = begins_with_keys(head);
+    let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
+    let has_keys = ending.is_some_and(|it| ["yaml", "yml"].contains(&it.as_str())) || begins_with_keys(head);
     let is_yaml = has_keys || BEGINNINGS.iter().any(|it| begin.starts_with(it));
     if (is_json || is_yaml) && head.contains(JOINTS) {
         return Ok(true);
@@ -39,9 +40,10 @@ pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
 }
 
 /// Lines by which YAML is known.
-const LOOKED_AT: usize = 20;
+const LOOKED_AT: usize = 200;
 
-/// Whether the first lines that are no comments are keys of YAML, entries of its lists, or further in than these; a table may have a line of a title.
+/// Whether the first lines that are no comments are keys of YAML, entries of its lists, or further in than these and no cells of a table: a table may
+/// have titles above it.
 fn begins_with_keys(head: &str) -> bool {
     let is_content = |it: &&str| !it.trim().is_empty() && !it.starts_with(['#', '%']) && *it != "---";
     let is_word = |it: char| it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/' | '"' | '\'');
@@ -49,7 +51,12 @@ fn begins_with_keys(head: &str) -> bool {
         let key = line.split_once(':').filter(|it| it.1.is_empty() || it.1.starts_with(' ')).map(|it| it.0);
         key.is_some_and(|key| !key.is_empty() && key.chars().all(is_word))
     };
-    let is_inside = |line: &str| line.starts_with([' ', '-', ']', '}']);
+    let is_entry =
+        |line: &str| line == "-" || line.starts_with("- ") || line.starts_with(['[', ']', '{', '}']);
+    let is_inside = |line: &str| {
+        let inner = line.trim_start();
+        is_entry(inner) || inner.len() < line.len() && (is_key(inner) || inner.ends_with([']', '}']))
+    };
     let mut lines = head.lines().filter(is_content).take(LOOKED_AT).peekable();
     lines.peek().is_some_and(|it| is_key(it.trim_start_matches("- ")))
         && lines.all(|it| is_key(it) || is_inside(it))

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use super::pose_columns::{PoseColumns, Whose, list_words};
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::{Angles, Pose};
+use poecal_arm::lie::Pose;
+use poecal_arm::lie::angles::Angles;
 use poecal_fit::hand_eye::Reading;
 
 /// A reading: its form, the factor of its numbers, and the advice.

@@ -59,8 +59,10 @@ impl JointsTable {
 /// As [`crate::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
-    of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
+    document::reading(|| {
+        let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
+        of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
+    })
 }
 
 /// Reads the text of such a file; `path` is what messages call it.

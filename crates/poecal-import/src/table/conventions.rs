@@ -1,7 +1,7 @@
 //! Orientations by the names of their columns: controllers', robots', cameras' and ROS's, with the units that their makers have.
 
 use super::orientation::OrientationForm;
-use poecal_arm::lie::Angles;
+use poecal_arm::lie::angles::Angles;
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 

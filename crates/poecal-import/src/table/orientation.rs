@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use nalgebra::{Matrix3, Vector4};
 
-use poecal_arm::lie::{Angles, rotation};
+use poecal_arm::lie::angles::Angles;
+use poecal_arm::lie::rotation;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
@@ -42,6 +43,17 @@ impl OrientationForm {
     pub(crate) const ROTATION_VECTOR: Self = angles(Angles::RotationVector);
     /// URDF's roll, pitch, yaw.
     pub(crate) const ROLL_PITCH_YAW: Self = angles(Angles::ROLL_PITCH_YAW);
+
+    /// As a mapping has it.
+    pub(crate) fn mapped(self) -> String {
+        match self {
+            OrientationForm::QuaternionXyzw => "quaternion_xyzw".to_owned(),
+            OrientationForm::QuaternionWxyz => "quaternion_wxyz".to_owned(),
+            OrientationForm::MatrixByRows => "rotation_matrix".to_owned(),
+            OrientationForm::MatrixByColumns => "rotation_matrix_by_columns".to_owned(),
+            OrientationForm::Angles(angles) => angles.to_string(),
+        }
+    }
 
     /// Number of columns.
     pub(crate) fn len(self) -> usize {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::builder::Builder;
+use super::cells::{Separator, split};
 use super::column_spec::ColumnSpec;
 use super::conventions::{CONVENTIONS, Convention};
 use super::inputs::{InputSource, Term};
@@ -81,9 +82,9 @@ impl Builder<'_> {
             }
             (None, None, None) => None,
         };
-        let convention = convention.map(|it| it.0);
         let mut sigma = |name: &str, spec: Option<&ColumnSpec>, quantity| {
-            self.sigma(&format!("{prefix}{name}"), spec, quantity, is_only && position.is_some())
+            let unstated = self.usual(usual(quantity));
+            self.sigma(&format!("{prefix}{name}"), spec, (quantity, unstated), is_only && position.is_some())
         };
         let sigma_position = sigma("sigma_position", target.sigma_position.as_ref(), Unit::Metre)?;
         let sigma_rotation = sigma("sigma_rotation", target.sigma_rotation.as_ref(), Unit::Radian)?;
@@ -96,7 +97,7 @@ impl Builder<'_> {
             name,
             position,
             orientation,
-            convention,
+            convention: convention.map(|it| it.0),
             sigma_position,
             sigma_components,
             sigma_rotation,
@@ -141,7 +142,7 @@ impl Builder<'_> {
             let mut sigmas = Vec::with_capacity(function.quantities.len());
             for &quantity in function.quantities {
                 let name = format!("sigma_{}", quantity.name());
-                let sigma = self.sigma(&name, None, quantity.unit(), true)?;
+                let sigma = self.sigma(&name, None, (quantity.unit(), None), true)?;
                 sigmas.extend(sigma.map(|input| (quantity, input)));
             }
             let mut places = Vec::with_capacity(columns.places.len());
@@ -199,18 +200,58 @@ impl Builder<'_> {
         unit.filter(|_| self.header.units_line.is_none()).map(|unit| (unit, UnitSource::Maker))
     }
 
-    /// The convention of a maker whose columns the header has, in large letters or small, and these.
+    /// The convention of a maker whose columns the header has beside its X, Y, Z, and these: all with units or none, and numbers in the first row.
     fn convention(&self) -> Option<(&'static Convention, Vec<String>)> {
-        let column = |name: &&str| {
-            let mut cells = self.header.cells.iter().enumerate().filter(|(at, _)| !self.is_used(*at));
-            let cell = cells.find(|(_, cell)| cell.name.eq_ignore_ascii_case(name))?.1;
-            (!self.readings.contains(&cell.name)).then(|| cell.name.clone())
-        };
+        let has_mapped_position = self.map.position.is_some();
+        let first: Vec<Option<f64>> =
+            self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
+        let is_stated = |at: usize, quantity| Some(self.header.unit(at, quantity, "").ok()?.is_some());
+        let is_placed = is_stated(self.header.find("X").ok()??, Unit::Metre)?;
         CONVENTIONS.iter().filter(|it| it.is_unique).find_map(|it| {
-            let columns = it.columns.iter().map(column).collect::<Option<_>>()?;
-            // Joints may be called q1 to q6.
-            (it.columns.len() < 4 || column(&"q5").is_none()).then_some((it, columns))
+            let quantity = it.form.quantity();
+            let at =
+                it.columns.iter().map(|name| self.makers_column(name)).collect::<Option<Vec<usize>>>()?;
+            let are_stated = at.iter().map(|at| is_stated(*at, quantity)).collect::<Option<Vec<bool>>>()?;
+            let numbers = at.iter().map(|at| *first.get(*at)?).collect::<Option<Vec<f64>>>()?;
+            let is_alike = quantity == Unit::One || are_stated.iter().all(|it| *it == is_placed);
+            let is_known = is_placed || self.header.units_line.is_none();
+            (is_alike && is_known && it.form.rotation(&numbers).is_ok()).then(|| {
+                (
+                    it,
+                    at.iter()
+                        .filter_map(|at| self.header.cells.get(*at))
+                        .map(|cell| cell.name.clone())
+                        .collect(),
+                )
+            })
         })
+    }
+
+    /// The unused column of a maker: letters as the maker writes them, large, but for those of quaternions, of which there are no more.
+    fn makers_column(&self, name: &str) -> Option<usize> {
+        let letter = name.strip_suffix(|it: char| it.is_ascii_digit());
+        let is_it = |text: &str| match letter {
+            Some(_) => text.eq_ignore_ascii_case(name),
+            None => text == name.to_uppercase(),
+        };
+        // Joints may be called q1 to q6.
+        let numbers = letter.map(|letter| {
+            let of = |text: &str| {
+                text.to_lowercase().strip_prefix(letter).is_some_and(|it| it.parse::<u32>().is_ok())
+            };
+            self.header.cells.iter().filter(|cell| of(&cell.name)).count()
+        });
+        let mut cells = self.header.cells.iter().enumerate();
+        let (at, cell) = cells.find(|(at, cell)| is_it(&cell.name) && !self.is_used(*at))?;
+        (!self.readings.contains(&cell.name) && numbers.is_none_or(|it| it == 4)).then_some(at)
+    }
+
+    /// The numbers of the first row.
+    fn first_numbers(&self) -> Option<Vec<Option<f64>>> {
+        let row = self.header.first_row()?;
+        let mut cells = Vec::new();
+        split(&row, Separator::recognised(&row), &mut cells).ok()?;
+        Some(cells.iter().map(|cell| cell.raw.replace(',', ".").parse().ok()).collect())
     }
 
     /// The form of the orientation columns with our own names: all of one form, or none.
@@ -255,31 +296,37 @@ impl Builder<'_> {
         &mut self,
         name: &str,
         spec: Option<&ColumnSpec>,
-        quantity: Unit,
+        (quantity, unstated): (Unit, Option<(NamedUnit, UnitSource)>),
         by_our_name: bool,
     ) -> Result<Option<usize>> {
-        let default = ColumnSpec::default();
         let purpose = format!("for `{name}`");
         let expanded = name.replacen("sigma_", EXPANDED, 1);
         let has_expanded = by_our_name && spec.is_none() && self.header.find(&expanded)?.is_some();
-        let spec = match spec {
-            Some(spec) => spec,
-            None if by_our_name && self.header.find(name)?.is_some() => &default,
-            None if has_expanded => {
-                return self.expanded_input(name, &expanded, quantity, &purpose).map(Some);
-            }
-            None => return Ok(None),
-        };
-        if let Some(second) = self.header.find(&expanded)?.filter(|_| has_expanded) {
+        if let Some(spec) = spec {
+            return self.spec_input(name, spec, quantity, &purpose).map(Some);
+        }
+        let has_own = by_our_name && self.header.find(name)?.is_some();
+        if let Some(second) = self.header.find(&expanded)?.filter(|_| has_expanded && has_own) {
             let message = format!("found `{expanded}` beside `{name}`, expected one of the two");
             return Err(self.header.error(ErrorKind::Measurement, second, message));
         }
-        self.spec_input(name, spec, quantity, &purpose).map(Some)
+        let units = (None, unstated);
+        match (has_own, has_expanded) {
+            (true, _) => self.column_or(name, name, quantity, units, &purpose).map(Some),
+            (false, true) => self.expanded_input(name, &expanded, (quantity, unstated), &purpose).map(Some),
+            (false, false) => Ok(None),
+        }
     }
 
     /// A standard deviation from a column of expanded uncertainties.
-    fn expanded_input(&mut self, name: &str, column: &str, quantity: Unit, purpose: &str) -> Result<usize> {
-        let index = self.column_input(name, column, quantity, None, purpose)?;
+    fn expanded_input(
+        &mut self,
+        name: &str,
+        column: &str,
+        (quantity, unstated): (Unit, Option<(NamedUnit, UnitSource)>),
+        purpose: &str,
+    ) -> Result<usize> {
+        let index = self.column_or(name, column, quantity, (None, unstated), purpose)?;
         if let Some(input) = self.inputs.get_mut(index)
             && let InputSource::Column(column) = input.source
         {

@@ -51,7 +51,7 @@ pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
          # Columns to add if you have them, in any place:\n\
          #   id                   name of the row, kept in the results\n\
          #   target               name of the measured tool point; several in one configuration are several rows\n\
-         #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations]\n",
+         #   set                  fit, or held_out for rows to judge by [default: a random 30 % of the configurations, none of few]\n",
     );
     if kind.has_device() {
         text.push_str(

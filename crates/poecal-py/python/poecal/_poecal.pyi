@@ -1860,8 +1860,8 @@ def calibrate(
         Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
         as in the model, and the point is the target "measured".
     held_out
-        Share of the configurations held out, where nothing else says which rows are (default 0.3, or 0 where that were fewer than 12
-        configurations, without pictures and `accept`); 0 fits every row.
+        Share of the configurations held out, where nothing else says which rows are; 0 fits every row (default 0.3; 0 if fewer than 12 would be
+        held out, but for pictures, rows in motion and `accept`).
     seed
         Seed of that choice (default 1).
     robust

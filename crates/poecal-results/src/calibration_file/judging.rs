@@ -26,7 +26,8 @@ impl CalibrationFile {
         let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
         let position_m = |errors: &ModelAccuracy, model| {
             let own = errors.get(Quantity::Position)?.rms;
-            Some(1e-3 * self.left_out(model, Quantity::Position).map_or(own, |it| it.max(own)))
+            // Suspected rows are in the errors of fitted rows, and in no cross-validation.
+            Some(1e-3 * self.left_out(model, Quantity::Position).unwrap_or(own))
         };
         let calibrated_m = position_m(&set.calibrated, AcceptedModel::Calibrated)?;
         let corrected = set.corrected.as_ref().and_then(|it| position_m(it, AcceptedModel::Corrected));
@@ -76,7 +77,7 @@ impl CalibrationFile {
         let errors = corrected.unwrap_or(&set.calibrated);
         let rms = errors.lead().rms;
         let left_out = errors.leading().and_then(|(quantity, _)| self.left_out(model, quantity));
-        left_out.map_or((rms, rows), |it| (it.max(rms), "cross_validation"))
+        left_out.map_or((rms, rows), |it| (it, "cross_validation"))
     }
 
     /// Root mean square error of a model in cross-validation, where no row was held out; millimetres or degrees.

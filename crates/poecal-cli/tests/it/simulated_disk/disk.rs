@@ -79,6 +79,8 @@ pub(crate) struct State {
     pub(crate) stopped: bool,
     pub(crate) written: usize,
     pub(crate) failures: usize,
+    /// How often each file was opened to be read.
+    pub(crate) opened: BTreeMap<PathBuf, usize>,
 }
 
 /// The disk. Its clones are the same disk.
@@ -175,6 +177,7 @@ impl SimulatedDisk {
             stopped: false,
             written: 0,
             failures: 0,
+            opened: BTreeMap::new(),
         })))
     }
 

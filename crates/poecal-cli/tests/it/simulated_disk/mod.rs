@@ -287,3 +287,38 @@ fn a_stop_before_every_single_operation() {
     println!("{stops} stops");
     assert!(stops > 500 / apart);
 }
+
+/// However many questions a command has about an input: what it is, what it is joined with, whether its header is shifted.
+#[test]
+fn each_input_is_opened_once() {
+    let inputs: [(&str, &[u8]); 9] = [
+        ("robot.urdf", include_bytes!("../../../../../examples/elbow/robot.urdf")),
+        ("points.csv", include_bytes!("../../../../../examples/elbow/points.csv")),
+        ("joints.csv", include_bytes!("../../../../../examples/howto/joints.csv")),
+        ("take.csv", include_bytes!("../../../../../examples/howto/take.csv")),
+        ("joints.xlsx", include_bytes!("../../../../../examples/howto/joints.xlsx")),
+        ("points.txt", include_bytes!("../../../../../examples/howto/points.txt")),
+        ("pictures.csv", include_bytes!("../../../../../examples/howto/pictures.csv")),
+        ("corners.csv", include_bytes!("../../../../../examples/howto/corners.csv")),
+        ("lens.csv", include_bytes!("../../../../../examples/howto/lens.csv")),
+    ];
+    let start = SimulatedDisk::new();
+    inputs.iter().for_each(|(name, bytes)| start.put(name, bytes));
+    for command in [
+        "check robot.urdf points.csv",
+        "check robot.urdf joints.csv take.csv",
+        "check robot.urdf pictures.csv corners.csv --camera lens.csv --markers chessboard:6x5:40mm",
+        "calibrate robot.urdf points.csv --out out --report none",
+        "calibrate robot.urdf joints.csv take.csv --out out --report none",
+        "import robot.urdf joints.xlsx points.txt --out session.csv",
+    ] {
+        let disk = start.copy();
+        let said = run(&disk, command);
+        assert_eq!(said.code, 0, "{command}: {}", said.err);
+        let opened = &disk.state().opened;
+        for (name, _) in &inputs {
+            let count = opened.get(&disk::whole(name.as_ref())).copied().unwrap_or_default();
+            assert_eq!(count, usize::from(command.contains(name)), "{command}: {name}");
+        }
+    }
+}

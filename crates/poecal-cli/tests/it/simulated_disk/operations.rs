@@ -108,6 +108,7 @@ impl Disk for SimulatedDisk {
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
         let mut state = self.state();
         state.begin()?;
+        *state.opened.entry(whole(path)).or_default() += 1;
         match state.tree.get(&whole(path)) {
             Some(Node::File(number)) => Ok(Box::new(Handle { disk: self.clone(), number: *number, at: 0 })),
             Some(Node::Folder) => Err(error(ErrorKind::IsADirectory)),
