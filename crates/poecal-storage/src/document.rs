@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::disk;
-use super::source::unreadable;
 use poecal_numerics::error::Result;
 
 /// Bytes that are read of an input at a time.
@@ -104,10 +103,10 @@ pub(crate) fn again(path: &Path) -> Option<Source> {
 }
 
 /// The same of an input whose bytes are kept no longer: what was read before is read again.
-pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<Source> {
+pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<io::Result<Source>> {
     match OPEN.with_borrow_mut(|all| all.as_mut()?.remove(path)) {
-        None => open(),
-        Some(document) => document.into_stream().map_err(|error| unreadable(path, &error, "an input")),
+        None => open().map(Ok),
+        Some(document) => Ok(document.into_stream()),
     }
 }
 
@@ -250,7 +249,7 @@ mod tests {
         reading(|| {
             assert_eq!(text_of("a", &mut opened, b"begun"), "begun");
             let mut read = String::new();
-            stream(Path::new("a"), || unreachable!()).unwrap().read_to_string(&mut read).unwrap();
+            stream(Path::new("a"), || unreachable!()).unwrap().unwrap().read_to_string(&mut read).unwrap();
             assert_eq!(read, "begun");
             assert_eq!(text_of("a", &mut opened, b"again"), "again");
         });

@@ -139,7 +139,8 @@ pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec
 
 /// The same of what is too large to be kept.
 pub fn open_streamed(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
-    headed(document::stream(path, || opened(path, expected))?, path, expected, limit)
+    let source = document::stream(path, || opened(path, expected))?;
+    headed(source.map_err(|cause| unreadable(path, &cause, expected))?, path, expected, limit)
 }
 
 /// The bytes of a file, or of standard input.
