@@ -62,7 +62,8 @@ FOLLOWED = {
     "state where the robot starts by --start": HERE + "test_options_of_programs",
     "do not show from where the third axis counts": "crates/poecal-cli/tests/it/counted.rs::a_third_axis_is_stated_where_rows_do_not_show_it",
     "which are not all here: took these": "crates/poecal-cli/tests/it/counted.rs::tables_are_read_and_written_as_the_controller_counts",
-    "they are ignored and the rows read as points: a mapping (--columns) with {} reads them as poses": HERE + "test_angles_of_makers",
+    "they are ignored and the rows read as points: a mapping (--columns) with {mapping} reads them as poses": HERE + "test_angles_of_makers",
+    "`ignore = [{}]` in a mapping leaves them out": HERE + "test_angles_of_a_maker_that_are_left_out",
     "they are these, a mapping (--columns) with {} has them read so": HERE + "test_angles_of_makers",
     "if they are millimetres, write `[mm]` behind the names of their columns, or --units mm": HERE + "test_lengths_of_poses",
     "if they are metres, write `[m]` behind the names of their columns, or --units m": HERE + "test_lengths_of_poses",
@@ -351,6 +352,15 @@ def test_angles_of_makers(here, names, unit):
     (here / "map.toml").write_text(line + "\n")
     calibrates(here, "--columns", "map.toml")
     assert "60: 60 poses" in run(here, "check", "robot.urdf", "points.csv", "--columns", "map.toml")
+
+
+def test_angles_of_a_maker_that_are_left_out(here):
+    header = POINTS[0].replace("x[mm]", "X[mm]").replace("y[mm]", "Y[mm]").replace("z[mm]", "Z[mm]")
+    table(here, f"{header},A[deg],B[deg],C[deg]", [f"{row},10,20,30" for row in POINTS[1:]])
+    said = run(here, "check", "robot.urdf", "points.csv")
+    line = re.search(r"`(ignore = [^`]+)` in a mapping leaves them out", said)[1]
+    (here / "map.toml").write_text(line + "\n")
+    calibrates(here, "--columns", "map.toml")
 
 
 def test_a_form_that_is_closed(here):
