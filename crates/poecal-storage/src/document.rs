@@ -2,7 +2,7 @@
 //!
 //! So a pipe answers like a file, and all answers are of the same bytes while a log grows. Within [`reading`] alone; elsewhere, and for what is
 //! [streamed](super::source::open_streamed), nothing is kept. Of a file, whose beginning is all that most questions are about, no more is kept than
-//! [`MOST_KEPT`], and of many files few stay open: those are opened again.
+//! 64 MiB, and of many files few stay open: those are opened again.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
