@@ -137,13 +137,14 @@ impl FromStr for OrientationForm {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let form = match text {
-            "quaternion_xyzw" => Some(OrientationForm::QuaternionXyzw),
-            "quaternion_wxyz" => Some(OrientationForm::QuaternionWxyz),
-            "rotation_matrix" => Some(OrientationForm::MatrixByRows),
-            "rotation_matrix_by_columns" => Some(OrientationForm::MatrixByColumns),
-            _ => text.parse().ok().map(OrientationForm::Angles),
-        };
+        let others = [
+            OrientationForm::QuaternionXyzw,
+            OrientationForm::QuaternionWxyz,
+            OrientationForm::MatrixByRows,
+            OrientationForm::MatrixByColumns,
+        ];
+        let angles = text.parse().ok().map(OrientationForm::Angles);
+        let form = angles.or_else(|| others.into_iter().find(|it| it.mapped() == text));
         form.ok_or_else(|| ErrorKind::Syntax.error(format!(
                 "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
                  rotation_matrix, rotation_matrix_by_columns, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
