@@ -6,7 +6,7 @@
 //! - [`state`] is all that may change in a fit, and its prediction of each row.
 //! - [`parameters`] are unknowns with columns; they see no measured functions, weights or solver.
 //! - [`problem`] is the only place where rows and columns meet, and has no algorithms.
-//! - [`forensics`] names mistakes, and changes nothing but its own copies.
+//! - [`forensics`] names mistakes, and changes nothing but its own copies; [`input_doubts`] judges rows as they are read.
 //! - [`hand_eye`] gets lists of poses, no robot.
 //!
 //! Not here: the order of a calibration's steps, files, tables.
@@ -25,6 +25,7 @@ pub mod analysis;
 pub mod forensics;
 pub mod gauge;
 pub mod hand_eye;
+pub mod input_doubts;
 pub mod parameters;
 pub mod problem;
 pub mod start;

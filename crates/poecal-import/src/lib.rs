@@ -25,8 +25,6 @@ pub mod stored_pictures;
 pub(crate) mod table;
 pub(crate) mod write;
 
-pub use crate::checks::lengths::REACHES as MOST_REACHES;
-pub use crate::checks::scale::{LARGEST_OTHERWISE as LARGEST_ANGLE_RAD, SHARE as WRONG_UNIT_SHARE};
 pub use crate::join::join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
 pub use crate::join::witness::to_measure_again;
 pub use crate::pictures::board_files::{BoardOfFile, board_of_file};
@@ -39,7 +37,7 @@ pub use crate::read::joints::{JointsTable, parse_joints, read_joints};
 pub use crate::table::cells::{Cell, Separator, split};
 pub use crate::table::fit_where::FitWhere;
 pub use crate::table::instrument_noise::InstrumentNoise;
-pub use crate::table::lost::LostBeams;
+pub use crate::table::lost::lost_words;
 pub use crate::table::mapping::ColumnMap;
 pub use crate::table::number::DecimalSign;
 pub use crate::table::socket_distance::SocketDistances;

@@ -3,6 +3,47 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+use serde::Serialize;
+
+/// Lines of a file that are counted, of which messages name the first ones.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct NamedLines {
+    /// Their number.
+    pub count: usize,
+    /// The first ones.
+    pub first_lines: Vec<usize>,
+}
+
+/// Most lines that are named.
+const NAMED_LINES: usize = 5;
+
+impl NamedLines {
+    /// Adds a line.
+    pub fn add(&mut self, line: usize) {
+        self.count += 1;
+        if self.first_lines.len() < NAMED_LINES && self.first_lines.last() != Some(&line) {
+            self.first_lines.push(line);
+        }
+    }
+
+    /// The first ones in words.
+    #[must_use]
+    pub fn words(&self) -> String {
+        let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
+        let word = if lines.len() == 1 { "line" } else { "lines" };
+        let more = if self.count > NAMED_LINES { ", …" } else { "" };
+        format!("{word} {}{more}", lines.join(", "))
+    }
+}
+
+impl FromIterator<usize> for NamedLines {
+    fn from_iter<I: IntoIterator<Item = usize>>(lines: I) -> Self {
+        let mut found = NamedLines::default();
+        lines.into_iter().for_each(|line| found.add(line));
+        found
+    }
+}
+
 /// The text with every character that would act instead of being seen (control characters, line breaks among them, marks of writing
 /// direction, characters without width) written as its number.
 #[must_use]

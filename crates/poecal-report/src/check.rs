@@ -9,7 +9,7 @@ use super::sight::SightCheck;
 use super::table::{kinds_words, line, lines, robot_words, rounded, short};
 use poecal_fit::forensics::Diagnosis;
 use poecal_import::{
-    ColumnUnderstanding, DecimalSign, FileUnderstanding, JoinEntry, MeasurementFile, Separator,
+    ColumnUnderstanding, DecimalSign, FileUnderstanding, JoinEntry, MeasurementFile, Separator, lost_words,
 };
 use poecal_model::measurement::Set;
 use poecal_model::robot::{Joint, JointKind, Mount, Robot};
@@ -322,7 +322,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     let poses = (file.poses + file.points > 0).then(|| kinds_words(file.poses, file.points));
     let kinds: Vec<String> = poses.into_iter().chain(others).collect();
     line(out, "rows", &format!("{}: {}", file.rows, kinds.join(" and ")));
-    if let Some(lost) = file.lost.words() {
+    if let Some(lost) = lost_words(&file.lost) {
         line(out, "skipped", &lost);
     }
     let stated = file.separator_line.map_or_else(String::new, |line| format!(" (line {line})"));

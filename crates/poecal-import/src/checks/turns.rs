@@ -1,106 +1,13 @@
-//! Orientations that may be misread: degrees as radians, and robot makers' columns without a unique meaning.
+//! Robot makers' columns of orientations without a unique meaning.
 
-use std::f64::consts::TAU;
-use std::path::Path;
-
-use crate::table::Row;
 use crate::table::conventions::CONVENTIONS;
 use crate::table::header::{Header, HeaderCell};
-use crate::table::inputs::{InputReader, InputSource};
+use crate::table::inputs::InputSource;
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::{Angles, MAKERS};
-use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
-
-/// Least share of rows with implausible angles: a few corrupt rows are no wrong unit.
-const SHARE: f64 = 0.1;
-/// Rounding allowed beyond a full turn.
-const ROUNDING: f64 = 1e-3;
-
-/// Collects the angles of a file's orientations.
-#[derive(Default)]
-pub(crate) struct TurnWatch {
-    rows: usize,
-    beyond: usize,
-    largest: f64,
-    first: Option<First>,
-}
-
-/// The first orientation with too large an angle.
-struct First {
-    line: usize,
-    column: usize,
-    columns: Vec<String>,
-    is_vector: bool,
-    most: f64,
-}
-
-impl TurnWatch {
-    /// Adds the orientations of a row.
-    pub(crate) fn observe(&mut self, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
-        for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
-            let of_radians =
-                |&input: &usize| layout.inputs.get(input).is_some_and(|it| it.unit.symbol() == "rad");
-            let (is_vector, most) = match form {
-                OrientationForm::QuaternionXyzw
-                | OrientationForm::QuaternionWxyz
-                | OrientationForm::MatrixByRows
-                | OrientationForm::MatrixByColumns => continue,
-                &OrientationForm::ROTATION_VECTOR => (true, TAU + ROUNDING),
-                // Angles that count on over many turns are in no other unit.
-                OrientationForm::Angles(_) => (false, 2.0 * TAU),
-            };
-            let values: Vec<f64> = columns.iter().filter_map(|&input| inputs.value(input)).collect();
-            if values.len() != 3 || !columns.iter().all(of_radians) {
-                continue;
-            }
-            self.rows += 1;
-            let size = if is_vector {
-                values.iter().map(|value| value * value).sum::<f64>().sqrt()
-            } else {
-                values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
-            };
-            if size <= most {
-                continue;
-            }
-            self.beyond += 1;
-            self.largest = self.largest.max(size);
-            self.first.get_or_insert_with(|| {
-                let (line, column) = row.place(columns.first().map_or(0, |&input| inputs.column(input)));
-                let labels = columns.iter().filter_map(|&input| layout.inputs.get(input));
-                let columns = labels.map(|input| input.label.clone()).collect();
-                First { line, column, columns, is_vector, most }
-            });
-        }
-    }
-
-    /// Checks the angles.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Unit`] if only degrees explain them.
-    pub(crate) fn finish(self, path: &Path) -> Result<()> {
-        let Some(first) = self.first else { return Ok(()) };
-        // Degrees of one or two turns; larger angles are neither.
-        if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
-            return Ok(());
-        }
-        let what =
-            if first.is_vector { "rotation vectors as long as" } else { "angles of an orientation up to" };
-        let degrees: Vec<String> = first.columns.iter().map(|name| format!("`{name}[deg]`")).collect();
-        Err(ErrorKind::Unit.error(format!(
-            "found {what} {:.1} rad in the columns {} ({} of {} rows are beyond {:.1} rad), expected radians: the unit is likely deg, \
-             which the header states as {} and a mapping as `unit = \"deg\"`",
-            self.largest,
-            first.columns.join(", "),
-            self.beyond,
-            self.rows,
-            first.most,
-            degrees.join(", ")
-        )).at(path, first.line, first.column))
-    }
-}
 
 /// Columns that makers call alike and mean in several ways.
 const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::join_doubt;
 use super::join_pairs::{Joined, Pairing};
 use super::join_words::{advice, counted, mm, words};
 use crate::Join;
+use poecal_fit::input_doubts::joined;
 use poecal_fit::start::{Agreement, Order, Pair};
 use poecal_numerics::error::Result;
 
@@ -51,13 +51,13 @@ impl Pairing<'_> {
         match found {
             Some(
                 Agreement::Other { missed_m, order, other_m } | Agreement::Alike { missed_m, order, other_m },
-            ) if !is_stated && join_doubt::is_doubtful(self.robot, missed_m.min(other_m)) => {
+            ) if !is_stated && joined::is_doubtful(self.robot, missed_m.min(other_m)) => {
                 return self.refuse(format!(
                     "found measurements that do not fit the joint readings: the nominal robot misses them by {} (median) if they are joined {by_name}, and by {} {}: {}",
                     mm(missed_m),
                     mm(other_m),
                     words(order),
-                    join_doubt::reason(self.robot, &self.rows.session_of(pairs))
+                    joined::reason(self.robot, &self.rows.session_of(pairs))
                 ));
             }
             Some(Agreement::Other { missed_m, order, other_m }) => {
@@ -122,10 +122,10 @@ impl Pairing<'_> {
         let message = format!(
             "the nominal robot misses the measurements by {} (median) if they are joined {by_name}, no less than by chance: {}",
             mm(missed_m),
-            join_doubt::reason(self.robot, &self.rows.session_of(pairs))
+            joined::reason(self.robot, &self.rows.session_of(pairs))
         );
         // A robot that moves little misses little in any order.
-        if !is_stated || join_doubt::is_doubtful(self.robot, missed_m) {
+        if !is_stated || joined::is_doubtful(self.robot, missed_m) {
             return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
         }
         Ok(format!("{joints}, {path}: {message}"))

@@ -1,9 +1,9 @@
 //! Stands of two recordings, each with a clock of its own: at which lag they are the same.
 
-use super::join_doubt::{is_doubtful, reason};
 use super::join_pairs::{Joined, Pairing};
 use super::join_words::{mm, several_lags};
 use crate::Join;
+use poecal_fit::input_doubts::joined::{is_doubtful, reason};
 use poecal_fit::start::{EVIDENT, FEWEST_PAIRS, Lagged, Motion};
 use poecal_numerics::error::Result;
 

@@ -3,13 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::join_doubt::{self, is_doubtful, reason};
 use super::join_entry::JoinEntry;
 use super::join_pairs::{Joined, JointRows};
 use super::join_plan::{MotionByLine, ReadingsByLine};
 use super::join_words::{mm, several_lags};
 use super::motions::motion_of_target;
 use crate::{Join, Lag};
+use poecal_fit::input_doubts::joined::{self, is_doubtful, reason};
 use poecal_fit::start::{AtLag, InMotion, JointStream, Motion, NoLag, smoothed};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
@@ -60,7 +60,7 @@ pub(crate) fn in_motion(
     match found {
         Ok(found) => {
             let warning = at_rest(found.clock.lag_s).map(|rows| {
-                join_doubt::warning(
+                joined::warning(
                     robot,
                     found.missed_m,
                     || rows,

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::join_doubt;
 use super::join_pairs::{Joined, Pairing, SOME_WRONG};
 use super::join_words::mm;
 use super::no_stands::NoStands;
 use crate::Join;
+use poecal_fit::input_doubts::joined;
 use poecal_fit::start::{Agreement, Aligned, Pair};
 use poecal_numerics::error::Result;
 
@@ -89,7 +89,7 @@ impl Pairing<'_> {
     /// Of one that is not, where it is larger than that of any robot.
     pub(crate) fn refuse_doubtful(&self, missed_m: f64, pairs: &[Pair], how: &str) -> Result<Option<String>> {
         let joined = || self.rows.session_of(pairs);
-        match join_doubt::warning(self.robot, missed_m, joined, how) {
+        match joined::warning(self.robot, missed_m, joined, how) {
             Ok(warning) => {
                 let files = format!("{}, {}", self.joints.path.display(), self.path.display());
                 Ok(warning.map(|it| format!("{files}: {it}")))

@@ -7,7 +7,6 @@
 //! names stand beside their values; `join_entry.rs` and `motions.rs` keep what `calibration.json` and the report show of it.
 
 pub(crate) mod beside;
-pub(crate) mod join_doubt;
 pub(crate) mod join_entry;
 pub(crate) mod join_judgement;
 pub(crate) mod join_lags;

@@ -20,4 +20,3 @@ pub(crate) mod region;
 pub(crate) mod sightings;
 pub(crate) mod taken;
 pub(crate) mod unknown_camera;
-pub(crate) mod wrong_boards;

@@ -6,7 +6,6 @@ use std::path::Path;
 use super::corner_columns::{self, CornerColumns};
 use super::gathering::{Gathering, Sight};
 use super::picture_files::{NO_CAMERA, Taken};
-use crate::checks::scale::JointWatch;
 use crate::read::Reader;
 use crate::table::header::Header;
 use crate::table::inputs::{InputReader, Range};
@@ -14,6 +13,7 @@ use crate::table::layout::ColumnLayout;
 use crate::table::number::Numbers;
 use crate::table::{Row, Table, refuse_more_rows};
 use nalgebra::Vector2;
+use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::camera::Corner;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
@@ -59,7 +59,7 @@ impl Reader<'_> {
         self.warn_of_ignored(path, &layout);
         let words = layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
         self.found.warnings.extend(words);
-        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
+        self.found.warnings.extend(inputs.joint_warnings(&table.header, &watch)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
     }
@@ -110,7 +110,7 @@ impl Reader<'_> {
         self.found.warnings.extend(joined.words.into_iter().map(own));
         self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        self.found.warnings.extend(watch.finish(path, &layout, &inputs.ranges)?);
+        self.found.warnings.extend(inputs.joint_warnings(&table.header, &watch)?);
         self.found.data.files.push(path.to_path_buf());
         let first = self.found.data.len();
         self.take_pictures(path, joined.pictures)?;
@@ -165,13 +165,8 @@ impl Reader<'_> {
         inputs: &mut InputReader<'_>,
         watch: &mut JointWatch<'_>,
     ) -> Result<Taken> {
-        inputs.read(row)?;
-        watch.unwind(row, inputs);
-        inputs.take_readings(row)?;
-        inputs.include_in_ranges();
-        watch.observe(row, inputs);
         Ok(Taken {
-            readings: inputs.readings().to_vec(),
+            readings: inputs.read_joints(row, watch)?.to_vec(),
             set: self.set(row, layout)?,
             id: text(row, layout.id).unwrap_or_default(),
             place: (row.path.to_path_buf(), row.line),

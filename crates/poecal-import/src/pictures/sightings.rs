@@ -107,7 +107,7 @@ impl Reader<'_> {
             points: 0,
             poses: 0,
             others: BTreeMap::from([("pictures", pictures)]),
-            lost: crate::LostBeams::default(),
+            lost: poecal_numerics::text::NamedLines::default(),
             separator: table.separator,
             separator_line: table.separator_line,
             units_line: table.header.units_line,

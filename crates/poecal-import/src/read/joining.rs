@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::joints::rows_of;
+use crate::Join;
 use crate::instruments::MEASURED;
 use crate::join::join_motion::in_motion;
 use crate::join::join_pairs::{Joined, JointRows, Pairing};
@@ -18,11 +19,11 @@ use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::understanding::{self, FileUnderstanding};
-use crate::{Join, LostBeams};
 use poecal_fit::start::{FEWEST_PAIRS, JointStream, Span, Unpaired};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
+use poecal_numerics::text::NamedLines;
 use poecal_numerics::unit::Unit;
 
 impl<'a> Reader<'a> {
@@ -155,7 +156,7 @@ impl<'a> Reader<'a> {
             points: 0,
             poses: 0,
             others: BTreeMap::from([("joint readings", rows)]),
-            lost: LostBeams::default(),
+            lost: NamedLines::default(),
             separator: table.separator,
             separator_line: table.separator_line,
             units_line: table.header.units_line,

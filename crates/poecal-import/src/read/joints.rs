@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use crate::ReadOptions;
-use crate::checks::scale::JointWatch;
 use crate::instruments::Opening;
 use crate::join::streams::time_of;
 use crate::pictures::taken::set_of;
@@ -14,6 +13,7 @@ use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;
 use crate::table::{Table, refuse_more_rows};
+use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -107,12 +107,7 @@ pub(crate) fn rows_of(
     let mut joints = JointsTable::default();
     while let Some(mut rows) = table.next_block()? {
         while let Some(row) = rows.next()? {
-            inputs.read(&row)?;
-            watch.unwind(&row, inputs);
-            inputs.include_in_ranges();
-            watch.observe(&row, inputs);
-            inputs.take_readings(&row)?;
-            joints.readings.extend_from_slice(inputs.readings());
+            joints.readings.extend_from_slice(inputs.read_joints(&row, &mut watch)?);
             joints.rows += 1;
             refuse_more_rows(joints.rows, &row)?;
             joints.lines.push(row.line);
@@ -132,7 +127,7 @@ pub(crate) fn rows_of(
             .error("found a header and no rows, expected at least one row of joint readings")
             .at_line(path, table.header.line));
     }
-    joints.warnings = watch.finish(path, layout, &inputs.ranges)?;
+    joints.warnings = inputs.joint_warnings(&table.header, &watch)?;
     let own = |words: String| format!("{}: {words}", path.display());
     joints.warnings.extend(layout.joint_words().into_iter().map(own));
     Ok(joints)

@@ -7,34 +7,35 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::messages::are_messages;
-use super::table::{Table, refuse_more_rows};
+use super::table::{Row, Table, refuse_more_rows};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
-use crate::checks::scale::JointWatch;
-use crate::checks::turns::TurnWatch;
-use crate::checks::{lengths, spread};
 use crate::instruments::Opening;
 use crate::join::beside::{alone, beside, has_readings_of_pictures};
 use crate::join::join_plan::{Plan, ReadingsByLine};
 use crate::join::streams::time_of;
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
 use crate::pictures::picture_files::TakenByImage;
-use crate::pictures::wrong_boards::refuse_wrong_boards;
 use crate::table::configurations::in_its_file;
 use crate::table::inputs::InputReader;
 use crate::table::layout::ColumnLayout;
 use crate::table::lost;
-use crate::table::lost::LostBeams;
 use crate::table::mapping::ColumnMap;
 use crate::table::naming::Names;
 use crate::table::number::Numbers;
+use crate::table::orientation::OrientationForm;
 use crate::table::socket_distance::Sockets;
 use crate::table::text::{Blocks, Said};
+use poecal_arm::lie::angles::Angles;
+use poecal_fit::input_doubts::boards::refuse_wrong_boards;
+use poecal_fit::input_doubts::joint_units::JointWatch;
+use poecal_fit::input_doubts::turns::TurnWatch;
+use poecal_fit::input_doubts::{Doubt, DoubtPlace, lengths, spread};
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
 use poecal_model::measurement::{Dataset, Observation};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_numerics::text::visible;
+use poecal_numerics::text::{NamedLines, visible};
 use poecal_storage::document;
 
 /// Reads measurement files, joined in their order.
@@ -100,21 +101,39 @@ pub fn parse(
 /// The warning of rows that have some components of a position beside rows that have all.
 fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
     let is_part = |row: &&Observation| row.measurement.is_part_of_position();
-    let lines: Vec<usize> = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
+    let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
     let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
-    let first = lines.get(..lines.len().min(lost::NAMED_LINES))?;
-    (has_whole && !lines.is_empty()).then(|| {
+    (has_whole && lines.count > 0).then(|| {
         format!(
             "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
             path.display(),
-            counted(lines.len()),
-            lost::named_lines(lines.len(), first)
+            counted(lines.count),
+            lines.words()
         )
     })
 }
 
 fn counted(rows: usize) -> String {
     if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
+}
+
+/// Watches the orientations of a row that are in radians.
+fn observe_turns(watch: &mut TurnWatch, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
+    for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
+        let OrientationForm::Angles(angles) = form else { continue };
+        let [x, y, z] = columns.as_slice() else { continue };
+        let of = |input: &usize| layout.inputs.get(*input);
+        let [Some(a), Some(b), Some(c)] = inputs.all([*x, *y, *z]) else { continue };
+        if !columns.iter().filter_map(of).all(|input| input.unit.symbol() == "rad") {
+            continue;
+        }
+        let place = || {
+            let (line, column) = row.place(inputs.column(*x));
+            let names = columns.iter().filter_map(of).map(|input| input.label.clone()).collect();
+            (DoubtPlace::Cell(line, column), names)
+        };
+        watch.observe([a, b, c], *angles == Angles::RotationVector, place);
+    }
 }
 
 pub(crate) struct Reader<'a> {
@@ -232,7 +251,9 @@ impl<'a> Reader<'a> {
                 "found no position in any row, expected at least one that is neither empty nor zero",
             );
         }
-        self.found.warnings.extend(lost.warning(path));
+        let skipped = lost::lost_words(&lost).into_iter();
+        let skipped = skipped.map(|it| format!("{}: skipped {it}; --strict refuses them", path.display()));
+        self.found.warnings.extend(skipped);
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
         self.found.warnings.extend(incomplete(path, new_rows));
         self.judge(&table, &layout, watch, &inputs, first)?;
@@ -251,7 +272,7 @@ impl<'a> Reader<'a> {
         self.rows(&mut table, &layout, &mut inputs)?;
         self.found.data.ids.resize(self.found.data.len(), String::new());
         // A wrong unit would be taken for a wrong order.
-        lengths::check_positions(path, self.robot, &layout, 0.0, &self.found.data.observations)
+        self.refuse_far_positions((&table, &layout), 0.0, &inputs, 0)
     }
 
     /// Takes all rows of a file, and counts them with the lost beams among them.
@@ -260,9 +281,9 @@ impl<'a> Reader<'a> {
         table: &mut Table<'_>,
         layout: &ColumnLayout,
         inputs: &mut InputReader<'_>,
-    ) -> Result<((JointWatch<'a>, TurnWatch), usize, LostBeams)> {
+    ) -> Result<((JointWatch<'a>, TurnWatch), usize, NamedLines)> {
         let mut watch = (JointWatch::new(self.robot), TurnWatch::default());
-        let (mut rows, mut lost) = (0, LostBeams::default());
+        let (mut rows, mut lost) = (0, NamedLines::default());
         while let Some(mut some) = table.next_block()? {
             while let Some(row) = some.next()? {
                 rows += 1;
@@ -272,16 +293,16 @@ impl<'a> Reader<'a> {
                     let Some(readings) = by_line.lines.get(&row.line) else { continue };
                     inputs.put_readings(readings);
                 }
-                watch.0.unwind(&row, inputs);
+                inputs.unwind(&row, &mut watch.0);
                 inputs.take_readings(&row)?;
                 if self.begins_pair(&row, layout, inputs)?
-                    || lost.take_out(&row, &layout.targets, inputs, self.options.strict)?
+                    || lost::take_out(&mut lost, &row, &layout.targets, inputs, self.options.strict)?
                 {
                     continue;
                 }
                 inputs.include_in_ranges();
-                watch.0.observe(&row, inputs);
-                watch.1.observe(&row, layout, inputs);
+                watch.0.observe(row.line, inputs.values());
+                observe_turns(&mut watch.1, &row, layout, inputs);
                 self.row(&row, layout, inputs)?;
                 if let Some(times) = &mut self.times {
                     times.resize(self.found.data.len(), time_of(&row, layout));
@@ -301,14 +322,35 @@ impl<'a> Reader<'a> {
         inputs: &InputReader<'_>,
         first: usize,
     ) -> Result<()> {
-        let path = table.header.path;
-        self.found.warnings.extend(joints.finish(path, layout, &inputs.ranges)?);
-        turns.finish(path)?;
-        let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
-        let slides_m = joints.unlimited_slides_m(&inputs.ranges);
-        lengths::check_positions(path, self.robot, layout, slides_m, new_rows)?;
-        lengths::check_ranges(path, self.robot, slides_m, new_rows)?;
-        spread::check(path, &table.header, self.robot, layout, &self.found.data, first)
+        let header = &table.header;
+        self.found.warnings.extend(inputs.joint_warnings(header, &joints)?);
+        let refuse = |doubt: Option<Doubt>| doubt.map_or(Ok(()), |it| Err(header.doubt(it, &layout.inputs)));
+        refuse(turns.finish())?;
+        let columns = inputs.columns();
+        let slides_m = joints.unlimited_slides_m(&columns);
+        self.refuse_far_positions((table, layout), slides_m, inputs, first)?;
+        let data = &self.found.data;
+        let new_rows = data.observations.get(first..).unwrap_or_default();
+        refuse(lengths::of_ranges(self.robot, slides_m, new_rows))?;
+        let x = layout.targets.first().and_then(|target| Some(target.position?[0]));
+        refuse(x.and_then(|x| spread::of_positions(self.robot, &columns, x, data, first)))
+    }
+
+    /// Refuses positions of the rows from `first` on that only another unit explains.
+    fn refuse_far_positions(
+        &self,
+        (table, layout): (&Table<'_>, &ColumnLayout),
+        slides_m: f64,
+        inputs: &InputReader<'_>,
+        first: usize,
+    ) -> Result<()> {
+        let columns = inputs.columns();
+        let of = |at: usize| columns.get(at).copied();
+        let position = layout.targets.first().and_then(|target| target.position);
+        let Some([Some(x), Some(y), Some(z)]) = position.map(|at| at.map(of)) else { return Ok(()) };
+        let rows = self.found.data.observations.get(first..).unwrap_or_default();
+        let doubt = lengths::of_positions(self.robot, [x, y, z], slides_m, rows);
+        doubt.map_or(Ok(()), |it| Err(table.header.doubt(it, &layout.inputs)))
     }
 
     fn finish(self) -> Result<MeasurementFile> {

@@ -6,7 +6,9 @@ use std::path::Path;
 use super::cells::{Cell, Separator, character_column, split_line};
 use super::column_names::number_of_column;
 use super::configurations::advice;
+use super::inputs::{Input, InputSource};
 use super::places::Sheet;
+use poecal_fit::input_doubts::{Doubt, DoubtPlace};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
@@ -290,6 +292,19 @@ impl<'a> Header<'a> {
     pub(crate) fn error(&self, kind: ErrorKind, index: usize, message: impl Into<String>) -> Error {
         let column = self.cells.get(index).map_or(1, |cell| cell.column);
         self.error_at(kind, (self.line, column, index), message)
+    }
+
+    /// The error of a doubt, where it shows.
+    pub(crate) fn doubt(&self, doubt: Doubt, inputs: &[Input]) -> Error {
+        let error = ErrorKind::Unit.error(doubt.message.clone());
+        match doubt.place {
+            DoubtPlace::Cell(line, column) => error.at(self.path, line, column),
+            DoubtPlace::Line(line) => error.at_line(self.path, line),
+            DoubtPlace::Head(input) => match inputs.get(input).map(|it| it.source) {
+                Some(InputSource::Column(column)) => self.error(ErrorKind::Unit, column, doubt.message),
+                Some(InputSource::Constant(_)) | None => error.in_file(self.path),
+            },
+        }
     }
 
     /// An error at a line, a character and a column of the table.

@@ -1,7 +1,10 @@
 //! The numbers of a row, in metres and radians.
 
+use super::header::Header;
 use super::number::Numbers;
 use crate::table::Row;
+use poecal_fit::input_doubts::ReadColumn;
+use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_numerics::error::{Error, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
@@ -187,17 +190,51 @@ impl<'a> InputReader<'a> {
         }
     }
 
-    /// Takes whole turns off a joint reading of the current row.
-    pub(crate) fn unwind(&mut self, input: usize, turns: f64) {
-        if let (Some(Some(value)), Some(taken)) = (self.values.get_mut(input), self.turns.get_mut(input)) {
-            *value -= turns * std::f64::consts::TAU;
-            *taken += turns;
-        }
+    /// Takes whole turns off the joint readings of the current row that are beyond their limits.
+    pub(crate) fn unwind(&mut self, row: &Row<'_>, watch: &mut JointWatch<'_>) {
+        let inputs = self.inputs;
+        let place = |input| row.place(column(inputs, input));
+        watch.unwind(&place, &mut self.values, &mut self.turns);
+    }
+
+    /// Reads the joint readings of a row that has nothing else, which are watched.
+    pub(crate) fn read_joints(&mut self, row: &Row<'_>, watch: &mut JointWatch<'_>) -> Result<&[f64]> {
+        self.read(row)?;
+        self.unwind(row, watch);
+        self.take_readings(row)?;
+        self.include_in_ranges();
+        watch.observe(row.line, &self.values);
+        Ok(&self.readings)
+    }
+
+    /// What was read of each input.
+    pub(crate) fn columns(&self) -> Vec<ReadColumn<'a>> {
+        let column = |(input, range): (&'a Input, &Range)| ReadColumn {
+            name: &input.name,
+            unit: input.unit,
+            unit_from: input.unit_from,
+            range: range.0,
+        };
+        self.inputs.iter().zip(&self.ranges).map(column).collect()
+    }
+
+    /// The warnings on the joint readings of a table.
+    ///
+    /// # Errors
+    /// The doubt about their unit.
+    pub(crate) fn joint_warnings(&self, header: &Header<'_>, watch: &JointWatch<'_>) -> Result<Vec<String>> {
+        let found = watch.finish(&self.columns()).map_err(|it| header.doubt(it, self.inputs))?;
+        Ok(found.into_iter().map(|it| format!("{}: {it}", header.path.display())).collect())
     }
 
     /// The whole turns that were taken off each joint reading of the current row.
     pub(crate) fn turns(&self) -> &[f64] {
         &self.turns
+    }
+
+    /// The numbers of the current row.
+    pub(crate) fn values(&self) -> &[Option<f64>] {
+        &self.values
     }
 
     /// Joint readings of the current row.
@@ -213,10 +250,15 @@ impl<'a> InputReader<'a> {
 
     /// The file's column of an input; 0 for a constant.
     pub(crate) fn column(&self, input: usize) -> usize {
-        match self.inputs.get(input).map(|input| input.source) {
-            Some(InputSource::Column(column)) => column,
-            Some(InputSource::Constant(_)) | None => 0,
-        }
+        column(self.inputs, input)
+    }
+}
+
+/// The file's column of an input; 0 for a constant.
+fn column(inputs: &[Input], input: usize) -> usize {
+    match inputs.get(input).map(|input| input.source) {
+        Some(InputSource::Column(column)) => column,
+        Some(InputSource::Constant(_)) | None => 0,
     }
 }
 

@@ -1,27 +1,13 @@
 //! Lost beams: measurements without a position.
 
-use std::path::Path;
-
 use nalgebra::Matrix3;
-use serde::Serialize;
 
 use super::inputs::InputReader;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
 use crate::table::Row;
 use poecal_numerics::error::{Error, Result};
-
-/// Most lines in a warning.
-pub(crate) const NAMED_LINES: usize = 5;
-
-/// Measurements omitted because the device did not see the target: their position is empty, or exactly zero in all coordinates.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct LostBeams {
-    /// Their number.
-    pub count: usize,
-    /// Lines of the first ones.
-    pub first_lines: Vec<usize>,
-}
+use poecal_numerics::text::NamedLines;
 
 /// State of a target in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,74 +20,52 @@ enum Beam {
     Zero,
 }
 
-impl LostBeams {
-    /// Removes lost beams from a row's numbers; true if the row has no measurement then.
-    ///
-    /// # Errors
-    /// [`poecal_numerics::error::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
-    pub(crate) fn take_out(
-        &mut self,
-        row: &Row<'_>,
-        targets: &[TargetLayout],
-        inputs: &mut InputReader<'_>,
-        strict: bool,
-    ) -> Result<bool> {
-        let before = self.count;
-        let mut seen = false;
-        for target in targets {
-            match beam(row, target, inputs) {
-                Beam::Seen => seen = true,
-                // With several targets in a row, some may not have been measured.
-                Beam::Empty => {}
-                Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
-                Beam::Zero => {
-                    self.add(row.line);
-                    inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
-                    target.kinds.iter().for_each(|kind| inputs.forget(&kind.numbers));
-                    inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
-                }
+/// Removes lost beams from a row's numbers: measurements without a position, since the device did not see the target: it is empty, or exactly zero in
+/// all coordinates. True if the row has no measurement then.
+///
+/// # Errors
+/// [`poecal_numerics::error::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
+pub(crate) fn take_out(
+    lost: &mut NamedLines,
+    row: &Row<'_>,
+    targets: &[TargetLayout],
+    inputs: &mut InputReader<'_>,
+    strict: bool,
+) -> Result<bool> {
+    let before = lost.count;
+    let mut seen = false;
+    for target in targets {
+        match beam(row, target, inputs) {
+            Beam::Seen => seen = true,
+            // With several targets in a row, some may not have been measured.
+            Beam::Empty => {}
+            Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
+            Beam::Zero => {
+                lost.add(row.line);
+                inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
+                target.kinds.iter().for_each(|kind| inputs.forget(&kind.numbers));
+                inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
             }
         }
-        if !seen && self.count == before {
-            if let (true, Some(target)) = (strict, targets.first()) {
-                return Err(refused(row, target, inputs, "an empty position"));
-            }
-            self.add(row.line);
+    }
+    if !seen && lost.count == before {
+        if let (true, Some(target)) = (strict, targets.first()) {
+            return Err(refused(row, target, inputs, "an empty position"));
         }
-        Ok(!seen)
+        lost.add(row.line);
     }
-
-    fn add(&mut self, line: usize) {
-        self.count += 1;
-        if self.first_lines.len() < NAMED_LINES && self.first_lines.last() != Some(&line) {
-            self.first_lines.push(line);
-        }
-    }
-
-    /// Omitted measurements in words; `None` if there are none.
-    #[must_use]
-    pub fn words(&self) -> Option<String> {
-        let what = match self.count {
-            0 => return None,
-            1 => "1 measurement".to_owned(),
-            count => format!("{count} measurements"),
-        };
-        let lines = named_lines(self.count, &self.first_lines);
-        Some(format!("{what} with an empty or zero position, as of a lost beam ({lines})"))
-    }
-
-    /// Warning for a file.
-    pub(crate) fn warning(&self, path: &Path) -> Option<String> {
-        Some(format!("{}: skipped {}; --strict refuses them", path.display(), self.words()?))
-    }
+    Ok(!seen)
 }
 
-/// The first few lines of so many cases, in words.
-pub(crate) fn named_lines(count: usize, first_lines: &[usize]) -> String {
-    let lines: Vec<String> = first_lines.iter().map(usize::to_string).collect();
-    let word = if lines.len() == 1 { "line" } else { "lines" };
-    let more = if count > NAMED_LINES { ", …" } else { "" };
-    format!("{word} {}{more}", lines.join(", "))
+/// Lost beams of a file that were omitted in words; `None` if there are none.
+#[must_use]
+pub fn lost_words(lost: &NamedLines) -> Option<String> {
+    let what = match lost.count {
+        0 => return None,
+        1 => "1 measurement".to_owned(),
+        count => format!("{count} measurements"),
+    };
+    Some(format!("{what} with an empty or zero position, as of a lost beam ({})", lost.words()))
 }
 
 /// Whether the row has a position of a target.

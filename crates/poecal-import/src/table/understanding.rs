@@ -8,11 +8,11 @@ use serde::Serialize;
 use super::cells::Separator;
 use super::inputs::{Input, InputSource, Range};
 use super::layout::{ColumnLayout, SetRule};
-use super::lost::LostBeams;
 use super::mapping::PoseDirection;
 use super::number::DecimalSign;
 use crate::table::Table;
 use poecal_numerics::named_unit::UnitSource;
+use poecal_numerics::text::NamedLines;
 
 /// Source of one of our columns.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,7 +52,7 @@ pub struct FileUnderstanding {
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub others: BTreeMap<&'static str, usize>,
     /// Lost beams: measurements without a position, which were omitted.
-    pub lost: LostBeams,
+    pub lost: NamedLines,
     /// Separator of cells.
     pub separator: Separator,
     /// Line that states the separator, as `sep=;`; `None` if there is none.

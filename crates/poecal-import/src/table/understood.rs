@@ -5,7 +5,6 @@ use std::path::Path;
 
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
-use super::lost::LostBeams;
 use super::understanding;
 use super::understanding::{ColumnUnderstanding, FileUnderstanding};
 use crate::checks::turns;
@@ -13,6 +12,7 @@ use crate::read::Reader;
 use crate::table::Table;
 use poecal_model::robot::Controller;
 use poecal_numerics::error::{ErrorKind, Result, shown};
+use poecal_numerics::text::NamedLines;
 
 /// What rows are of that have some components of a position.
 const COMPONENTS: &str = "single components";
@@ -27,7 +27,7 @@ impl Reader<'_> {
         table: &Table<'_>,
         layout: &ColumnLayout,
         inputs: &InputReader<'_>,
-        (first, rows, lost): (usize, usize, LostBeams),
+        (first, rows, lost): (usize, usize, NamedLines),
     ) -> Result<()> {
         let path = table.header.path;
         let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::ReadOptions;
-use crate::checks::scale::JointWatch;
 use crate::table::header::Header;
 use crate::table::inputs::{Input, InputReader, InputSource, Term};
 use crate::table::layout::ColumnLayout;
@@ -12,6 +11,7 @@ use crate::table::mapping::ColumnMap;
 use crate::table::number::{DecimalSign, Numbers};
 use crate::table::text::Blocks;
 use crate::table::{Table, TableRows};
+use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::robot::{Counting, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
@@ -75,7 +75,7 @@ pub fn rewrite_joints(
             .error("found a header and no rows, expected at least one row of joint readings")
             .at_line(path, table.header.line));
     }
-    let mut warnings = watch.finish(path, &layout, &inputs.ranges)?;
+    let mut warnings = inputs.joint_warnings(&table.header, &watch)?;
     warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
     rewritten.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(rewritten)
@@ -134,7 +134,7 @@ impl Rewriting {
         &mut self,
         mut rows: TableRows<'_>,
         inputs: &mut InputReader<'_>,
-        watch: &mut JointWatch,
+        watch: &mut JointWatch<'_>,
         change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
     ) -> Result<usize> {
         let block = rows.text;
@@ -144,11 +144,7 @@ impl Rewriting {
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_by_key(|&at| self.columns[at].0);
         while let Some(row) = rows.next()? {
-            inputs.read(&row)?;
-            watch.unwind(&row, inputs);
-            inputs.include_in_ranges();
-            watch.observe(&row, inputs);
-            inputs.take_readings(&row)?;
+            inputs.read_joints(&row, watch)?;
             self.numbers.clear();
             self.numbers.extend_from_slice(inputs.readings());
             change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
-use poecal_import::{LARGEST_ANGLE_RAD, LARGEST_NUMBER, MOST_REACHES, WRONG_UNIT_SHARE};
+use poecal_fit::input_doubts::joint_units::LARGEST_OTHERWISE;
+use poecal_fit::input_doubts::{SHARE, lengths};
+use poecal_import::LARGEST_NUMBER;
 use poecal_model::measurement::{ByQuantity, Dataset, Measurement, Observation, Quantity, Set};
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::Error;
@@ -130,11 +132,11 @@ fn refuse_degrees(robot: &Robot, readings: &[f64]) -> PyResult<()> {
             robot.joints.iter().filter(|joint| joint.reading.name == *name).collect();
         let turns = own.iter().all(|joint| joint.kind == JointKind::Revolute);
         let limit = own.iter().filter_map(|joint| joint.limits).map(|it| it.lower.abs().max(it.upper.abs()));
-        let largest = limit.fold(LARGEST_ANGLE_RAD, f64::max);
+        let largest = limit.fold(LARGEST_OTHERWISE, f64::max);
         let values = || readings.chunks_exact(names.len()).filter_map(|row| row.get(at).copied());
         let beyond = values().filter(|value| value.abs() > largest).count();
         let degrees_fit = values().all(|value| value.to_radians().abs() <= largest);
-        if turns && degrees_fit && beyond as f64 > WRONG_UNIT_SHARE * rows as f64 {
+        if turns && degrees_fit && beyond as f64 > SHARE * rows as f64 {
             let extreme = values().fold(0.0, |most: f64, value| most.max(value.abs()));
             let message = format!(
                 "found {extreme} rad of {name}, expected radians: if they are degrees, write angle_unit=\"deg\""
@@ -159,7 +161,7 @@ fn refuse_millimetres(robot: &Robot, seen: &[Measurement]) -> PyResult<()> {
             spread_m = spread_m.max(high - low);
         }
     }
-    if reach_m > 0.0 && spread_m > MOST_REACHES * reach_m {
+    if reach_m > 0.0 && spread_m > lengths::REACHES * reach_m {
         let message = format!(
             "found positions that spread over {spread_m:.1} m of a robot that reaches {reach_m:.2} m, expected metres: if they are millimetres, write \
              length_unit=\"mm\""

@@ -1,16 +1,11 @@
 //! Positions and distances in a wrong unit, by how far the robot reaches.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
 
-use super::scale::{SHARE, short, state_it};
-use crate::table::inputs::Input;
-use crate::table::layout::ColumnLayout;
+use super::{Doubt, DoubtPlace, ReadColumn, SHARE, short, state_it};
 use poecal_model::measurement::Observation;
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::{median, median_point};
-use poecal_numerics::error::{ErrorKind, Result};
 
 /// Motion below which a coordinate did not move, as a share of the reach.
 const STILL: f64 = 1e-2;
@@ -19,85 +14,82 @@ const RIGHT_REACHES: f64 = 4.0;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 pub const REACHES: f64 = 20.0;
 
-/// Refuses distances that differ by more than the robot reaches, from which their unit must be smaller.
-pub(crate) fn check_ranges(path: &Path, robot: &Robot, slides_m: f64, rows: &[Observation]) -> Result<()> {
+/// The doubt about distances that differ by more than the robot reaches, from which their unit must be smaller. `slides_m` is how far slides without
+/// limits move.
+#[must_use]
+pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<Doubt> {
     let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
-    let Some(middle) = median(ranged().map(|(range, _)| range)) else { return Ok(()) };
+    let middle = median(ranged().map(|(range, _)| range))?;
     let reach = robot.reach_m() + slides_m;
     let far = |range: f64| (range - middle).abs() > 2.0 * reach;
     let count = ranged().filter(|(range, _)| far(*range)).count();
-    let furthest = ranged().max_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
-    let Some((range, row)) = furthest else { return Ok(()) };
+    let (range, row) = ranged().max_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()))?;
     if !far(range) || (count as f64) < SHARE * ranged().count() as f64 {
-        return Ok(());
+        return None;
     }
-    Err(ErrorKind::Unit.error(format!(
+    let message = format!(
         "found distances up to {} m from their middle, where the robot reaches {} m, expected another unit, most likely mm; write \
          the unit in the header, as `distance[mm]`",
         short((range - middle).abs()),
         short(reach)
-    )).at_line(path, row.source.line as usize))
+    );
+    Some(Doubt::new(DoubtPlace::Line(row.source.line as usize), message))
 }
 
-/// Refuses positions whose spread shows that their unit must be smaller.
-pub(crate) fn check_positions(
-    path: &Path,
+/// The doubt about positions whose spread shows that their unit must be smaller, of columns x, y, z.
+#[must_use]
+pub fn of_positions(
     robot: &Robot,
-    layout: &ColumnLayout,
+    columns: [ReadColumn<'_>; 3],
     slides_m: f64,
     rows: &[Observation],
-) -> Result<()> {
-    let columns = layout.targets.first().and_then(|target| target.position);
-    let Some(inputs) = columns.and_then(|at| {
-        let [x, y, z] = at.map(|at| layout.inputs.get(at));
-        Some([x?, y?, z?])
-    }) else {
-        return Ok(());
-    };
+) -> Option<Doubt> {
     // The reach does not contain prismatic joints without limits.
     let reach = robot.reach_m() + slides_m;
     let placed = || rows.iter().filter_map(|row| Some((row.measurement.position()?, row)));
     let positions: Vec<Vector3<f64>> = placed().map(|(position, _)| position).collect();
     let middle = median_point(&positions);
     let far = positions.iter().filter(|position| (*position - middle).norm() > 2.0 * reach).count();
-    let furthest = placed()
+    let (apart, line) = placed()
         .map(|(position, row)| (position - middle, row.source.line))
-        .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
-    let Some((apart, line)) = furthest else { return Ok(()) };
+        .max_by(|a, b| a.0.norm().total_cmp(&b.0.norm()))?;
     let spread = apart.norm();
     if spread <= REACHES * reach
         || spread > 1e3 * REACHES * reach
         || (far as f64) < SHARE * positions.len() as f64
     {
-        return Ok(());
+        return None;
     }
     let far_of =
         |axis: usize| positions.iter().fold(0.0, |most: f64, it| most.max((it[axis] - middle[axis]).abs()));
-    match positions_message(inputs, [0, 1, 2].map(far_of), apart, reach) {
-        Some(message) => Err(ErrorKind::Unit.error(message).at_line(path, line as usize)),
-        None => Ok(()),
-    }
+    let message = positions_message(columns, [0, 1, 2].map(far_of), apart, reach)?;
+    Some(Doubt::new(DoubtPlace::Line(line as usize), message))
 }
 
 /// What is wrong of positions of which one is so far from their middle, by how far each coordinate is at most; nothing without a smaller unit.
-fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, reach: f64) -> Option<String> {
+fn positions_message(
+    columns: [ReadColumn<'_>; 3],
+    far: [f64; 3],
+    apart: Vector3<f64>,
+    reach: f64,
+) -> Option<String> {
     // The columns of which that is so: a header may state the unit of one of three wrongly.
     // One in which nothing moved shows nothing.
     let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
     let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };
     let mut headers = Vec::new();
-    for input in own.iter().map(|axis| inputs[*axis]) {
+    for input in own.iter().map(|axis| columns[*axis]) {
         let smaller = match input.unit.symbol() {
             "m" | "cm" | "in" => "mm",
             "mm" => "um",
             "um" => "nm",
             _ => return None,
         };
-        headers.push((input.name.as_str(), smaller));
+        headers.push((input.name, smaller));
     }
     let (first, smaller) = headers.first()?;
-    let unit = inputs[own[0]].unit;
+    let unit = columns[own[0]].unit;
     let what = match own.len() {
         3 => "positions".to_owned(),
         1 => format!("values of `{first}`"),
@@ -107,7 +99,7 @@ fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, re
         ),
     };
     let others: Vec<&str> =
-        (0..3).filter(|axis| !own.contains(axis)).map(|axis| inputs[axis].name.as_str()).collect();
+        (0..3).filter(|axis| !own.contains(axis)).map(|axis| columns[axis].name).collect();
     let others = match others.as_slice() {
         [] => String::new(),
         [one] => format!(", beside `{one}`, which it can reach"),
@@ -120,7 +112,7 @@ fn positions_message(inputs: [&Input; 3], far: [f64; 3], apart: Vector3<f64>, re
         short(unit.from_si(if own.len() == 3 { apart.norm() } else { apart[own[0]].abs() })),
         short(unit.from_si(reach)),
         written.join(","),
-        state_it(inputs[own[0]].unit_from, smaller),
+        state_it(columns[own[0]].unit_from, smaller),
         stated = unit.symbol(),
     ))
 }

@@ -1,19 +1,13 @@
 //! Units checked by the spread of measured positions, compared with the nominal model at the same configurations.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
 
-use super::scale::short;
-use crate::table::header::Header;
-use crate::table::inputs::{Input, InputSource};
-use crate::table::layout::ColumnLayout;
+use super::{Doubt, DoubtPlace, ReadColumn, short};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Mount, Robot};
 use poecal_model::simulate::seen;
 use poecal_numerics::distributions::{median, median_point};
-use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, units_of};
 use poecal_numerics::unit::Unit;
 
@@ -35,22 +29,19 @@ const FULL_TURN_AS_DEGREES: f64 = 6.4;
 /// Factor by which angles misread as degrees reduce the model's spread at least.
 const SMALLER: f64 = 10.0;
 
-/// Refuses positions or joint angles whose spread only another unit explains; `first` is the file's first row.
-///
-/// # Errors
-/// [`ErrorKind::Unit`].
-pub(crate) fn check(
-    path: &Path,
-    header: &Header<'_>,
+/// The doubt about positions or joint angles whose spread only another unit explains, of the rows from `first` on. Columns are those of the joint
+/// readings, then others; x of the position is the one with the number `x`.
+#[must_use]
+pub fn of_positions(
     robot: &Robot,
-    layout: &ColumnLayout,
+    columns: &[ReadColumn<'_>],
+    x: usize,
     data: &Dataset,
     first: usize,
-) -> Result<()> {
+) -> Option<Doubt> {
     let step = data.len().saturating_sub(first).div_ceil(ROWS).max(1);
     let rows: Vec<usize> = (first..data.len()).step_by(step).collect();
-    let position = layout.targets.first().and_then(|target| layout.inputs.get(target.position?[0]));
-    let (Some(input), true) = (position, rows.len() >= FEWEST_ROWS) else { return Ok(()) };
+    let input = columns.get(x).filter(|_| rows.len() >= FEWEST_ROWS)?;
     let placed =
         |row: &&usize| data.observations.get(**row).is_some_and(|row| row.measurement.position().is_some());
     let rows: Vec<usize> = rows.iter().filter(placed).copied().collect();
@@ -59,7 +50,7 @@ pub(crate) fn check(
     let measured = spread(&positions);
     let tips = |angle_factor: f64| -> Vec<Vector3<f64>> {
         let tip = |&row: &usize| {
-            let readings = data.readings(row).iter().zip(&layout.inputs);
+            let readings = data.readings(row).iter().zip(columns);
             let readings: Vec<f64> = readings
                 .map(|(value, input)| if is_angle(input) { value * angle_factor } else { *value })
                 .collect();
@@ -73,30 +64,20 @@ pub(crate) fn check(
     let modelled = |angle_factor: f64| spread(&tips(angle_factor));
     let smallest = SHARE_OF_REACH * robot.reach_m();
     let as_read = modelled(1.0);
-    let message = if let Some(first_angle) = degrees_within_a_turn(layout, data, &rows)
+    if let Some(angle) = degrees_within_a_turn(columns, data, &rows)
         && measured > SMALLER * as_read
     {
         let as_radians = modelled(1f64.to_degrees());
-        let explains = as_radians > smallest && is_about(measured / as_radians, 1.0);
-        explains.then(|| (first_angle, angle_message(first_angle, measured, as_read)))
-    } else {
-        None
-    };
-    let message = message.or_else(|| {
-        let ratio = measured / as_read;
-        let factor = THOUSANDS.into_iter().find(|factor| is_about(ratio, *factor));
-        let factor = factor.or_else(|| near_unit(input.unit, ratio, &positions, &tips(1.0)));
-        factor
-            .filter(|_| as_read > smallest)
-            .map(|factor| (input, position_message(input, measured, as_read, factor)))
-    });
-    match message {
-        None => Ok(()),
-        Some((input, message)) => Err(match input.source {
-            InputSource::Column(column) => header.error(ErrorKind::Unit, column, message),
-            InputSource::Constant(_) => ErrorKind::Unit.error(message).in_file(path),
-        }),
+        if as_radians > smallest && is_about(measured / as_radians, 1.0) {
+            let message = angle_message(&columns[angle], measured, as_read);
+            return Some(Doubt::new(DoubtPlace::Head(angle), message));
+        }
     }
+    let ratio = measured / as_read;
+    let factor = THOUSANDS.into_iter().find(|factor| is_about(ratio, *factor));
+    let factor = factor.or_else(|| near_unit(input.unit, ratio, &positions, &tips(1.0)))?;
+    let message = || position_message(input, measured, as_read, factor);
+    (as_read > smallest).then(|| Doubt::new(DoubtPlace::Head(x), message()))
 }
 
 /// Instrument and target of a row, if the model says where they are.
@@ -142,24 +123,24 @@ fn is_about(ratio: f64, expected: f64) -> bool {
     ratio > expected / FACTOR && ratio < expected * FACTOR
 }
 
-fn is_angle(input: &Input) -> bool {
+fn is_angle(input: &ReadColumn<'_>) -> bool {
     input.unit.of() == Unit::Radian
 }
 
 /// The first joint angle, if all are in degrees and as small as radians.
-fn degrees_within_a_turn<'a>(layout: &'a ColumnLayout, data: &Dataset, rows: &[usize]) -> Option<&'a Input> {
-    let count = data.reading_names().len();
-    let mut angles = layout.inputs.iter().take(count).filter(|input| is_angle(input));
-    let first = angles.next().filter(|input| input.unit.symbol() == "deg")?;
+fn degrees_within_a_turn(columns: &[ReadColumn<'_>], data: &Dataset, rows: &[usize]) -> Option<usize> {
+    let columns = columns.get(..data.reading_names().len())?;
+    let first = columns.iter().position(is_angle)?;
+    let are_degrees = columns.iter().filter(|it| is_angle(it)).all(|it| it.unit.symbol() == "deg");
     let largest = FULL_TURN_AS_DEGREES.to_radians();
     let small = |&row: &usize| {
-        let readings = data.readings(row).iter().zip(&layout.inputs);
-        readings.filter(|(_, input)| is_angle(input)).all(|(value, _)| value.abs() <= largest)
+        let readings = data.readings(row).iter().zip(columns);
+        readings.filter(|(_, column)| is_angle(column)).all(|(value, _)| value.abs() <= largest)
     };
-    (angles.all(|input| input.unit.symbol() == "deg") && rows.iter().all(small)).then_some(first)
+    (are_degrees && rows.iter().all(small)).then_some(first)
 }
 
-fn angle_message(input: &Input, measured: f64, modelled: f64) -> String {
+fn angle_message(input: &ReadColumn<'_>, measured: f64, modelled: f64) -> String {
     format!(
         "found joint angles of at most {FULL_TURN_AS_DEGREES} deg that move the model's tip by {} mm where the positions \
          spread over {} mm, expected about the same: most likely they are in rad, not deg; write `{}[rad]` in the header \
@@ -176,7 +157,7 @@ fn spoken(symbol: &str) -> &str {
 }
 
 /// `factor`: how many times the model's spread the measured one is, as a ratio of units.
-fn position_message(input: &Input, measured: f64, modelled: f64, factor: f64) -> String {
+fn position_message(input: &ReadColumn<'_>, measured: f64, modelled: f64, factor: f64) -> String {
     let stated = input.unit;
     let model = format!(
         "the model's lengths are {} times too {}",

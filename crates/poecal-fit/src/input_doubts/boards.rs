@@ -14,7 +14,7 @@ const SOME: usize = 8;
 
 /// Refuses pictures whose corners are far from where any pose of the board would have them, and says whether columns and rows of the board are
 /// exchanged.
-pub(crate) fn refuse_wrong_boards(data: &Dataset) -> Result<()> {
+pub fn refuse_wrong_boards(data: &Dataset) -> Result<()> {
     let pictures = &data.pictures;
     for (at, board) in pictures.boards.iter().enumerate() {
         let Some((off, focal)) = off_px(pictures, at).filter(|(off, focal)| *off > OFF * focal) else {

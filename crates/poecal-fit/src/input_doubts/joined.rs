@@ -1,7 +1,6 @@
 //! Whether the nominal robot misses what was joined by so much that it may not belong together.
 
-use super::join_words::mm;
-use poecal_fit::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
+use crate::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 
@@ -12,7 +11,8 @@ const DOUBTFUL: f64 = 0.05;
 const LOOK: &str = "look at the units, the signs and the order of joints and measurements";
 
 /// What a diagnosis of mistakes says of what was joined.
-pub(crate) fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
+#[must_use]
+pub fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
     let found = diagnose(robot, joined, &joined.all_rows(), &DiagnosisOptions::default());
     // Rows that repeat others explain no error.
     let mut known = found.iter().filter(|it| it.kind != DiagnosisKind::DuplicateRows);
@@ -20,12 +20,14 @@ pub(crate) fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
 }
 
 /// The same, or where to look.
-pub(crate) fn reason(robot: &Robot, joined: &Dataset) -> String {
+#[must_use]
+pub fn reason(robot: &Robot, joined: &Dataset) -> String {
     diagnosis(robot, joined).unwrap_or_else(|| LOOK.to_owned())
 }
 
 /// Whether a robot that misses places by so much fits them no more.
-pub(crate) fn is_doubtful(robot: &Robot, missed_m: f64) -> bool {
+#[must_use]
+pub fn is_doubtful(robot: &Robot, missed_m: f64) -> bool {
     missed_m > DOUBTFUL * robot.reach_m()
 }
 
@@ -33,7 +35,7 @@ pub(crate) fn is_doubtful(robot: &Robot, missed_m: f64) -> bool {
 ///
 /// # Errors
 /// What refuses what is missed by more than any robot is off, and is not explained.
-pub(crate) fn warning(
+pub fn warning(
     robot: &Robot,
     missed_m: f64,
     joined: impl FnOnce() -> Dataset,
@@ -50,8 +52,8 @@ pub(crate) fn warning(
     }
     let share = 100.0 * missed_m / robot.reach_m();
     let missed = format!(
-        "the nominal robot misses the measurements by {} (median) if they are joined {how}, which is {share:.1} % of its reach",
-        mm(missed_m)
+        "the nominal robot misses the measurements by {:.3} mm (median) if they are joined {how}, which is {share:.1} % of its reach",
+        1e3 * missed_m
     );
     match diagnosis(robot, &data) {
         Some(statement) => Ok(Some(format!("{missed}: {statement}"))),
