@@ -3,9 +3,9 @@
 // web/npm/build.mjs makes web/npm/dist first.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { test } from "node:test";
 import { gzipSync } from "node:zlib";
 import { LEVELS, limited } from "./levels.mjs";
@@ -79,6 +79,22 @@ for (const [name, [words, inputs]] of Object.entries(cases)) {
     }
   });
 }
+
+test("every file is understood as the program understands it", (t) => {
+  const folders = ["fuzz/seeds/measurements", "fuzz/seeds/recorded", "fuzz/seeds/messages", "examples/elbow", "examples/howto"];
+  const paths = folders.flatMap((name) => readdirSync(join(ROOT, name)).map((file) => join(ROOT, name, file))).filter((path) => statSync(path).isFile());
+  let taken = 0;
+  for (const path of paths) {
+    const files = { "robot.urdf": robot, [basename(path)]: readFileSync(path) };
+    const all = ["check", "robot.urdf", basename(path)];
+    const here = poecal.run(all, files);
+    const there = native(all, files);
+    assert.deepEqual([here.code, here.out, here.err], [there.code, there.out, there.err], path);
+    taken += here.code === 0;
+  }
+  t.diagnostic(`${paths.length} files, ${taken} of them taken`);
+  assert.ok(taken > 10, `${taken} files were taken`);
+});
 
 test("distances: the errors of the program", (t) => {
   // What distances leave weakly determined ends a fit anywhere within the noise, from one of many starts: the last digits of sums choose

@@ -4,8 +4,8 @@
 //! nothing by itself.
 //!
 //! Text becomes lines and cells with their places (`table`), columns with a meaning and a unit (`table/layout.rs` and `table/builder.rs`, from
-//! header, mapping and robot), numbers in SI (`table/inputs.rs`) without those of lost beams (`table/lost.rs`), and at last measurements
-//! (`table/row.rs`, [`read()`]), which are judged for their scale, spread and turns (`checks`). Files of instruments and messages are made tables
+//! header, mapping and robot), numbers in SI (`table/cursor.rs`) without those of lost beams (`table/lost.rs`), and at last measurements
+//! (`table/row.rs`, [`read()`]), which rules of `poecal_fit::input_doubts` judge. Files of instruments and messages are made tables
 //! first (`instruments`, `messages`); two files are joined (`join`); `poses` and `pictures` read lists of poses and corners, `guess` names foreign
 //! columns, `write` makes templates and lists. Workbooks and bags are features.
 //!
@@ -13,7 +13,6 @@
 
 #![forbid(unsafe_code)]
 
-pub(crate) mod checks;
 pub(crate) mod guess;
 pub(crate) mod instruments;
 pub(crate) mod join;
@@ -43,7 +42,7 @@ pub use crate::table::number::DecimalSign;
 pub use crate::table::socket_distance::SocketDistances;
 pub use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use crate::write::growing::{GrowingFile, News};
-pub use crate::write::imported::imported_table;
+pub use crate::write::own_rows::imported_table;
 pub use crate::write::rewritten::{JointRow, RewrittenTable, rewrite_joints};
 pub use crate::write::template::{plan, planned_table, template};
 pub use guess::{ColumnGuess, FoundColumn, MappedChoice, MappedField, guess_columns};

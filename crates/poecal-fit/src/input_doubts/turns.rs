@@ -53,8 +53,8 @@ impl TurnWatch {
 
     /// The doubt where only degrees explain the angles.
     #[must_use]
-    pub fn finish(self) -> Option<Doubt> {
-        let first = self.first?;
+    pub fn doubt(&self) -> Option<Doubt> {
+        let first = self.first.as_ref()?;
         // Degrees of one or two turns; larger angles are neither.
         if (self.beyond as f64) < SHARE * self.rows as f64 || self.largest > (2.0 * TAU).to_degrees() {
             return None;

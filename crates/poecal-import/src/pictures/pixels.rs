@@ -7,13 +7,13 @@ use super::corner_columns::{self, CornerColumns};
 use super::gathering::{Gathering, Sight};
 use super::picture_files::{NO_CAMERA, Taken};
 use crate::read::Reader;
+use crate::table::cursor::Cursor;
 use crate::table::header::Header;
-use crate::table::inputs::{InputReader, Range};
+use crate::table::inputs::Range;
 use crate::table::layout::ColumnLayout;
 use crate::table::number::Numbers;
 use crate::table::{Row, Table, refuse_more_rows};
 use nalgebra::Vector2;
-use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::camera::Corner;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
@@ -30,12 +30,10 @@ impl Reader<'_> {
         };
         let column = table.header.cells.get(image).map_or(String::new(), |cell| cell.text.clone());
         layout.ignored.retain(|(name, _)| *name != column);
-        let numbers = Numbers::new(self.map.decimal);
-        let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
-        let mut watch = JointWatch::new(self.robot);
+        let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         while let Some(mut rows) = table.next_block()? {
             while let Some(row) = rows.next()? {
-                let taken = self.taken(&row, &layout, &mut inputs, &mut watch)?;
+                let taken = self.taken(&row, &mut inputs)?;
                 let name = text(&row, Some(image)).unwrap_or_default();
                 if name.is_empty() {
                     let message =
@@ -56,10 +54,11 @@ impl Reader<'_> {
         if column != "image" {
             self.found.warnings.push(format!("{}: took `{column}` for image", path.display()));
         }
-        self.warn_of_ignored(path, &layout);
-        let words = layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
+        self.warn_of_ignored(path, &inputs.layout);
+        let words =
+            inputs.layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
         self.found.warnings.extend(words);
-        self.found.warnings.extend(inputs.joint_warnings(&table.header, &watch)?);
+        self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
     }
@@ -74,9 +73,7 @@ impl Reader<'_> {
         let has_joints = self.taken.is_empty() || joints.iter().all(|name| table.header.count(name) > 0);
         let layout = self.layout_of_corners(&table.header, &columns, has_joints)?;
         let mut numbers = Numbers::new(self.map.decimal);
-        let mut inputs =
-            InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(self.map.decimal));
-        let mut watch = JointWatch::new(self.robot);
+        let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         let is_named = columns.names_pictures(&table.header);
         let (mut gathering, mut rows, mut seen) = (Gathering::default(), 0, [Range::default(); 3]);
         while let Some(mut some) = table.next_block()? {
@@ -85,7 +82,7 @@ impl Reader<'_> {
                 refuse_more_rows(rows, &row)?;
                 let image = text(&row, columns.image).filter(|name| !name.is_empty());
                 let taken = match has_joints {
-                    true => Some(self.taken(&row, &layout, &mut inputs, &mut watch)?),
+                    true => Some(self.taken(&row, &mut inputs)?),
                     false if image.is_none() => return Err(no_picture(&row, columns.image)),
                     false => None,
                 };
@@ -110,12 +107,12 @@ impl Reader<'_> {
         self.found.warnings.extend(joined.words.into_iter().map(own));
         self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        self.found.warnings.extend(inputs.joint_warnings(&table.header, &watch)?);
+        self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.data.files.push(path.to_path_buf());
         let first = self.found.data.len();
         self.take_pictures(path, joined.pictures)?;
         let own = columns.understood(&table.header, &seen);
-        self.understand_pictures(&table, &layout, &inputs, (first, rows, own))
+        self.understand_pictures(&table, &inputs, (first, rows, own))
     }
 
     /// The columns of the joints beside those of the corners, and what is ignored.
@@ -158,17 +155,11 @@ impl Reader<'_> {
     }
 
     /// The configuration of a row.
-    fn taken(
-        &mut self,
-        row: &Row<'_>,
-        layout: &ColumnLayout,
-        inputs: &mut InputReader<'_>,
-        watch: &mut JointWatch<'_>,
-    ) -> Result<Taken> {
+    fn taken(&mut self, row: &Row<'_>, inputs: &mut Cursor<'_>) -> Result<Taken> {
         Ok(Taken {
-            readings: inputs.read_joints(row, watch)?.to_vec(),
-            set: self.set(row, layout)?,
-            id: text(row, layout.id).unwrap_or_default(),
+            readings: inputs.read_joints(row)?.to_vec(),
+            set: self.set(row, &inputs.layout)?,
+            id: text(row, inputs.layout.id).unwrap_or_default(),
             place: (row.path.to_path_buf(), row.line),
         })
     }

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use crate::Frames;
 use crate::read::Reader;
-use crate::table::inputs::InputReader;
+use crate::table::cells::Cell;
+use crate::table::cursor::Cursor;
 use crate::table::kinds::KindColumns;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::row::{component_noise, measurement};
@@ -15,12 +16,9 @@ use poecal_model::robot::check_name;
 use poecal_numerics::error::Result;
 
 impl Reader<'_> {
-    pub(crate) fn row(
-        &mut self,
-        row: &Row<'_>,
-        layout: &ColumnLayout,
-        inputs: &InputReader<'_>,
-    ) -> Result<()> {
+    /// Takes the measurements of a row.
+    pub(crate) fn row(&mut self, row: &Row<'_>, inputs: &Cursor<'_>) -> Result<()> {
+        let layout = &inputs.layout;
         let set = self.set(row, layout)?;
         for target in &layout.targets {
             let may_be_missing = layout.targets.len() > 1;
@@ -35,7 +33,7 @@ impl Reader<'_> {
                     let message = "found `sigma_position` beside standard deviations of the components, expected one of the two";
                     return Err(row.error(inputs.column(input), message));
                 }
-                self.observation(row, layout, (target, set, None), (measurement, stated), inputs)?;
+                self.observation(row, (target, set, None), (measurement, stated), inputs)?;
                 if let Some(shape) = shape {
                     self.found.data.state_noise(self.found.data.len() - 1, shape);
                 }
@@ -45,7 +43,7 @@ impl Reader<'_> {
                 if let Some((measurement, stated)) =
                     kind.measurement(row, inputs, (has_position, self.options.contact))?
                 {
-                    self.observation(row, layout, (target, set, Some(kind)), (measurement, stated), inputs)?;
+                    self.observation(row, (target, set, Some(kind)), (measurement, stated), inputs)?;
                 }
             }
         }
@@ -53,16 +51,10 @@ impl Reader<'_> {
     }
 
     /// Whether a row is the first one of a pair, the configuration from which the second is seen.
-    pub(crate) fn begins_pair(
-        &mut self,
-        row: &Row<'_>,
-        layout: &ColumnLayout,
-        inputs: &InputReader<'_>,
-    ) -> Result<bool> {
-        let Some((column, name)) = layout.pair.and_then(|at| Some((at, row.cells.get(at)?.text()))) else {
-            return Ok(false);
-        };
-        if name.is_empty() || self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
+    pub(crate) fn begins_pair(&mut self, row: &Row<'_>, inputs: &Cursor<'_>) -> Result<bool> {
+        let pair = inputs.layout.pair;
+        let Some((column, name)) = pair.zip(row.text_of(pair)) else { return Ok(false) };
+        if self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
             return Ok(false);
         }
         if let Some((_, line)) = self.begun.get(name.as_ref()) {
@@ -80,14 +72,13 @@ impl Reader<'_> {
     fn observation(
         &mut self,
         row: &Row<'_>,
-        layout: &ColumnLayout,
         (target, set, kind): (&TargetLayout, Option<Set>, Option<&KindColumns>),
         (measurement, stated): (Measurement, Stated),
-        inputs: &InputReader<'_>,
+        inputs: &Cursor<'_>,
     ) -> Result<()> {
+        let layout = &inputs.layout;
         let target = self.target(row, layout, target)?;
-        let pair = layout.pair.and_then(|at| row.cells.get(at)).map(|cell| cell.text());
-        let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
+        let from = row.text_of(layout.pair).and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
         let observation = Observation {
             station: self.station(row, layout, kind, from.map(|_| target))?,
             from,
@@ -112,13 +103,14 @@ impl Reader<'_> {
 
     /// The stated set of a row.
     pub(crate) fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
-        let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
         match &layout.set {
             SetRule::Unstated => Ok(None),
             SetRule::Words(index) => set_of(row, *index),
             SetRule::Where(index, rule) => {
                 self.fit_values_seen.resize(rule.values.len(), false);
-                let Some(value) = rule.matching(&text(*index)) else { return Ok(Some(Set::HeldOut)) };
+                let Some(value) = rule.matching(&row.text_of(Some(*index)).unwrap_or_default()) else {
+                    return Ok(Some(Set::HeldOut));
+                };
                 if let Some(seen) = self.fit_values_seen.get_mut(value) {
                     *seen = true;
                 }
@@ -129,7 +121,7 @@ impl Reader<'_> {
 
     /// Index of the row's target. Either all rows name their target or none does.
     fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
-        let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
+        let cell = row.cells.get(layout.target_column.unwrap_or(usize::MAX)).map(Cell::text);
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
         let column = layout.target_column;
         let index = self.targets.index(row, column, "target", name)?;
@@ -150,9 +142,8 @@ impl Reader<'_> {
         kind: Option<&KindColumns>,
         shared: Option<usize>,
     ) -> Result<usize> {
-        let text = |column: usize| row.cells.get(column).map(|cell| cell.text()).filter(|it| !it.is_empty());
         let own = kind.and_then(|kind| kind.place_name(row));
-        let instrument = layout.instrument.and_then(text);
+        let instrument = row.text_of(layout.instrument);
         if let (Some(kind), Some(own), Some(other)) = (kind, &own, &instrument)
             && own != other
         {
@@ -227,7 +218,7 @@ impl Reader<'_> {
 
 /// The set that a cell states.
 pub(crate) fn set_of(row: &Row<'_>, index: usize) -> Result<Option<Set>> {
-    match row.cells.get(index).map(|cell| cell.text()).unwrap_or_default().as_ref() {
+    match row.text_of(Some(index)).unwrap_or_default().as_ref() {
         "" => Ok(None),
         "fit" => Ok(Some(Set::Fit)),
         "held_out" => Ok(Some(Set::HeldOut)),

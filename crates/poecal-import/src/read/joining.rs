@@ -14,16 +14,14 @@ use crate::join::no_stands::NoStands;
 use crate::join::streams::{MeasuredStands, stands_of_joints, stands_of_measured};
 use crate::read::Reader;
 use crate::table::Table;
-use crate::table::inputs::InputReader;
+use crate::table::cursor::Cursor;
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
-use crate::table::number::Numbers;
-use crate::table::understanding::{self, FileUnderstanding};
+use crate::table::understanding::FileUnderstanding;
 use poecal_fit::start::{FEWEST_PAIRS, JointStream, Span, Unpaired};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
-use poecal_numerics::text::NamedLines;
 use poecal_numerics::unit::Unit;
 
 impl<'a> Reader<'a> {
@@ -87,15 +85,17 @@ impl<'a> Reader<'a> {
         self.header_line = table.header.line;
         let layout = ColumnLayout::joints(&table.header, self.robot, self.options, map)?;
         let layout = self.as_shifted(layout, &table)?;
-        let numbers = Numbers::new(map.decimal);
-        let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), numbers);
-        let table_rows = rows_of(&mut table, &layout, &mut inputs, self.robot)?;
+        let mut cursor = Cursor::new(layout, self.robot, map.decimal);
+        let table_rows = rows_of(&mut table, &mut cursor)?;
+        let layout = &cursor.layout;
         self.take_said(said);
         self.found.warnings.extend(table_rows.warnings);
-        self.warn_of_ignored(path, &layout);
-        self.take_controller(path, &layout)?;
+        self.warn_of_ignored(path, layout);
+        self.take_controller(path, layout)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        self.understand_joints(&table, &layout, &inputs, table_rows.rows);
+        let mut understood = FileUnderstanding::new(&table, &cursor, table_rows.rows);
+        understood.others = BTreeMap::from([("joint readings", table_rows.rows)]);
+        self.found.understood.push(understood);
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
         let mut rows = JointRows {
             path: path.to_path_buf(),
@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
             sampled: None,
             stream: None,
             no_stands: NoStands::Listed,
-            controller: layout.controller,
+            controller: layout.controller.clone(),
         };
         // A stream has no names of rows.
         let is_listed =
@@ -138,34 +138,6 @@ impl<'a> Reader<'a> {
         ));
         stands.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
         Ok(stands)
-    }
-
-    /// Says how a file of joint readings was understood.
-    fn understand_joints(
-        &mut self,
-        table: &Table<'_>,
-        layout: &ColumnLayout,
-        inputs: &InputReader<'_>,
-        rows: usize,
-    ) {
-        self.found.understood.push(FileUnderstanding {
-            path: table.header.path.to_path_buf(),
-            form: table.form(),
-            understood: table.understood(),
-            rows,
-            points: 0,
-            poses: 0,
-            others: BTreeMap::from([("joint readings", rows)]),
-            lost: NamedLines::default(),
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns: understanding::columns(table, layout, &inputs.ranges),
-            orientation: None,
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
     }
 
     /// Reads a file of measurements alone, with the readings of another.

@@ -7,16 +7,14 @@ use crate::instruments::Opening;
 use crate::join::streams::time_of;
 use crate::pictures::taken::set_of;
 use crate::table::configurations::in_its_file;
-use crate::table::inputs::InputReader;
+use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::mapping::ColumnMap;
-use crate::table::number::Numbers;
 use crate::table::text::Blocks;
 use crate::table::{Table, refuse_more_rows};
-use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
-use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::error::Result;
 use poecal_numerics::text::visible;
 use poecal_plan::plan::{PlannedRow, RowPart};
 use poecal_storage::document;
@@ -89,46 +87,34 @@ fn of_blocks<'p>(
     let map = options.mapping.as_ref().unwrap_or(&no_map);
     let mut table = Table::open(path, blocks, map)?;
     let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
-    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
-    let joints = rows_of(&mut table, &layout, &mut inputs, robot)?;
+    let joints = rows_of(&mut table, &mut Cursor::new(layout, robot, map.decimal))?;
     let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(JointsTable { warnings, ..joints })
 }
 
 /// All rows of a table of joint readings.
-pub(crate) fn rows_of(
-    table: &mut Table<'_>,
-    layout: &ColumnLayout,
-    inputs: &mut InputReader<'_>,
-    robot: &Robot,
-) -> Result<JointsTable> {
-    let path = table.header.path;
-    let mut watch = JointWatch::new(robot);
+pub(crate) fn rows_of(table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<JointsTable> {
     let mut joints = JointsTable::default();
-    while let Some(mut rows) = table.next_block()? {
-        while let Some(row) = rows.next()? {
-            joints.readings.extend_from_slice(inputs.read_joints(&row, &mut watch)?);
-            joints.rows += 1;
-            refuse_more_rows(joints.rows, &row)?;
-            joints.lines.push(row.line);
-            if layout.time.is_some() {
-                joints.times.push(time_of(&row, layout));
-            }
-            if let SetRule::Words(index) = layout.set {
-                joints.sets.push(set_of(&row, index)?);
-            }
-            if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-                joints.ids.push(cell.text().into_owned());
-            }
+    let mut count = 0;
+    joints.rows = table.each_row("row of joint readings", |row| {
+        joints.readings.extend_from_slice(cursor.read_joints(row)?);
+        count += 1;
+        refuse_more_rows(count, row)?;
+        joints.lines.push(row.line);
+        let layout = &cursor.layout;
+        if layout.time.is_some() {
+            joints.times.push(time_of(row, layout));
         }
-    }
-    if joints.rows == 0 {
-        return Err(ErrorKind::Measurement
-            .error("found a header and no rows, expected at least one row of joint readings")
-            .at_line(path, table.header.line));
-    }
-    joints.warnings = inputs.joint_warnings(&table.header, &watch)?;
-    let own = |words: String| format!("{}: {words}", path.display());
-    joints.warnings.extend(layout.joint_words().into_iter().map(own));
+        if let SetRule::Words(index) = layout.set {
+            joints.sets.push(set_of(row, index)?);
+        }
+        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
+            joints.ids.push(cell.text().into_owned());
+        }
+        Ok(())
+    })?;
+    joints.warnings = cursor.joint_warnings(&table.header)?;
+    let own = |words: String| format!("{}: {words}", table.header.path.display());
+    joints.warnings.extend(cursor.layout.joint_words().into_iter().map(own));
     Ok(joints)
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::messages::are_messages;
-use super::table::{Row, Table, refuse_more_rows};
+use super::table::{Table, refuse_more_rows};
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::instruments::Opening;
 use crate::join::beside::{alone, beside, has_readings_of_pictures};
@@ -16,20 +16,15 @@ use crate::join::streams::time_of;
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
 use crate::pictures::picture_files::TakenByImage;
 use crate::table::configurations::in_its_file;
-use crate::table::inputs::InputReader;
+use crate::table::cursor::Cursor;
 use crate::table::layout::ColumnLayout;
 use crate::table::lost;
 use crate::table::mapping::ColumnMap;
 use crate::table::naming::Names;
-use crate::table::number::Numbers;
-use crate::table::orientation::OrientationForm;
 use crate::table::socket_distance::Sockets;
 use crate::table::text::{Blocks, Said};
-use poecal_arm::lie::angles::Angles;
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
-use poecal_fit::input_doubts::joint_units::JointWatch;
-use poecal_fit::input_doubts::turns::TurnWatch;
-use poecal_fit::input_doubts::{Doubt, DoubtPlace, lengths, spread};
+use poecal_fit::input_doubts::{lengths, spread};
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
 use poecal_model::measurement::{Dataset, Observation};
@@ -115,25 +110,6 @@ fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
 
 fn counted(rows: usize) -> String {
     if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
-}
-
-/// Watches the orientations of a row that are in radians.
-fn observe_turns(watch: &mut TurnWatch, row: &Row<'_>, layout: &ColumnLayout, inputs: &InputReader<'_>) {
-    for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
-        let OrientationForm::Angles(angles) = form else { continue };
-        let [x, y, z] = columns.as_slice() else { continue };
-        let of = |input: &usize| layout.inputs.get(*input);
-        let [Some(a), Some(b), Some(c)] = inputs.all([*x, *y, *z]) else { continue };
-        if !columns.iter().filter_map(of).all(|input| input.unit.symbol() == "rad") {
-            continue;
-        }
-        let place = || {
-            let (line, column) = row.place(inputs.column(*x));
-            let names = columns.iter().filter_map(of).map(|input| input.label.clone()).collect();
-            (DoubtPlace::Cell(line, column), names)
-        };
-        watch.observe([a, b, c], *angles == Angles::RotationVector, place);
-    }
 }
 
 pub(crate) struct Reader<'a> {
@@ -230,34 +206,29 @@ impl<'a> Reader<'a> {
                            out, or the column";
             return Err(table.header.error(ErrorKind::Measurement, column, message));
         }
-        let numbers = Numbers::new(self.map.decimal);
-        let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
+        let mut cursor = Cursor::new(layout, self.robot, self.map.decimal);
         let first = self.found.data.len();
         self.found.data.files.push(path.to_path_buf());
-        if layout.id.is_some() {
+        if cursor.layout.id.is_some() {
             self.found.data.ids.resize(first, String::new());
         }
-        let (watch, rows, lost) = self.rows(&mut table, &layout, &mut inputs)?;
+        let (rows, lost) = self.rows(&mut table, &mut cursor)?;
         self.take_means(first);
         self.take_motion(path, first)?;
         self.refuse_single_rows(path)?;
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        let refuse = |message| Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
-        if rows == 0 {
-            return refuse("found a header and no rows, expected at least one measurement");
-        }
         if self.found.data.len() == first {
-            return refuse(
-                "found no position in any row, expected at least one that is neither empty nor zero",
-            );
+            let message =
+                "found no position in any row, expected at least one that is neither empty nor zero";
+            return Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
         }
         let skipped = lost::lost_words(&lost).into_iter();
         let skipped = skipped.map(|it| format!("{}: skipped {it}; --strict refuses them", path.display()));
         self.found.warnings.extend(skipped);
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
         self.found.warnings.extend(incomplete(path, new_rows));
-        self.judge(&table, &layout, watch, &inputs, first)?;
-        self.understand(&table, &layout, &inputs, (first, rows, lost))
+        self.judge(&table, &cursor, first)?;
+        self.understand(&table, &cursor, (first, rows, lost))
     }
 
     /// Takes the rows of a file and judges nothing.
@@ -266,91 +237,68 @@ impl<'a> Reader<'a> {
         self.header_line = table.header.line;
         let layout = ColumnLayout::new(&table.header, self.robot, self.options, self.map)?;
         let layout = self.as_shifted(layout, &table)?;
-        let numbers = Numbers::new(self.map.decimal);
-        let mut inputs = InputReader::new(&layout.inputs, self.found.data.reading_names().len(), numbers);
+        let mut cursor = Cursor::new(layout, self.robot, self.map.decimal);
         self.found.data.files.push(path.to_path_buf());
-        self.rows(&mut table, &layout, &mut inputs)?;
+        self.rows(&mut table, &mut cursor)?;
         self.found.data.ids.resize(self.found.data.len(), String::new());
         // A wrong unit would be taken for a wrong order.
-        self.refuse_far_positions((&table, &layout), 0.0, &inputs, 0)
+        self.refuse_far_positions(&table, &cursor, 0.0, 0)
     }
 
     /// Takes all rows of a file, and counts them with the lost beams among them.
-    fn rows(
-        &mut self,
-        table: &mut Table<'_>,
-        layout: &ColumnLayout,
-        inputs: &mut InputReader<'_>,
-    ) -> Result<((JointWatch<'a>, TurnWatch), usize, NamedLines)> {
-        let mut watch = (JointWatch::new(self.robot), TurnWatch::default());
-        let (mut rows, mut lost) = (0, NamedLines::default());
-        while let Some(mut some) = table.next_block()? {
-            while let Some(row) = some.next()? {
-                rows += 1;
-                inputs.read(&row)?;
-                if let Some(by_line) = &self.readings {
-                    // A line without readings has no partner.
-                    let Some(readings) = by_line.lines.get(&row.line) else { continue };
-                    inputs.put_readings(readings);
-                }
-                inputs.unwind(&row, &mut watch.0);
-                inputs.take_readings(&row)?;
-                if self.begins_pair(&row, layout, inputs)?
-                    || lost::take_out(&mut lost, &row, &layout.targets, inputs, self.options.strict)?
-                {
-                    continue;
-                }
-                inputs.include_in_ranges();
-                watch.0.observe(row.line, inputs.values());
-                observe_turns(&mut watch.1, &row, layout, inputs);
-                self.row(&row, layout, inputs)?;
-                if let Some(times) = &mut self.times {
-                    times.resize(self.found.data.len(), time_of(&row, layout));
-                }
-                refuse_more_rows(self.found.data.len(), &row)?;
+    fn rows(&mut self, table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<(usize, NamedLines)> {
+        let mut lost = NamedLines::default();
+        let rows = table.each_row("measurement", |row| {
+            cursor.read(row)?;
+            if let Some(by_line) = &self.readings {
+                // A line without readings has no partner.
+                let Some(readings) = by_line.lines.get(&row.line) else { return Ok(()) };
+                cursor.put_readings(readings);
             }
-        }
-        Ok((watch, rows, lost))
+            cursor.take_readings(row)?;
+            if self.begins_pair(row, cursor)? || lost::take_out(&mut lost, row, cursor, self.options.strict)?
+            {
+                return Ok(());
+            }
+            cursor.observe(row);
+            self.row(row, cursor)?;
+            if let Some(times) = &mut self.times {
+                times.resize(self.found.data.len(), time_of(row, &cursor.layout));
+            }
+            refuse_more_rows(self.found.data.len(), row)
+        })?;
+        Ok((rows, lost))
     }
 
     /// Judges the scale of the readings and of what was measured.
-    fn judge(
-        &mut self,
-        table: &Table<'_>,
-        layout: &ColumnLayout,
-        (joints, turns): (JointWatch<'_>, TurnWatch),
-        inputs: &InputReader<'_>,
-        first: usize,
-    ) -> Result<()> {
+    fn judge(&mut self, table: &Table<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
         let header = &table.header;
-        self.found.warnings.extend(inputs.joint_warnings(header, &joints)?);
-        let refuse = |doubt: Option<Doubt>| doubt.map_or(Ok(()), |it| Err(header.doubt(it, &layout.inputs)));
-        refuse(turns.finish())?;
-        let columns = inputs.columns();
-        let slides_m = joints.unlimited_slides_m(&columns);
-        self.refuse_far_positions((table, layout), slides_m, inputs, first)?;
+        self.found.warnings.extend(cursor.joint_warnings(header)?);
+        cursor.check_orientations(header)?;
+        let slides_m = cursor.unlimited_slides_m();
+        self.refuse_far_positions(table, cursor, slides_m, first)?;
         let data = &self.found.data;
         let new_rows = data.observations.get(first..).unwrap_or_default();
-        refuse(lengths::of_ranges(self.robot, slides_m, new_rows))?;
-        let x = layout.targets.first().and_then(|target| Some(target.position?[0]));
-        refuse(x.and_then(|x| spread::of_positions(self.robot, &columns, x, data, first)))
+        cursor.refuse(header, lengths::of_ranges(self.robot, slides_m, new_rows))?;
+        let x = cursor.layout.targets.first().and_then(|target| Some(target.position?[0]));
+        let columns = cursor.columns();
+        cursor.refuse(header, x.and_then(|x| spread::of_positions(self.robot, &columns, x, data, first)))
     }
 
     /// Refuses positions of the rows from `first` on that only another unit explains.
     fn refuse_far_positions(
         &self,
-        (table, layout): (&Table<'_>, &ColumnLayout),
+        table: &Table<'_>,
+        cursor: &Cursor<'_>,
         slides_m: f64,
-        inputs: &InputReader<'_>,
         first: usize,
     ) -> Result<()> {
-        let columns = inputs.columns();
+        let columns = cursor.columns();
+        let position = cursor.layout.targets.first().and_then(|target| target.position);
         let of = |at: usize| columns.get(at).copied();
-        let position = layout.targets.first().and_then(|target| target.position);
         let Some([Some(x), Some(y), Some(z)]) = position.map(|at| at.map(of)) else { return Ok(()) };
         let rows = self.found.data.observations.get(first..).unwrap_or_default();
-        let doubt = lengths::of_positions(self.robot, [x, y, z], slides_m, rows);
-        doubt.map_or(Ok(()), |it| Err(table.header.doubt(it, &layout.inputs)))
+        cursor.refuse(&table.header, lengths::of_positions(self.robot, [x, y, z], slides_m, rows))
     }
 
     fn finish(self) -> Result<MeasurementFile> {

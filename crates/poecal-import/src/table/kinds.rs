@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use super::inputs::InputReader;
+use super::cursor::Cursor;
 use crate::PlaneContact;
 use crate::table::Row;
 use poecal_model::measurement::{
@@ -115,7 +115,7 @@ impl KindColumns {
     }
 
     /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
-    pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &InputReader<'_>, has_position: bool) -> bool {
+    pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
         let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
         match self.kind.columns.from {
             From::Numbers { .. } => has_number(),
@@ -131,7 +131,7 @@ impl KindColumns {
     }
 
     /// Whether its numbers in a row are those of a lost beam.
-    pub(crate) fn is_lost(&self, inputs: &InputReader<'_>) -> bool {
+    pub(crate) fn is_lost(&self, inputs: &Cursor<'_>) -> bool {
         self.kind.columns.from == (From::Numbers { above_zero: true })
             && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
     }
@@ -140,7 +140,7 @@ impl KindColumns {
     pub(crate) fn measurement(
         &self,
         row: &Row<'_>,
-        inputs: &InputReader<'_>,
+        inputs: &Cursor<'_>,
         (has_position, usual): (bool, PlaneContact),
     ) -> Result<Option<(Measurement, Stated)>> {
         let Kind { function, columns } = self.kind;
@@ -159,7 +159,7 @@ impl KindColumns {
             };
             let is_size = columns.from == (From::Name { size: true }) && inputs.value(input).is_some();
             if (is_size || columns.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
-                let text = row.cells.get(inputs.column(input)).map_or("", |cell| cell.raw);
+                let text = row.raw(inputs.column(input));
                 let what =
                     if is_size { columns.numbers.first().copied() } else { Some(function.leading().name()) };
                 let expected = format!("a {} above 0", what.unwrap_or("number"));

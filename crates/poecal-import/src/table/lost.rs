@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::inputs::InputReader;
+use super::cursor::Cursor;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
 use crate::table::Row;
@@ -28,13 +28,13 @@ enum Beam {
 pub(crate) fn take_out(
     lost: &mut NamedLines,
     row: &Row<'_>,
-    targets: &[TargetLayout],
-    inputs: &mut InputReader<'_>,
+    inputs: &mut Cursor<'_>,
     strict: bool,
 ) -> Result<bool> {
     let before = lost.count;
     let mut seen = false;
-    for target in targets {
+    let mut forgotten = Vec::new();
+    for target in &inputs.layout.targets {
         match beam(row, target, inputs) {
             Beam::Seen => seen = true,
             // With several targets in a row, some may not have been measured.
@@ -42,18 +42,19 @@ pub(crate) fn take_out(
             Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
             Beam::Zero => {
                 lost.add(row.line);
-                inputs.forget(target.position.as_ref().map_or(&[][..], |position| position));
-                target.kinds.iter().for_each(|kind| inputs.forget(&kind.numbers));
-                inputs.forget(target.orientation.as_ref().map_or(&[], |(_, parts)| parts));
+                forgotten.extend(target.position.into_iter().flatten());
+                forgotten.extend(target.kinds.iter().flat_map(|kind| &kind.numbers));
+                forgotten.extend(target.orientation.iter().flat_map(|(_, parts)| parts));
             }
         }
     }
     if !seen && lost.count == before {
-        if let (true, Some(target)) = (strict, targets.first()) {
+        if let (true, Some(target)) = (strict, inputs.layout.targets.first()) {
             return Err(refused(row, target, inputs, "an empty position"));
         }
         lost.add(row.line);
     }
+    inputs.forget(&forgotten);
     Ok(!seen)
 }
 
@@ -69,12 +70,12 @@ pub fn lost_words(lost: &NamedLines) -> Option<String> {
 }
 
 /// Whether the row has a position of a target.
-pub(crate) fn has_position(target: &TargetLayout, inputs: &InputReader<'_>) -> bool {
+pub(crate) fn has_position(target: &TargetLayout, inputs: &Cursor<'_>) -> bool {
     target.position.iter().flatten().any(|&input| inputs.value(input).is_some())
 }
 
 /// State of a target in the current row.
-fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>) -> Beam {
+fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Beam {
     let has_position = has_position(target, inputs);
     let mut measured = target.kinds.iter().filter(|kind| kind.is_measured(row, inputs, has_position));
     if let Some(first) = measured.next() {
@@ -106,7 +107,7 @@ fn zero_words(target: &TargetLayout) -> &'static str {
     if target.position.is_some() { "the position 0, 0, 0" } else { "0" }
 }
 
-fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &InputReader<'_>, found: &str) -> Error {
+fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>, found: &str) -> Error {
     let first =
         target.position.iter().flatten().chain(target.kinds.iter().flat_map(|kind| &kind.numbers)).next();
     let first = first.copied().unwrap_or(0);

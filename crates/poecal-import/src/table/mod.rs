@@ -5,6 +5,7 @@ pub(crate) mod cells;
 mod columns;
 pub(crate) mod configurations;
 pub(crate) mod conventions;
+pub(crate) mod cursor;
 pub(crate) mod encodings;
 pub(crate) mod fit_where;
 pub(crate) mod header;
@@ -29,6 +30,7 @@ pub(crate) mod understood;
 
 pub(crate) use columns::{column_names, column_spec, mapping, mapping_values};
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -180,6 +182,26 @@ impl<'a> Table<'a> {
     /// Checksum of the bytes read so far.
     pub(crate) fn sha256(&self) -> Option<String> {
         self.blocks.sha256()
+    }
+
+    /// Hands on every row, and counts them; `expected` is what there is at least one of.
+    pub(crate) fn each_row(
+        &mut self,
+        expected: &str,
+        mut each: impl FnMut(&Row<'_>) -> Result<()>,
+    ) -> Result<usize> {
+        let mut count = 0;
+        while let Some(mut rows) = self.next_block()? {
+            while let Some(row) = rows.next()? {
+                count += 1;
+                each(&row)?;
+            }
+        }
+        if count == 0 {
+            let message = format!("found a header and no rows, expected at least one {expected}");
+            return Err(ErrorKind::Measurement.error(message).at_line(self.header.path, self.header.line));
+        }
+        Ok(count)
     }
 
     /// The rows of the next block.
@@ -370,6 +392,16 @@ impl Row<'_> {
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let offset = self.cells.get(index).map_or(0, |cell| cell.offset);
         (self.line, character_column(self.text, offset))
+    }
+
+    /// The text of a cell; none beyond the last one.
+    pub(crate) fn raw(&self, index: usize) -> &str {
+        self.cells.get(index).map_or("", |cell| cell.raw)
+    }
+
+    /// The text of a cell without quotes, unless it is empty.
+    pub(crate) fn text_of(&self, index: Option<usize>) -> Option<Cow<'_, str>> {
+        self.cells.get(index?).map(Cell::text).filter(|it| !it.is_empty())
     }
 
     /// An error at a cell.

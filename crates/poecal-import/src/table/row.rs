@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::inputs::InputReader;
+use super::cursor::Cursor;
 use super::mapping::PoseDirection;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
@@ -19,7 +19,7 @@ pub(crate) fn measurement(
     row: &Row<'_>,
     target: &TargetLayout,
     direction: PoseDirection,
-    inputs: &InputReader<'_>,
+    inputs: &Cursor<'_>,
     (may_be_missing, strict): (bool, bool),
 ) -> Result<Option<Measurement>> {
     let Some(columns) = target.position else { return Ok(None) };
@@ -57,11 +57,7 @@ pub(crate) fn measurement(
 }
 
 /// The measured rotation; `None` if all its cells are empty.
-fn orientation(
-    row: &Row<'_>,
-    target: &TargetLayout,
-    inputs: &InputReader<'_>,
-) -> Result<Option<Matrix3<f64>>> {
+fn orientation(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Result<Option<Matrix3<f64>>> {
     let Some((form, columns)) = &target.orientation else { return Ok(None) };
     let mut values = [0.0; MOST_PARTS];
     let mut empty = None;
@@ -91,7 +87,7 @@ fn orientation(
 pub(crate) fn component_noise(
     row: &Row<'_>,
     target: &TargetLayout,
-    inputs: &InputReader<'_>,
+    inputs: &Cursor<'_>,
     seen: &Measurement,
 ) -> Result<Option<[Option<f64>; 3]>> {
     let measured = seen.position_components().map(|value| value.is_some());

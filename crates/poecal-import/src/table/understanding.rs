@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::cells::Separator;
+use super::cursor::Cursor;
 use super::inputs::{Input, InputSource, Range};
 use super::layout::{ColumnLayout, SetRule};
 use super::mapping::PoseDirection;
@@ -71,12 +72,35 @@ pub struct FileUnderstanding {
     pub ignored: Vec<String>,
 }
 
+impl FileUnderstanding {
+    /// Of a table, with its number of rows; what was measured in them follows.
+    pub(crate) fn new(table: &Table<'_>, cursor: &Cursor<'_>, rows: usize) -> Self {
+        FileUnderstanding {
+            path: table.header.path.to_path_buf(),
+            form: table.form(),
+            understood: table.understood(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::new(),
+            lost: NamedLines::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: cursor.numbers.sign(),
+            columns: columns(table, &cursor.layout, &cursor.ranges),
+            orientation: None,
+            pose: match cursor.layout.pose {
+                PoseDirection::DeviceFromTarget => "device_from_target",
+                PoseDirection::TargetFromDevice => "target_from_device",
+            },
+            ignored: cursor.layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        }
+    }
+}
+
 /// Our columns with their sources.
-pub(crate) fn columns(
-    table: &Table<'_>,
-    layout: &ColumnLayout,
-    ranges: &[Range],
-) -> Vec<ColumnUnderstanding> {
+fn columns(table: &Table<'_>, layout: &ColumnLayout, ranges: &[Range]) -> Vec<ColumnUnderstanding> {
     let (header, sources) = (&table.header, table.sources());
     let text_of = |index: usize| {
         let own = &header.cells.get(index)?.text;
@@ -136,12 +160,4 @@ pub(crate) fn orientation(layout: &ColumnLayout) -> Option<String> {
         }
     }
     (!forms.is_empty()).then(|| forms.join("; "))
-}
-
-/// Word for a pose's direction.
-pub(crate) fn pose_word(pose: PoseDirection) -> &'static str {
-    match pose {
-        PoseDirection::DeviceFromTarget => "device_from_target",
-        PoseDirection::TargetFromDevice => "target_from_device",
-    }
 }

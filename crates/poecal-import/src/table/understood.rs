@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::inputs::InputReader;
+use super::columns::turns;
+use super::cursor::Cursor;
 use super::layout::ColumnLayout;
 use super::understanding;
-use super::understanding::{ColumnUnderstanding, FileUnderstanding};
-use crate::checks::turns;
+use super::understanding::FileUnderstanding;
 use crate::read::Reader;
 use crate::table::Table;
 use poecal_model::robot::Controller;
@@ -25,11 +25,10 @@ impl Reader<'_> {
     pub(crate) fn understand(
         &mut self,
         table: &Table<'_>,
-        layout: &ColumnLayout,
-        inputs: &InputReader<'_>,
+        inputs: &Cursor<'_>,
         (first, rows, lost): (usize, usize, NamedLines),
     ) -> Result<()> {
-        let path = table.header.path;
+        let (path, layout) = (table.header.path, &inputs.layout);
         let (mut points, mut poses, mut others) = (0, 0, BTreeMap::new());
         for row in self.found.data.observations.get(first..).unwrap_or_default() {
             let seen = &row.measurement;
@@ -52,31 +51,13 @@ impl Reader<'_> {
         let turns = turns::warning(&table.header, layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
-        self.found.understood.push(FileUnderstanding {
-            path: path.to_path_buf(),
-            form: table.form(),
-            understood: table.understood(),
-            rows,
-            points,
-            poses,
-            others,
-            lost,
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns: self.own_columns(understanding::columns(table, layout, &inputs.ranges)),
-            orientation: understanding::orientation(layout),
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
+        let mut own =
+            FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
+        // Joints whose readings another file has are no columns of this one.
+        own.columns.drain(..if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 });
+        own.orientation = understanding::orientation(layout);
+        self.found.understood.push(own);
         Ok(())
-    }
-
-    /// Columns without those of joints whose readings another file has.
-    fn own_columns(&self, columns: Vec<ColumnUnderstanding>) -> Vec<ColumnUnderstanding> {
-        let skipped = if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 };
-        columns.into_iter().skip(skipped).collect()
     }
 
     /// How the files' readings are made of columns, which must be the same in all.

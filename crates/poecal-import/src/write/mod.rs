@@ -1,7 +1,7 @@
 //! Measurement files of simulated rows.
 
 pub(crate) mod growing;
-pub(crate) mod imported;
+pub(crate) mod own_rows;
 pub(crate) mod rewritten;
 pub(crate) mod template;
 
@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use crate::table::kinds::{Kind, kinds};
+use crate::write::own_rows::{OwnColumn, OwnRows};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Observation, Quantity};
 use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -22,37 +23,18 @@ pub fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Resu
     if data.observations.iter().any(|row| row.from.is_some() || !row.measurement.is_place()) {
         return other_text(data, robot, noise, comment);
     }
-    let mm = NamedUnit::parse("mm", Unit::Metre)?;
-    let number = NamedUnit::from(Unit::One);
-    let orientations = data.observations.iter().any(|row| row.measurement.sees_orientation());
-    let units = reading_units(data.reading_names(), robot)?;
-    let named = [&data.stations, &data.targets].map(|names| names.iter().any(Option::is_some));
-    let mut out = format!("# {comment}\n{}", header(data.reading_names(), &units, orientations)?);
-    for (column, _) in [",instrument", ",target"].into_iter().zip(named).filter(|(_, named)| *named) {
-        out.push_str(column);
-    }
-    out.push('\n');
-    let position_decimals = decimals(mm.from_si(noise[Quantity::Position]));
-    // A rotation turns the quaternion by half its angle.
-    let quaternion_decimals = decimals(noise[Quantity::Rotation] / 2.0);
-    for (row, observation) in data.observations.iter().enumerate() {
-        for (&reading, &unit) in data.readings(row).iter().zip(&units) {
-            let _ = write!(out, "{},", decimal(reading, unit, None));
-        }
-        let pose = observation.measurement.pose();
-        let mut measured: Vec<String> =
-            pose.translation.iter().map(|&length| decimal(length, mm, position_decimals)).collect();
-        if observation.measurement.sees_orientation() {
-            measured.extend(pose.quaternion_xyzw().map(|part| decimal(part, number, quaternion_decimals)));
-        } else if orientations {
-            measured.resize(7, String::new());
-        }
-        let names = [(&data.stations, observation.station), (&data.targets, observation.target)];
-        for ((names, index), _) in names.into_iter().zip(named).filter(|(_, named)| *named) {
-            let name = names.get(index).and_then(Option::as_deref).unwrap_or_default();
-            measured.push(csv_text::cell(name).into_owned());
-        }
-        let _ = writeln!(out, "{}", measured.join(","));
+    let columns = [
+        OwnColumn::Joints,
+        OwnColumn::Position,
+        OwnColumn::Orientation,
+        OwnColumn::Instrument,
+        OwnColumn::Target,
+    ];
+    let rows = OwnRows::new(data, robot, &columns)?.rounded(noise);
+    let mut out = format!("# {comment}\n{}\n", rows.header());
+    for row in 0..data.len() {
+        out += &rows.line(row, "");
+        out.push('\n');
     }
     Ok(out)
 }

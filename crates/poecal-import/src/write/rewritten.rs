@@ -4,14 +4,14 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::ReadOptions;
+use crate::table::cursor::Cursor;
 use crate::table::header::Header;
-use crate::table::inputs::{Input, InputReader, InputSource, Term};
+use crate::table::inputs::{Input, InputSource, Term};
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
-use crate::table::number::{DecimalSign, Numbers};
+use crate::table::number::DecimalSign;
 use crate::table::text::Blocks;
 use crate::table::{Table, TableRows};
-use poecal_fit::input_doubts::joint_units::JointWatch;
 use poecal_model::robot::{Counting, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
@@ -58,8 +58,7 @@ pub fn rewrite_joints(
     let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
     let counting = counting(&layout, path)?;
     let columns = columns(&layout, counting.as_ref(), &table.header)?;
-    let mut inputs = InputReader::new(&layout.inputs, layout.inputs.len(), Numbers::new(map.decimal));
-    let mut watch = JointWatch::new(robot);
+    let mut inputs = Cursor::new(layout, robot, map.decimal);
     let mut rewritten = RewrittenTable::default();
     if table.is_marked() {
         out("\u{feff}")?;
@@ -67,7 +66,7 @@ pub fn rewrite_joints(
     out(&table.passed())?;
     let mut row_of = Rewriting { columns, counting, numbers: Vec::new(), text: String::new() };
     while let Some(rows) = table.next_block()? {
-        rewritten.rows += row_of.block(rows, &mut inputs, &mut watch, change)?;
+        rewritten.rows += row_of.block(rows, &mut inputs, change)?;
         out(&row_of.text)?;
     }
     if rewritten.rows == 0 {
@@ -75,8 +74,9 @@ pub fn rewrite_joints(
             .error("found a header and no rows, expected at least one row of joint readings")
             .at_line(path, table.header.line));
     }
-    let mut warnings = inputs.joint_warnings(&table.header, &watch)?;
-    warnings.extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+    let mut warnings = inputs.joint_warnings(&table.header)?;
+    warnings
+        .extend(inputs.layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
     rewritten.warnings = warnings.iter().map(|warning| visible(warning).into_owned()).collect();
     Ok(rewritten)
 }
@@ -133,8 +133,7 @@ impl Rewriting {
     fn block(
         &mut self,
         mut rows: TableRows<'_>,
-        inputs: &mut InputReader<'_>,
-        watch: &mut JointWatch<'_>,
+        inputs: &mut Cursor<'_>,
         change: &mut dyn FnMut(&JointRow<'_>, &mut [f64]) -> Result<()>,
     ) -> Result<usize> {
         let block = rows.text;
@@ -144,7 +143,7 @@ impl Rewriting {
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_by_key(|&at| self.columns[at].0);
         while let Some(row) = rows.next()? {
-            inputs.read_joints(&row, watch)?;
+            inputs.read_joints(&row)?;
             self.numbers.clear();
             self.numbers.extend_from_slice(inputs.readings());
             change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;

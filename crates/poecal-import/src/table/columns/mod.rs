@@ -3,5 +3,7 @@
 pub(crate) mod column_meanings;
 pub(crate) mod column_names;
 pub(crate) mod column_spec;
+pub(crate) mod counted;
 pub(crate) mod mapping;
 pub(crate) mod mapping_values;
+pub(crate) mod turns;
