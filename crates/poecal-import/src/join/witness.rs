@@ -24,7 +24,7 @@ pub fn to_measure_again(
     .to_owned();
     let sees = |row: &u32| data.observations[*row as usize].measurement.sees_orientation();
     let columns = [OwnColumn::Joints, OwnColumn::Target, OwnColumn::Instrument, OwnColumn::Position];
-    let rows = OwnRows::new(data, robot, &columns)?.to_fill(configurations.iter().flatten().any(sees));
+    let rows = OwnRows::new(data, robot, &columns)?.left_empty(configurations.iter().flatten().any(sees));
     out += &rows.header();
     out.push('\n');
     for (number, configuration) in configurations.iter().enumerate() {

@@ -3,12 +3,9 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use super::cursor::Cursor;
 use crate::PlaneContact;
 use crate::table::Row;
-use poecal_model::measurement::{
-    Columns, FUNCTIONS, From, Function, Measurement, Quantity, Row as TableRow, Stated,
-};
+use poecal_model::measurement::{Columns, FUNCTIONS, From, Function, Quantity, Row as TableRow};
 use poecal_numerics::error::Result;
 
 /// A kind of measurement: a function in a form of its own in files.
@@ -100,7 +97,7 @@ impl KindColumns {
     }
 
     /// Whether the row's word is that of the kind; of none, the usual one.
-    fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
+    pub(crate) fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
         let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
         let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
         let Some((at, text)) = cell.filter(|(_, text)| !text.is_empty()) else {
@@ -112,65 +109,5 @@ impl KindColumns {
             return Err(row.error(at, message));
         }
         Ok(text == own)
-    }
-
-    /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
-    pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
-        let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
-        match self.kind.columns.from {
-            From::Numbers { .. } => has_number(),
-            From::Name { .. } => {
-                let is_named = self
-                    .places
-                    .last()
-                    .and_then(|&at| row.cells.get(at))
-                    .is_some_and(|it| !it.text().is_empty());
-                is_named && (!has_position || has_number())
-            }
-        }
-    }
-
-    /// Whether its numbers in a row are those of a lost beam.
-    pub(crate) fn is_lost(&self, inputs: &Cursor<'_>) -> bool {
-        self.kind.columns.from == (From::Numbers { above_zero: true })
-            && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
-    }
-
-    /// The measurement of a row, with what the row states of its noise; `None` if it has none.
-    pub(crate) fn measurement(
-        &self,
-        row: &Row<'_>,
-        inputs: &Cursor<'_>,
-        (has_position, usual): (bool, PlaneContact),
-    ) -> Result<Option<(Measurement, Stated)>> {
-        let Kind { function, columns } = self.kind;
-        if !self.is_measured(row, inputs, has_position) || !self.has_word(row, usual)? {
-            return Ok(None);
-        }
-        let mut numbers = vec![0.0; columns.numbers.len()];
-        for (number, &input) in numbers.iter_mut().zip(&self.numbers) {
-            let value = match (inputs.value(input), columns.from) {
-                (Some(value), _) => value,
-                (None, From::Name { .. }) => 0.0,
-                (None, From::Numbers { .. }) => {
-                    let expected = "all numbers of a measurement, or none";
-                    return Err(inputs.error(row, input, "found an empty cell", expected));
-                }
-            };
-            let is_size = columns.from == (From::Name { size: true }) && inputs.value(input).is_some();
-            if (is_size || columns.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
-                let text = row.raw(inputs.column(input));
-                let what =
-                    if is_size { columns.numbers.first().copied() } else { Some(function.leading().name()) };
-                let expected = format!("a {} above 0", what.unwrap_or("number"));
-                return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
-            }
-            *number = value;
-        }
-        let mut stated = Stated::default();
-        for &(quantity, input) in &self.sigmas {
-            stated.set(quantity, inputs.sigma(row, Some(input))?);
-        }
-        Ok(Some(((columns.of)(&numbers), stated)))
     }
 }

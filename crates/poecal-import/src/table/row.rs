@@ -3,12 +3,14 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::cursor::Cursor;
+use super::kinds::{Kind, KindColumns};
 use super::mapping::PoseDirection;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
+use crate::PlaneContact;
 use crate::table::Row;
 use poecal_arm::lie::Pose;
-use poecal_model::measurement::Measurement;
+use poecal_model::measurement::{From, Measurement, Stated};
 use poecal_numerics::error::Result;
 
 /// Expected cells of an incomplete position that is one of a pose, or of a row with nothing else.
@@ -105,4 +107,66 @@ pub(crate) fn component_noise(
     let message =
         "found a standard deviation of some components, expected one of each that was measured, or of none";
     Err(row.error(column.unwrap_or(0), message))
+}
+
+impl KindColumns {
+    /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
+    pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
+        let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
+        match self.kind.columns.from {
+            From::Numbers { .. } => has_number(),
+            From::Name { .. } => {
+                let is_named = self
+                    .places
+                    .last()
+                    .and_then(|&at| row.cells.get(at))
+                    .is_some_and(|it| !it.text().is_empty());
+                is_named && (!has_position || has_number())
+            }
+        }
+    }
+
+    /// Whether its numbers in a row are those of a lost beam.
+    pub(crate) fn is_lost(&self, inputs: &Cursor<'_>) -> bool {
+        self.kind.columns.from == (From::Numbers { above_zero: true })
+            && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
+    }
+
+    /// The measurement of a row, with what the row states of its noise; `None` if it has none.
+    pub(crate) fn measurement(
+        &self,
+        row: &Row<'_>,
+        inputs: &Cursor<'_>,
+        (has_position, usual): (bool, PlaneContact),
+    ) -> Result<Option<(Measurement, Stated)>> {
+        let Kind { function, columns } = self.kind;
+        if !self.is_measured(row, inputs, has_position) || !self.has_word(row, usual)? {
+            return Ok(None);
+        }
+        let mut numbers = vec![0.0; columns.numbers.len()];
+        for (number, &input) in numbers.iter_mut().zip(&self.numbers) {
+            let value = match (inputs.value(input), columns.from) {
+                (Some(value), _) => value,
+                (None, From::Name { .. }) => 0.0,
+                (None, From::Numbers { .. }) => {
+                    let expected = "all numbers of a measurement, or none";
+                    return Err(inputs.error(row, input, "found an empty cell", expected));
+                }
+            };
+            let is_size = columns.from == (From::Name { size: true }) && inputs.value(input).is_some();
+            if (is_size || columns.from == (From::Numbers { above_zero: true })) && value <= 0.0 {
+                let text = row.raw(inputs.column(input));
+                let what =
+                    if is_size { columns.numbers.first().copied() } else { Some(function.leading().name()) };
+                let expected = format!("a {} above 0", what.unwrap_or("number"));
+                return Err(inputs.error(row, input, &format!("found `{text}`"), &expected));
+            }
+            *number = value;
+        }
+        let mut stated = Stated::default();
+        for &(quantity, input) in &self.sigmas {
+            stated.set(quantity, inputs.sigma(row, Some(input))?);
+        }
+        Ok(Some(((columns.of)(&numbers), stated)))
+    }
 }

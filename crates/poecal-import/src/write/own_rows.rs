@@ -1,7 +1,7 @@
 //! Rows of a session as a table in our form: degrees and millimetres, orientations as quaternions x, y, z, w.
 
 use crate::MeasurementFile;
-use crate::write::{decimal, decimals, reading_header, reading_units, refuse_names};
+use crate::write::own_columns::{decimal, decimals, reading_header, reading_units, refuse_names};
 use poecal_model::measurement::{Dataset, Noise, Observation, Quantity, Set};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -98,7 +98,7 @@ impl<'a> OwnRows<'a> {
     }
 
     /// The same as a form to fill: `id` and empty cells for what is to be measured, with orientations if so.
-    pub(crate) fn to_fill(mut self, sees_orientation: bool) -> Self {
+    pub(crate) fn left_empty(mut self, sees_orientation: bool) -> Self {
         self.columns.insert(0, OwnColumn::Id);
         self.columns.retain(|it| *it != OwnColumn::Orientation);
         self.columns.extend(sees_orientation.then_some(OwnColumn::Orientation));
@@ -108,9 +108,9 @@ impl<'a> OwnRows<'a> {
     /// The line of the names of the columns.
     pub(crate) fn header(&self) -> String {
         let joints = reading_header(self.data.reading_names(), &self.units);
-        let own = self.columns.iter().map(|column| match column {
-            OwnColumn::Joints => joints.clone(),
-            other => other.names().join(","),
+        let own = self.columns.iter().map(|column| match column.names() {
+            [] => joints.clone(),
+            names => names.join(","),
         });
         own.collect::<Vec<_>>().join(",")
     }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
-use crate::write::{decimal, header, reading_header, reading_units, refuse_names};
+use crate::write::own_columns::{decimal, header, reading_header, reading_units, refuse_names};
 use poecal_model::measurement::Quantity;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::{Configurations, Kind};
