@@ -24,7 +24,7 @@ pub mod stored_pictures;
 pub(crate) mod table;
 pub(crate) mod write;
 
-pub use crate::join::join_entry::{InputEntry, JoinEntry, MotionEntry, RowEntry};
+pub use crate::join::join_entry::{InputEntry, JoinEntry, RowEntry};
 pub use crate::join::witness::to_measure_again;
 pub use crate::pictures::board_files::{BoardOfFile, board_of_file};
 pub use crate::pictures::boards::read_boards;
@@ -46,6 +46,7 @@ pub use crate::write::own_rows::imported_table;
 pub use crate::write::rewritten::{JointRow, RewrittenTable, rewrite_joints};
 pub use crate::write::template::{plan, planned_table, template};
 pub use guess::{ColumnGuess, FoundColumn, MappedChoice, MappedField, guess_columns};
+pub use poecal_fit::start::MotionEntry;
 pub use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 pub use poecal_storage::numbers::LARGEST_NUMBER;
 pub use read::{parse, read};

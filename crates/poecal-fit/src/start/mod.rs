@@ -17,7 +17,9 @@ pub(crate) use averaging::rotation_maximising;
 pub use faces::{faces_on_known_planes, settle_faces};
 pub use pairing::{
     Agreement, Aligned, AtLag, Channels as StreamChannels, EVIDENT, FEWEST_PAIRS, InMotion, JointStream,
-    Lagged, Motion, MovingRow, NoLag, NoStream, Order, Pair, Span, Stand, Stream, Unpaired, smoothed,
+    Lagged, MeasuredStands, Motion, MotionEntry, MovingRow, NoLag, NoStream, Order, Pair, Sampled, Span,
+    Stand, Stream, Unpaired, motion_of_points, motion_of_target, smoothed, stands_of_measured,
+    stands_of_readings,
 };
 pub use pictures::{SettledPictures, predicted_pose, settle_pictures};
 pub use registration::{

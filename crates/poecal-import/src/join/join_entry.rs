@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::table::understanding::FileUnderstanding;
 use crate::{Join, MeasurementFile};
+use poecal_fit::start::MotionEntry;
 
 /// Most pairs that are listed, and most rows without partner.
 pub(crate) const MOST_PAIRS: usize = 2000;
@@ -82,26 +83,6 @@ pub struct RowEntry {
     pub number: usize,
     /// Its line, row of a sheet or message; of a stand that of its first row.
     pub line: usize,
-}
-
-/// Motion in a stream, by its own clock.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct MotionEntry {
-    /// Its rows.
-    pub rows: usize,
-    /// Time of the first row, seconds; all other times are after it.
-    pub begin_s: f64,
-    /// Time of the last row, seconds.
-    pub end_s: f64,
-    /// Seconds from one speed to the next; zero without speeds.
-    pub step_s: f64,
-    /// Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near.
-    pub speeds_mm_s: Vec<Option<f64>>,
-    /// Begin and end of each stand, seconds; both the same of a single point.
-    pub stands_s: Vec<[f64; 2]>,
-    /// Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub gaps_s: Vec<[f64; 2]>,
 }
 
 fn is_none(count: &usize) -> bool {

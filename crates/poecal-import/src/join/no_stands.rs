@@ -12,9 +12,10 @@ pub(crate) enum NoStands {
 }
 
 impl NoStands {
-    /// Of what is wrong with the times of rows with these lines.
-    pub(crate) fn of(why: NoStream, times: &[f64], lines: &[usize]) -> Self {
-        let line = |row: usize| lines.get(row).copied().unwrap_or_default();
+    /// Of what is wrong with the times of rows, if they are none of a list, with their lines.
+    pub(crate) fn of(why: Option<NoStream>, times: &[f64], line: impl Fn(usize) -> Option<usize>) -> Self {
+        let Some(why) = why else { return NoStands::Listed };
+        let line = |row: usize| line(row).unwrap_or_default();
         let back = if let NoStream::Back(row) = why { Some(line(row)) } else { None };
         let why = match why {
             NoStream::NoTime(_) if times.iter().all(|it| it.is_nan()) => "no column of times".to_owned(),

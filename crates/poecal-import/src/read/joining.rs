@@ -9,16 +9,17 @@ use crate::instruments::MEASURED;
 use crate::join::join_motion::in_motion;
 use crate::join::join_pairs::{Joined, JointRows, Pairing};
 use crate::join::join_plan::{Part, Plan, Planned};
-use crate::join::motions::{Sampled, motion_of_points, motion_of_target};
 use crate::join::no_stands::NoStands;
-use crate::join::streams::{MeasuredStands, stands_of_joints, stands_of_measured};
 use crate::read::Reader;
 use crate::table::Table;
 use crate::table::cursor::Cursor;
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::understanding::FileUnderstanding;
-use poecal_fit::start::{FEWEST_PAIRS, JointStream, Span, Unpaired};
+use poecal_fit::start::{
+    FEWEST_PAIRS, JointStream, MeasuredStands, Sampled, Span, Unpaired, motion_of_points, motion_of_target,
+    stands_of_measured, stands_of_readings,
+};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
@@ -116,10 +117,15 @@ impl<'a> Reader<'a> {
         // A stream has no names of rows.
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
-        let found = if is_listed { Err(NoStands::Listed) } else { stands_of_joints(&rows, &rows.times) };
-        let mut stands = match found {
-            Ok(stands) => stands,
+        let found = if is_listed {
+            Err(None)
+        } else {
+            stands_of_readings(&rows.times, &rows.readings, rows.turns.len())
+        };
+        let found = match found {
+            Ok(found) => found,
             Err(why) => {
+                let why = NoStands::of(why, &rows.times, |row| rows.lines.get(row).copied());
                 refuse_backwards(path, &why)?;
                 if self.options.join == Some(Join::Motion) {
                     rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
@@ -127,17 +133,24 @@ impl<'a> Reader<'a> {
                 return Ok(JointRows { no_stands: why, ..rows });
             }
         };
-        stands.stream = JointStream::new(&rows.times, &rows.readings, rows.turns.len());
-        if stands.lines.len() < FEWEST_PAIRS {
-            return Err(no_stands(path, "joint readings", stands.lines.len()));
+        if found.len() < FEWEST_PAIRS {
+            return Err(no_stands(path, "joint readings", found.len()));
         }
+        let lines = found.iter().filter_map(|(it, _)| rows.lines.get(it.rows.start)).copied();
         self.found.notes.push(format!(
             "{}: took the {} stands of the robot in its stream of joint readings",
             path.display(),
-            stands.lines.len()
+            found.len()
         ));
-        stands.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
-        Ok(stands)
+        Ok(JointRows {
+            lines: lines.collect(),
+            spans: Some(found.iter().map(|(it, _)| it.span_s).collect()),
+            stream: JointStream::new(&rows.times, &rows.readings, rows.turns.len()),
+            sampled: Sampled::new(&rows.times, &rows.readings, rows.turns.len()),
+            readings: found.into_iter().flat_map(|(_, means)| means).collect(),
+            ids: Vec::new(),
+            ..rows
+        })
     }
 
     /// Reads a file of measurements alone, with the readings of another.
@@ -155,13 +168,16 @@ impl<'a> Reader<'a> {
         }
         let is_by_rows = matches!(self.options.join, Some(Join::Rows | Join::Name));
         let found = if is_by_rows || !joints.ids.is_empty() && !data.ids.iter().all(String::is_empty) {
-            Err(NoStands::Listed)
+            Err(None)
         } else {
             stands_of_measured(&data, &times)
         };
         let (stands, why) = match found {
             Ok(stands) => (Some(stands), None),
-            Err(why) => (None, Some(why)),
+            Err(why) => {
+                let line = |row: usize| data.observations.get(row).map(|it| it.source.line as usize);
+                (None, Some(NoStands::of(why, &times, line)))
+            }
         };
         if let Some(why) = &why {
             refuse_backwards(path, why)?;

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use crate::ReadOptions;
 use crate::instruments::Opening;
-use crate::join::streams::time_of;
 use crate::pictures::taken::set_of;
 use crate::table::configurations::in_its_file;
 use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
+use crate::table::times::time_of;
 use crate::table::{Table, refuse_more_rows};
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;

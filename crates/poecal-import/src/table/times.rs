@@ -1,6 +1,8 @@
 //! Columns with the times of rows.
 
+use super::layout::ColumnLayout;
 use super::numbered::plain;
+use crate::table::Row;
 
 /// What columns with the time of a row are called, in small letters without what separates.
 const NAMES: [&str; 8] = ["time", "t", "timestamp", "stamp", "times", "timeseconds", "seconds", "elapsed"];
@@ -20,6 +22,14 @@ pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
             own(stem)
         }
     }
+}
+
+/// The time of a row, seconds; NaN if it has none.
+pub(crate) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
+    let Some((column, seconds)) = layout.time else { return f64::NAN };
+    let text = row.raw(column).trim_start_matches('\'');
+    let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
+    value.map_or(f64::NAN, |it| it * seconds)
 }
 
 #[cfg(test)]

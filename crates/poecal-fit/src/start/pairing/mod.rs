@@ -8,15 +8,20 @@ mod agreement;
 mod jitter;
 mod joint_stream;
 mod lags;
+mod mean_stands;
 mod motion;
+mod sampled;
 mod speeds;
+mod stand_means;
 mod stands;
 mod uneven;
 
 pub use agreement::{Agreement, Order};
 pub use joint_stream::{JointStream, smoothed};
 pub use lags::{Lagged, Span};
+pub use mean_stands::{MeasuredStands, stands_of_measured, stands_of_readings};
 pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
+pub use sampled::{MotionEntry, Sampled, motion_of_points, motion_of_target};
 pub use stands::{Channels, NoStream, Stand, Stream};
 pub use uneven::Aligned;
 

@@ -56,6 +56,19 @@ pub enum NoStream {
     Slow(f64),
 }
 
+impl NoStream {
+    /// The same, by other numbers of its rows.
+    #[must_use]
+    pub fn of_rows(self, rows: &[usize]) -> Self {
+        let of = |row: usize| rows.get(row).copied().unwrap_or(row);
+        match self {
+            NoStream::NoTime(row) => NoStream::NoTime(of(row)),
+            NoStream::Back(row) => NoStream::Back(of(row)),
+            NoStream::Slow(_) => self,
+        }
+    }
+}
+
 /// Rows of a stream: times (seconds), and some numbers of each row.
 #[derive(Clone, Debug)]
 pub struct Stream {

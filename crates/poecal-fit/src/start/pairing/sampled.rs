@@ -1,22 +1,45 @@
 //! Motion in streams, for pictures of how they were joined: places at times of equal distance, and the speeds between them.
 
 use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::join_entry::{MOST_ALONE, MotionEntry};
-use poecal_fit::start::Span;
+use super::Span;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::median;
 
+/// Most times without a row that are listed.
+const MOST_GAPS: usize = 1000;
 /// Most speeds of a stream, and shortest time from one to the next, seconds.
 const MOST: f64 = 600.0;
 const SHORTEST_S: f64 = 0.1;
 /// A time without a row is one of as many steps from row to row.
 const GAP_STEPS: f64 = 2.5;
 
+/// Motion in a stream, by its own clock.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MotionEntry {
+    /// Its rows.
+    pub rows: usize,
+    /// Time of the first row, seconds; all other times are after it.
+    pub begin_s: f64,
+    /// Time of the last row, seconds.
+    pub end_s: f64,
+    /// Seconds from one speed to the next; zero without speeds.
+    pub step_s: f64,
+    /// Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near.
+    pub speeds_mm_s: Vec<Option<f64>>,
+    /// Begin and end of each stand, seconds; both the same of a single point.
+    pub stands_s: Vec<[f64; 2]>,
+    /// Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gaps_s: Vec<[f64; 2]>,
+}
+
 /// Numbers of a stream at times of equal distance.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sampled {
+pub struct Sampled {
     /// The numbers at a time, one time after the other; none where no row is near.
     values: Vec<Option<Vec<f64>>>,
     step_s: f64,
@@ -28,16 +51,17 @@ pub(crate) struct Sampled {
 
 impl Sampled {
     /// Of rows with these times, `width` numbers each.
-    pub(crate) fn new(times: &[f64], rows: &[f64], width: usize) -> Option<Self> {
+    #[must_use]
+    pub fn new(times: &[f64], rows: &[f64], width: usize) -> Option<Self> {
         let (&begin, &end) = times.first().zip(times.last())?;
         let steps: Vec<f64> = times.windows(2).map(|it| it[1] - it[0]).collect();
         let step = median(steps.iter().copied()).filter(|it| *it > 0.0)?;
         let is_gap = |at: usize| steps.get(at).is_some_and(|it| *it > GAP_STEPS * step);
         let mut gaps: Vec<Span> =
             (0..steps.len()).filter(|at| is_gap(*at)).map(|at| (times[at], times[at + 1])).collect();
-        if gaps.len() > MOST_ALONE {
+        if gaps.len() > MOST_GAPS {
             gaps.sort_by(|a, b| (b.1 - b.0).total_cmp(&(a.1 - a.0)));
-            gaps.truncate(MOST_ALONE);
+            gaps.truncate(MOST_GAPS);
             gaps.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         let step_s = ((end - begin) / MOST).max(SHORTEST_S);
@@ -62,7 +86,8 @@ impl Sampled {
     }
 
     /// The same with other numbers.
-    pub(crate) fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+    #[must_use]
+    pub fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         let values = self.values.iter().map(|it| it.as_deref().map(&of)).collect();
         Sampled { values, ..self.clone() }
     }
@@ -85,20 +110,23 @@ impl Sampled {
     }
 
     /// The motion of the nominal robot's tip.
-    pub(crate) fn of_robot(&self, robot: &Robot, stands: &[Span]) -> MotionEntry {
+    #[must_use]
+    pub fn of_robot(&self, robot: &Robot, stands: &[Span]) -> MotionEntry {
         let tip = |readings: &[f64]| robot.forward_kinematics(&robot.joint_values(readings)).translation;
         self.motion(tip, stands)
     }
 }
 
 /// The motion of single points.
-pub(crate) fn motion_of_points(points: &[Span]) -> Option<MotionEntry> {
+#[must_use]
+pub fn motion_of_points(points: &[Span]) -> Option<MotionEntry> {
     let (first, last) = points.first().zip(points.last())?;
     Some(MotionEntry { rows: points.len(), ..motion_of_stands((first.0, last.1), points) })
 }
 
 /// The motion of the target that was seen most, by the times of all rows.
-pub(crate) fn motion_of_target(data: &Dataset, times: &[f64], stands: &[Span]) -> Option<MotionEntry> {
+#[must_use]
+pub fn motion_of_target(data: &Dataset, times: &[f64], stands: &[Span]) -> Option<MotionEntry> {
     let most = data.most_seen_target()?;
     let own = data.observations.iter().zip(times).filter(|(it, _)| it.target == most);
     let seen: Vec<(f64, Vector3<f64>)> =

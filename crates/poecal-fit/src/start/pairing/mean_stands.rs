@@ -4,15 +4,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::join_pairs::JointRows;
-use super::join_words::numbered;
-use super::no_stands::NoStands;
+use super::super::averaging::mean_rotation;
+use super::lags::Span;
 use super::stand_means::{Spread, kept, kept_values};
-use crate::table::Row;
-use crate::table::layout::ColumnLayout;
+use super::stands::{Channels, NoStream, Stand, Stream};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_fit::start::{Span, Stand, Stream, StreamChannels, mean_rotation};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
+use poecal_numerics::error::first_few;
 
 /// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
@@ -21,44 +19,34 @@ const COARSEST_JOINT: f64 = 1e-3;
 const STILL_PLACE_M: f64 = 3e-5;
 const STILL_TURN: f64 = 1e-4;
 
-/// The time of a row, seconds; NaN if it has none.
-pub(crate) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
-    let Some((column, seconds)) = layout.time else { return f64::NAN };
-    let text = row.cells.get(column).map_or("", |cell| cell.raw).trim_start_matches('\'');
-    let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
-    value.map_or(f64::NAN, |it| it * seconds)
-}
-
-/// Stands of a stream of joint readings, as the rows that they are.
+/// Stands of a stream of joint readings, of `width` numbers a row, each with the means of its rows.
 ///
 /// # Errors
-/// [`NoStands`].
-pub(crate) fn stands_of_joints(rows: &JointRows, times: &[f64]) -> Result<JointRows, NoStands> {
-    let width = rows.turns.len();
-    let channel = |at: usize| rows.readings.iter().skip(at).step_by(width.max(1)).copied().collect();
+/// Why they are none; nothing of rows that do not follow each other as in a recording.
+pub fn stands_of_readings(
+    times: &[f64],
+    readings: &[f64],
+    width: usize,
+) -> Result<Vec<(Stand, Vec<f64>)>, Option<NoStream>> {
+    let channel = |at: usize| readings.iter().skip(at).step_by(width.max(1)).copied().collect();
     let channels: Vec<Vec<f64>> = (0..width).map(channel).collect();
-    let alone = |values: &Vec<f64>| StreamChannels {
+    let alone = |values: &Vec<f64>| Channels {
         values: vec![values.clone()],
         freedom: 1,
         floor: STILL_JOINT.max(digit(values).min(COARSEST_JOINT)),
     };
     let floors: Vec<f64> = channels.iter().map(|it| alone(it).floor).collect();
-    let stream = dense(times, channels.iter().map(alone).collect(), &rows.lines)?;
-    let stands = stream.stands();
-    let mean = |stand: &Stand| {
+    let rows = readings.len() / width.max(1);
+    let stream = dense(times, rows, channels.iter().map(alone).collect())?;
+    let mean = |stand: Stand| {
         let of = |(channel, floor): (&Vec<f64>, &f64)| {
             let own = kept_values(channel.get(stand.rows.clone()).unwrap_or_default(), *floor);
             own.iter().sum::<f64>() / own.len().max(1) as f64
         };
-        channels.iter().zip(&floors).map(of).collect::<Vec<f64>>()
+        let means = channels.iter().zip(&floors).map(of).collect();
+        (stand, means)
     };
-    Ok(JointRows {
-        readings: stands.iter().flat_map(mean).collect(),
-        ids: Vec::new(),
-        lines: stands.iter().filter_map(|it| rows.lines.get(it.rows.start)).copied().collect(),
-        spans: Some(stands.iter().map(|it| it.span_s).collect()),
-        ..rows.clone()
-    })
+    Ok(stream.stands().into_iter().map(mean).collect())
 }
 
 /// The last digit of readings: the smallest change that is one.
@@ -67,15 +55,15 @@ fn digit(values: &[f64]) -> f64 {
     changes.min_by(f64::total_cmp).unwrap_or_default()
 }
 
-/// A stream, if rows of these lines are one.
-fn dense(times: &[f64], channels: Vec<StreamChannels>, lines: &[usize]) -> Result<Stream, NoStands> {
-    let own = if times.len() == lines.len() { times.to_vec() } else { vec![f64::NAN; lines.len()] };
+/// A stream, if so many rows are one.
+fn dense(times: &[f64], rows: usize, channels: Vec<Channels>) -> Result<Stream, Option<NoStream>> {
+    let own = if times.len() == rows { times.to_vec() } else { vec![f64::NAN; rows] };
     let stream = Stream::new(own, channels);
     if !stream.is_smooth() {
-        return Err(NoStands::Listed);
+        return Err(None);
     }
     match stream.no_stream() {
-        Some(why) => Err(NoStands::of(why, times, lines)),
+        Some(why) => Err(Some(why)),
         None => Ok(stream),
     }
 }
@@ -100,32 +88,33 @@ impl Turned {
 
 /// Stands of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct MeasuredStands {
+pub struct MeasuredStands {
     /// The stands, as a file of measurements would have them.
-    pub(crate) data: Dataset,
-    pub(crate) spans: Vec<Span>,
+    pub data: Dataset,
+    /// When each begins and ends, seconds.
+    pub spans: Vec<Span>,
     /// Of each line, what was measured on an average, in the order of the file.
-    pub(crate) means: BTreeMap<usize, Vec<Measurement>>,
+    pub means: BTreeMap<usize, Vec<Measurement>>,
     /// Root mean square of how single rows scatter about these, metres.
-    pub(crate) scatter_m: f64,
+    pub scatter_m: f64,
     /// What should be looked at, a sentence each.
-    pub(crate) warnings: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 /// The stands of measurements with these times.
 ///
 /// # Errors
-/// [`NoStands`].
-pub(crate) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStands, NoStands> {
+/// Why they are none, by numbers of rows of the data; nothing of rows that do not follow each other as in a recording.
+pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStands, Option<NoStream>> {
     // The target that was seen most says when nothing moves.
-    let most = data.most_seen_target().ok_or(NoStands::Listed)?;
+    let most = data.most_seen_target().ok_or(None)?;
     let rows: Vec<usize> =
         (0..data.len()).filter(|at| data.observations.get(*at).is_some_and(|it| it.target == most)).collect();
     let own: Vec<&Observation> = rows.iter().filter_map(|at| data.observations.get(*at)).collect();
     if own.iter().any(|it| it.measurement.position().is_none()) {
-        return Err(NoStands::Listed);
+        return Err(None);
     }
-    let stream = stream_of_places(&own, (&rows, times))?;
+    let stream = stream_of_places(&own, (&rows, times)).map_err(|why| why.map(|it| it.of_rows(&rows)))?;
     let mut found =
         MeasuredStands { data: Dataset::new(data.reading_names().to_vec()), ..MeasuredStands::default() };
     (found.data.targets, found.data.stations) = (data.targets.clone(), data.stations.clone());
@@ -154,7 +143,7 @@ pub(crate) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<Measur
             let averaged = Observation { measurement: mean, ..**of };
             let nothing = vec![0.0; data.reading_names().len()];
             if found.data.push_observation(&nothing, averaged).is_err() {
-                return Err(NoStands::Listed);
+                return Err(None);
             }
             found.data.ids.push(found.spans.len().to_string());
             means.push(mean);
@@ -166,13 +155,17 @@ pub(crate) fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<Measur
     }
     found.scatter_m = Spread::of_all(&spreads);
     found.warnings = Spread::warnings(&spreads, |some| {
-        numbered(&some.iter().filter_map(|at| starts.get(*at)).cloned().collect::<Vec<_>>())
+        let named: Vec<&str> = some.iter().filter_map(|at| starts.get(*at)).map(String::as_str).collect();
+        format!("line{} {}", if named.len() == 1 { "" } else { "s" }, first_few(&named))
     });
     Ok(found)
 }
 
 /// The stream of a target's places and, where all rows have one, its orientation.
-fn stream_of_places(own: &[&Observation], (rows, times): (&[usize], &[f64])) -> Result<Stream, NoStands> {
+fn stream_of_places(
+    own: &[&Observation],
+    (rows, times): (&[usize], &[f64]),
+) -> Result<Stream, Option<NoStream>> {
     let is_posed = own.iter().all(|it| it.measurement.sees_orientation());
     let mut turned = Turned::default();
     let mut numbers = |it: &&Observation| -> Vec<f64> {
@@ -183,7 +176,7 @@ fn stream_of_places(own: &[&Observation], (rows, times): (&[usize], &[f64])) -> 
     let all: Vec<Vec<f64>> = own.iter().map(&mut numbers).collect();
     let width = all.first().map_or(0, Vec::len);
     let channel = |at: usize| -> Vec<f64> { all.iter().filter_map(|it| it.get(at)).copied().collect() };
-    let group = |range: std::ops::Range<usize>, floor: f64| StreamChannels {
+    let group = |range: std::ops::Range<usize>, floor: f64| Channels {
         values: range.map(channel).collect(),
         freedom: 3,
         floor,
@@ -191,8 +184,7 @@ fn stream_of_places(own: &[&Observation], (rows, times): (&[usize], &[f64])) -> 
     let mut channels = vec![group(0..3, STILL_PLACE_M)];
     channels.extend((width > 3).then(|| group(3..width, STILL_TURN)));
     let own_times: Vec<f64> = rows.iter().filter_map(|at| times.get(*at)).copied().collect();
-    let lines: Vec<usize> = own.iter().map(|it| it.source.line as usize).collect();
-    dense(&own_times, channels, &lines)
+    dense(&own_times, own.len(), channels)
 }
 
 /// The mean of measurements of one target, without those that are far from the others.
