@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::table::Row;
-use crate::table::conventions::CONVENTIONS;
+use crate::table::conventions::{AMBIGUOUS, CONVENTIONS};
 use crate::table::header::{Header, HeaderCell};
 use crate::table::inputs::{InputReader, InputSource};
 use crate::table::layout::ColumnLayout;
@@ -43,15 +43,10 @@ impl TurnWatch {
         for (form, columns) in layout.targets.iter().filter_map(|target| target.orientation.as_ref()) {
             let of_radians =
                 |&input: &usize| layout.inputs.get(input).is_some_and(|it| it.unit.symbol() == "rad");
-            let (is_vector, most) = match form {
-                OrientationForm::QuaternionXyzw
-                | OrientationForm::QuaternionWxyz
-                | OrientationForm::MatrixByRows
-                | OrientationForm::MatrixByColumns => continue,
-                &OrientationForm::ROTATION_VECTOR => (true, TAU + ROUNDING),
-                // Angles that count on over many turns are in no other unit.
-                OrientationForm::Angles(_) => (false, 2.0 * TAU),
-            };
+            let OrientationForm::Angles(angles) = form else { continue };
+            let is_vector = *angles == Angles::RotationVector;
+            // Angles that count on over many turns are in no other unit.
+            let most = if is_vector { TAU + ROUNDING } else { 2.0 * TAU };
             let values: Vec<f64> = columns.iter().filter_map(|&input| inputs.value(input)).collect();
             if values.len() != 3 || !columns.iter().all(of_radians) {
                 continue;
@@ -101,9 +96,6 @@ impl TurnWatch {
         )).at(path, first.line, first.column))
     }
 }
-
-/// Columns that makers call alike and mean in several ways.
-const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// Advice on columns that may hold an orientation and are not read as one.
 pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
@@ -155,7 +147,7 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
         // Joints may be called q1 to q6.
         let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
         let form = it.form.mapped();
-        all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.to_owned()))
+        all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.clone()))
     });
     let ((columns, mapping), words) = known.or_else(|| {
         let own = MAKERS.iter().filter(|it| it.names == AMBIGUOUS);

@@ -12,7 +12,7 @@ pub(crate) struct Draft {
     /// Joints, what they are measured in, and their columns.
     pub(crate) joints: Vec<(String, Unit, Option<String>)>,
     pub(crate) position: [Option<String>; 3],
-    pub(crate) form: Option<String>,
+    pub(crate) form: Option<OrientationForm>,
     pub(crate) parts: Vec<Option<String>>,
     /// Units by the names of their fields; none where the file states them.
     pub(crate) units: BTreeMap<&'static str, Option<NamedUnit>>,
@@ -24,10 +24,6 @@ pub(crate) struct Draft {
 }
 
 impl Draft {
-    pub(crate) fn orientation(&self) -> Option<OrientationForm> {
-        self.form.as_ref()?.parse().ok()
-    }
-
     /// All columns that something is read from.
     pub(crate) fn used(&self) -> impl Iterator<Item = &String> {
         let joints = self.joints.iter().map(|it| &it.2);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::draft::Draft;
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::angles::MAKERS;
+use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::named_unit::units_of;
 use poecal_numerics::unit::Unit;
 
@@ -26,6 +26,9 @@ pub struct MappedField {
     pub required: bool,
 }
 
+/// Ways in which poses may point, as a mapping calls them.
+pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
+
 /// A word to choose.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MappedChoice {
@@ -41,33 +44,19 @@ impl MappedChoice {
     }
 }
 
-/// Forms that are not three angles about axes, and the most frequent first.
-const FORMS: [&str; 6] = [
-    "quaternion_xyzw",
-    "quaternion_wxyz",
-    "rotation_vector",
-    "roll_pitch_yaw",
-    "rotation_matrix",
-    "rotation_matrix_by_columns",
-];
-
-/// The forms of an orientation.
+/// The forms of an orientation, the most frequent first.
 fn forms() -> Vec<MappedChoice> {
-    let axes = || "xyz".chars();
-    let turns = axes().flat_map(|a| axes().flat_map(move |b| axes().map(move |c| format!("{a}{b}{c}"))));
-    let turns: Vec<String> = turns.collect();
-    let angles = ["intrinsic_", "extrinsic_"]
-        .into_iter()
-        .flat_map(|kind| turns.iter().map(move |it| format!("{kind}{it}")));
-    let words = FORMS.into_iter().map(str::to_owned).chain(angles.filter(|it| it != "extrinsic_xyz"));
-    let choice = |word: String| {
-        let form: OrientationForm = word.parse().ok()?;
+    let axes = (0..27).map(|it| [it / 9, it / 3 % 3, it % 3]).filter(|[a, b, c]| a != b && b != c);
+    let angles = axes.clone().map(Angles::Intrinsic).chain(axes.map(Angles::Extrinsic));
+    let angles = angles.filter(|it| *it != Angles::ROLL_PITCH_YAW).map(OrientationForm::Angles);
+    let choice = |form: OrientationForm| {
         let own = MAKERS.iter().filter(|it| OrientationForm::Angles(it.angles) == form);
         let makers: Vec<String> = own.map(|it| format!("{} {}", it.maker, it.names.join(", "))).collect();
         let before = if makers.is_empty() { "" } else { ": " };
-        Some(MappedChoice::new(&word, format!("{form}{before}{}", makers.join("; "))))
+        MappedChoice::new(&form.mapped(), format!("{form}{before}{}", makers.join("; ")))
     };
-    std::iter::once(MappedChoice::new("", "none: positions alone")).chain(words.filter_map(choice)).collect()
+    let none = MappedChoice::new("", "none: positions alone");
+    std::iter::once(none).chain(OrientationForm::NAMED.into_iter().chain(angles).map(choice)).collect()
 }
 
 fn units(quantity: Unit) -> Vec<MappedChoice> {
@@ -79,51 +68,47 @@ fn units(quantity: Unit) -> Vec<MappedChoice> {
 
 /// All fields of a draft.
 pub(crate) fn fields(draft: &Draft) -> Vec<MappedField> {
+    let of = |group, key: &str, label: &str, choices, chosen: Option<&str>, required| {
+        let (key, label, chosen) = (key.to_owned(), label.to_owned(), chosen.unwrap_or_default().to_owned());
+        MappedField { key, group, label, choices, chosen, required }
+    };
+    let column = |group, key: &str, label: &str, chosen: &Option<String>, required| {
+        of(group, key, label, Vec::new(), chosen.as_deref(), required)
+    };
+    let unit = |group, key: &'static str, label: &str, quantity| {
+        let chosen = draft.units.get(key).and_then(|it| it.map(|unit| unit.symbol()));
+        of(group, &format!("unit.{key}"), label, units(quantity), chosen, false)
+    };
     let mut found = Vec::new();
-    let mut field =
-        |group, key: &str, label: &str, choices: Vec<MappedChoice>, chosen: Option<&str>, required| {
-            let (key, label, chosen) =
-                (key.to_owned(), label.to_owned(), chosen.unwrap_or_default().to_owned());
-            found.push(MappedField { key, group, label, choices, chosen, required });
-        };
-    let unit = |key: &str| draft.units.get(key).and_then(|it| it.map(|unit| unit.symbol()));
-    for (name, _, column) in &draft.joints {
-        field("joints", name, name, Vec::new(), column.as_deref(), true);
-    }
+    found.extend(draft.joints.iter().map(|(name, _, it)| column("joints", name, name, it, true)));
     for (key, quantity, label) in
         [("angle", Unit::Radian, "unit of the angles"), ("length", Unit::Metre, "unit of the slides")]
     {
         if draft.joints.iter().any(|it| it.1 == quantity) {
-            field("joints", &format!("unit.{key}"), label, units(quantity), unit(key), false);
+            found.push(unit("joints", key, label, quantity));
         }
     }
-    for (axis, column) in ["x", "y", "z"].into_iter().zip(&draft.position) {
-        field("position", axis, axis, Vec::new(), column.as_deref(), true);
-    }
-    field("position", "unit.position", "unit", units(Unit::Metre), unit("position"), false);
-    field("orientation", "orientation", "form", forms(), draft.form.as_deref(), false);
-    if let Some(form) = draft.orientation() {
-        for (part, (name, column)) in form.part_names().iter().zip(&draft.parts).enumerate() {
-            field(
-                "orientation",
-                &format!("orientation.{}", part + 1),
-                name,
-                Vec::new(),
-                column.as_deref(),
-                true,
-            );
+    let axes = ["x", "y", "z"].into_iter().zip(&draft.position);
+    found.extend(axes.map(|(axis, it)| column("position", axis, axis, it, true)));
+    found.push(unit("position", "position", "unit", Unit::Metre));
+    let chosen = draft.form.map(OrientationForm::mapped);
+    found.push(of("orientation", "orientation", "form", forms(), chosen.as_deref(), false));
+    if let Some(form) = draft.form {
+        for (part, (name, it)) in form.part_names().iter().zip(&draft.parts).enumerate() {
+            found.push(column("orientation", &format!("orientation.{}", part + 1), name, it, true));
         }
         if form.quantity() == Unit::Radian {
-            field("orientation", "unit.orientation", "unit", units(Unit::Radian), unit("orientation"), false);
+            found.push(unit("orientation", "orientation", "unit", Unit::Radian));
         }
+        let [seen, seeing] = WAYS;
         let ways = vec![
-            MappedChoice::new("device_from_target", "of the target, as the device sees it"),
-            MappedChoice::new("target_from_device", "of the device, as the target sees it"),
+            MappedChoice::new(seen, "of the target, as the device sees it"),
+            MappedChoice::new(seeing, "of the device, as the target sees it"),
         ];
-        let chosen = if draft.is_inverted { "target_from_device" } else { "device_from_target" };
-        field("orientation", "pose", "the poses are", ways, Some(chosen), false);
+        let chosen = if draft.is_inverted { seeing } else { seen };
+        found.push(of("orientation", "pose", "the poses are", ways, Some(chosen), false));
     }
-    field("rows", "target", "name of the target", Vec::new(), draft.target.as_deref(), false);
-    field("rows", "id", "name of the row", Vec::new(), draft.id.as_deref(), false);
+    found.push(column("rows", "target", "name of the target", &draft.target, false));
+    found.push(column("rows", "id", "name of the row", &draft.id, false));
     found
 }

@@ -11,8 +11,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use self::draft::Draft;
-use self::fields::fields;
 pub use self::fields::{MappedChoice, MappedField};
+use self::fields::{WAYS, fields};
 use self::names::Names;
 use super::ReadOptions;
 use super::table::Table;
@@ -178,10 +178,10 @@ impl<'h> Sample<'h> {
             *place = self.name(*column);
         }
         if let Some((form, columns)) = self.names.orientation(near.as_deref()) {
-            let is_large = self.largest_of(columns.iter().copied()) > MOST_RADIANS;
+            let is_large = self.largest_of(&columns) > MOST_RADIANS;
             // Nobody writes a rotation vector in degrees.
-            let is_vector = form == Angles::RotationVector.to_string();
-            draft.form = Some(if is_vector && is_large { Angles::XYZ.to_string() } else { form });
+            let is_turned = is_large && form == OrientationForm::ROTATION_VECTOR;
+            draft.form = Some(if is_turned { OrientationForm::Angles(Angles::XYZ) } else { form });
             draft.parts = columns.into_iter().map(|it| self.name(it)).collect();
         }
         draft.target = self.names.named("target").and_then(|it| self.name(it));
@@ -199,33 +199,32 @@ impl<'h> Sample<'h> {
     }
 
     /// The largest number in some columns.
-    fn largest_of(&self, columns: impl Iterator<Item = usize>) -> f64 {
-        columns.filter_map(|it| self.largest.get(it)).fold(0.0, |most: f64, it| most.max(*it))
+    fn largest_of(&self, columns: &[usize]) -> f64 {
+        columns.iter().filter_map(|it| self.largest.get(*it)).fold(0.0, |most: f64, it| most.max(*it))
     }
 
     /// Takes a column or a word in place of what was guessed.
     fn choose(&self, draft: &mut Draft, key: &str, value: &str, near: Option<&str>) -> Result<()> {
         if key == "orientation" {
-            let form: Option<OrientationForm> =
-                if value.is_empty() { None } else { Some(value.parse().map_err(refused)?) };
-            let parts = form.map_or_else(Vec::new, |form| {
-                // Angles in another order are in the same columns.
-                let kept = draft.orientation().is_some_and(|it| it.len() == form.len() && form.len() == 3);
-                if kept { draft.parts.clone() } else { self.named_parts(form, near) }
-            });
-            (draft.form, draft.parts) = (form.map(|_| value.to_owned()), parts);
+            let form = if value.is_empty() { None } else { Some(value.parse().map_err(refused)?) };
+            // Angles in another order are in the same columns.
+            let is_same =
+                |form: &OrientationForm| form.len() == 3 && draft.form.is_some_and(|it| it.len() == 3);
+            if !form.as_ref().is_some_and(is_same) {
+                let parts = form.map_or_else(Vec::new, |form| self.names.parts(form, near));
+                draft.parts = parts.into_iter().map(|it| self.name(it?)).collect();
+            }
+            draft.form = form;
             return Ok(());
         }
         if key == "pose" {
-            draft.is_inverted = match value {
-                "target_from_device" => true,
-                "device_from_target" => false,
-                _ => {
-                    return ErrorKind::Option.refuse(format!(
-                        "--column: found `{value}` for the way of the poses, expected device_from_target or target_from_device"
-                    ));
-                }
+            let Some(way) = WAYS.iter().position(|it| *it == value) else {
+                return ErrorKind::Option.refuse(format!(
+                    "--column: found `{value}` for the way of the poses, expected {}",
+                    WAYS.join(" or ")
+                ));
             };
+            draft.is_inverted = way == 1;
             return Ok(());
         }
         let column = if value.is_empty() { None } else { Some(self.known(value, key)?) };
@@ -243,15 +242,13 @@ impl<'h> Sample<'h> {
         } else {
             Some(&mut draft.id).filter(|_| key == "id")
         };
-        match place {
-            Some(place) => *place = column,
-            None => {
-                let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-                let hint = nearest_or_all(key, &keys);
-                return ErrorKind::Option
-                    .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
-            }
-        }
+        let Some(place) = place else {
+            let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
+            let hint = nearest_or_all(key, &keys);
+            return ErrorKind::Option
+                .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
+        };
+        *place = column;
         Ok(())
     }
 
@@ -267,39 +264,33 @@ impl<'h> Sample<'h> {
         })
     }
 
-    fn named_parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<String>> {
-        self.names.parts(form, near).into_iter().map(|it| self.name(it?)).collect()
-    }
-
     /// Units of columns that state none.
     fn guess_units(&self, draft: &mut Draft) {
-        let index = |name: &String| self.index(name);
-        let of_joints = |quantity: Unit| {
-            let joints = draft.joints.iter().filter(move |it| it.1 == quantity);
-            joints.filter_map(|it| it.2.as_ref()).filter_map(index).collect()
+        let joints = |quantity: Unit| {
+            let own = draft.joints.iter().filter(move |it| it.1 == quantity);
+            own.filter_map(|it| it.2.as_ref()).collect::<Vec<_>>()
         };
-        let position = draft.position.iter().flatten().filter_map(index).collect();
-        let turns = draft.orientation().is_some_and(|it| it.quantity() == Unit::Radian);
-        let parts = draft.parts.iter().flatten().filter(|_| turns).filter_map(index).collect();
+        let are_angles = draft.form.is_some_and(|it| it.quantity() == Unit::Radian);
+        let parts = draft.parts.iter().flatten().filter(|_| are_angles).collect();
         let units = [
-            ("angle", self.guess_unit(of_joints(Unit::Radian), Unit::Radian, MOST_RADIANS)),
-            ("length", self.guess_unit(of_joints(Unit::Metre), Unit::Metre, MOST_METRES[0])),
-            ("position", self.guess_unit(position, Unit::Metre, MOST_METRES[1])),
-            ("orientation", self.guess_unit(parts, Unit::Radian, MOST_RADIANS)),
+            ("angle", joints(Unit::Radian), Unit::Radian, MOST_RADIANS),
+            ("length", joints(Unit::Metre), Unit::Metre, MOST_METRES[0]),
+            ("position", draft.position.iter().flatten().collect(), Unit::Metre, MOST_METRES[1]),
+            ("orientation", parts, Unit::Radian, MOST_RADIANS),
         ];
+        let units = units.map(|(key, names, quantity, most)| (key, self.guess_unit(&names, quantity, most)));
         draft.units = units.into();
     }
 
     /// The unit of some columns, unless all state theirs: that in the first one's name, or by the size of the numbers.
-    fn guess_unit(&self, columns: Vec<usize>, quantity: Unit, most: f64) -> Option<NamedUnit> {
-        let is_stated =
-            |column: &usize| self.header.cells.get(*column).is_some_and(|it| it.units().next().is_some());
-        if columns.iter().all(is_stated) {
+    fn guess_unit(&self, names: &[&String], quantity: Unit, most: f64) -> Option<NamedUnit> {
+        let columns: Vec<usize> = names.iter().filter_map(|name| self.index(name)).collect();
+        let cells = columns.iter().filter_map(|it| self.header.cells.get(*it));
+        if cells.clone().all(|cell| cell.units().next().is_some()) {
             return None;
         }
         let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == quantity);
-        let is_large = self.largest_of(columns.into_iter()) > most;
-        let symbol = match (quantity, is_large) {
+        let symbol = match (quantity, self.largest_of(&columns) > most) {
             (Unit::Metre, true) => "mm",
             (Unit::Metre, false) => "m",
             (_, true) => "deg",
@@ -310,13 +301,15 @@ impl<'h> Sample<'h> {
 
     /// Columns with a name of ours that would be read without being chosen.
     fn leave_out(&self, draft: &mut Draft) {
-        let own = ["qx", "qy", "qz", "qw", "rx", "ry", "rz", "roll", "pitch", "yaw"];
-        let orientation = own.iter().filter(|_| draft.form.is_none());
-        let names = orientation.chain(Some(&"target").filter(|_| draft.target.is_none()));
-        let names = names.chain(Some(&"id").filter(|_| draft.id.is_none()));
-        let columns = names.filter_map(|it| self.names.named(it)).filter_map(|it| self.name(it));
-        let left_out: Vec<String> = columns.filter(|it| !draft.used().any(|used| used == it)).collect();
-        draft.left_out = left_out;
+        let mut names: Vec<&str> = Vec::new();
+        if draft.form.is_none() {
+            names.extend(OrientationForm::BY_NAME.iter().flat_map(|it| it.part_names()));
+        }
+        for (name, column) in [("target", &draft.target), ("id", &draft.id)] {
+            names.extend(Some(name).filter(|_| column.is_none()));
+        }
+        let columns = names.into_iter().filter_map(|it| self.name(self.names.named(it)?));
+        draft.left_out = columns.filter(|it| !draft.used().any(|used| used == it)).collect();
     }
 
     fn guess(self, draft: &Draft, path: &Path) -> ColumnGuess {

@@ -52,8 +52,8 @@ pub(crate) fn mapping(draft: &Draft, file: &str) -> String {
         section(&mut out, "position", None, &columns, unit("position"));
     }
     let parts: Option<Vec<&str>> = draft.parts.iter().map(Option::as_deref).collect();
-    if let (Some(form), Some(columns)) = (&draft.form, parts) {
-        section(&mut out, "orientation", Some(form), &columns, unit("orientation"));
+    if let (Some(form), Some(columns)) = (draft.form, parts) {
+        section(&mut out, "orientation", Some(&form.mapped()), &columns, unit("orientation"));
     }
     out
 }

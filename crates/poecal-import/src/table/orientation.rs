@@ -43,6 +43,17 @@ impl OrientationForm {
     pub(crate) const ROTATION_VECTOR: Self = angles(Angles::RotationVector);
     /// URDF's roll, pitch, yaw.
     pub(crate) const ROLL_PITCH_YAW: Self = angles(Angles::ROLL_PITCH_YAW);
+    /// Forms that columns have by our names.
+    pub(crate) const BY_NAME: [Self; 3] = [Self::QuaternionXyzw, Self::ROTATION_VECTOR, Self::ROLL_PITCH_YAW];
+    /// Forms that are not three angles about axes, and the most frequent ones, first the most frequent.
+    pub(crate) const NAMED: [Self; 6] = [
+        Self::QuaternionXyzw,
+        Self::QuaternionWxyz,
+        Self::ROTATION_VECTOR,
+        Self::ROLL_PITCH_YAW,
+        Self::MatrixByRows,
+        Self::MatrixByColumns,
+    ];
 
     /// As a mapping has it.
     pub(crate) fn mapped(self) -> String {
@@ -67,15 +78,8 @@ impl OrientationForm {
 
     /// Column names in our own files, in order; empty for Euler angles, which these do not have.
     pub(crate) fn own_columns(self) -> &'static [&'static str] {
-        match self {
-            Self::ROLL_PITCH_YAW
-            | Self::ROTATION_VECTOR
-            | OrientationForm::QuaternionXyzw
-            | OrientationForm::QuaternionWxyz => self.part_names(),
-            OrientationForm::MatrixByRows | OrientationForm::MatrixByColumns | OrientationForm::Angles(_) => {
-                &[]
-            }
-        }
+        let is_own = self == Self::QuaternionWxyz || Self::BY_NAME.contains(&self);
+        if is_own { self.part_names() } else { &[] }
     }
 
     /// Contents of its columns, in order.
@@ -137,14 +141,8 @@ impl FromStr for OrientationForm {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let others = [
-            OrientationForm::QuaternionXyzw,
-            OrientationForm::QuaternionWxyz,
-            OrientationForm::MatrixByRows,
-            OrientationForm::MatrixByColumns,
-        ];
         let angles = text.parse().ok().map(OrientationForm::Angles);
-        let form = angles.or_else(|| others.into_iter().find(|it| it.mapped() == text));
+        let form = angles.or_else(|| OrientationForm::NAMED.into_iter().find(|it| it.mapped() == text));
         form.ok_or_else(|| ErrorKind::Syntax.error(format!(
                 "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
                  rotation_matrix, rotation_matrix_by_columns, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
