@@ -2,14 +2,13 @@
 
 use serde::Serialize;
 
-use super::draft::Draft;
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::named_unit::units_of;
 use poecal_numerics::unit::Unit;
 
 /// A choice of a mapping: a column for what poecal reads, or one of some words.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MappedField {
     /// What `--column` calls it.
     pub key: String,
@@ -24,10 +23,10 @@ pub struct MappedField {
     pub chosen: String,
     /// Whether nothing can be read without it.
     pub required: bool,
+    /// The key of the field with the unit of this column; empty for none.
+    #[serde(skip)]
+    pub(crate) unit: &'static str,
 }
-
-/// Ways in which poses may point, as a mapping calls them.
-pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
 
 /// A word to choose.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -44,6 +43,58 @@ impl MappedChoice {
     }
 }
 
+/// Where the unit of angles of joints, slides, positions and angles of orientations stands.
+pub(crate) const UNITS: [(&str, Unit); 4] = [
+    ("unit.angle", Unit::Radian),
+    ("unit.length", Unit::Metre),
+    ("unit.position", Unit::Metre),
+    ("unit.orientation", Unit::Radian),
+];
+/// Ways in which poses may point, as a mapping calls them.
+pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
+
+impl MappedField {
+    /// A field for a column.
+    pub(crate) fn column(group: &'static str, key: &str, label: &str, column: Option<String>) -> Self {
+        let (key, label, chosen) = (key.to_owned(), label.to_owned(), column.unwrap_or_default());
+        MappedField { key, group, label, chosen, ..MappedField::default() }
+    }
+
+    /// The same of a column without which nothing can be read, in a unit.
+    pub(crate) fn of_number(self, unit: &'static str) -> Self {
+        MappedField { required: true, unit, ..self }
+    }
+
+    /// A field for the unit of columns.
+    pub(crate) fn unit(group: &'static str, key: &str, label: &str) -> Self {
+        let quantity = UNITS.iter().find(|it| it.0 == key).map_or(Unit::One, |it| it.1);
+        let stated = MappedChoice::new("", "as the file says, else SI");
+        let units = units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol()));
+        let choices = std::iter::once(stated).chain(units).collect();
+        MappedField { choices, ..MappedField::column(group, key, label, None) }
+    }
+
+    /// The field for the form of an orientation.
+    pub(crate) fn form(form: Option<OrientationForm>) -> Self {
+        let chosen = form.map(OrientationForm::mapped);
+        let choices = forms();
+        MappedField { choices, ..MappedField::column("orientation", "orientation", "form", chosen) }
+    }
+
+    /// The field for the way in which poses point.
+    pub(crate) fn way() -> Self {
+        let texts = ["of the target, as the device sees it", "of the device, as the target sees it"];
+        let choices = WAYS.into_iter().zip(texts).map(|(way, text)| MappedChoice::new(way, text)).collect();
+        let chosen = Some(WAYS[0].to_owned());
+        MappedField { choices, ..MappedField::column("orientation", "pose", "the poses are", chosen) }
+    }
+
+    /// The column that is chosen.
+    pub(crate) fn used(&self) -> Option<&String> {
+        Some(&self.chosen).filter(|it| self.choices.is_empty() && !it.is_empty())
+    }
+}
+
 /// The forms of an orientation, the most frequent first.
 fn forms() -> Vec<MappedChoice> {
     let axes = (0..27).map(|it| [it / 9, it / 3 % 3, it % 3]).filter(|[a, b, c]| a != b && b != c);
@@ -56,59 +107,5 @@ fn forms() -> Vec<MappedChoice> {
         MappedChoice::new(&form.mapped(), format!("{form}{before}{}", makers.join("; ")))
     };
     let none = MappedChoice::new("", "none: positions alone");
-    std::iter::once(none).chain(OrientationForm::NAMED.into_iter().chain(angles).map(choice)).collect()
-}
-
-fn units(quantity: Unit) -> Vec<MappedChoice> {
-    let stated = MappedChoice::new("", "as the file says, else SI");
-    std::iter::once(stated)
-        .chain(units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol())))
-        .collect()
-}
-
-/// All fields of a draft.
-pub(crate) fn fields(draft: &Draft) -> Vec<MappedField> {
-    let of = |group, key: &str, label: &str, choices, chosen: Option<&str>, required| {
-        let (key, label, chosen) = (key.to_owned(), label.to_owned(), chosen.unwrap_or_default().to_owned());
-        MappedField { key, group, label, choices, chosen, required }
-    };
-    let column = |group, key: &str, label: &str, chosen: &Option<String>, required| {
-        of(group, key, label, Vec::new(), chosen.as_deref(), required)
-    };
-    let unit = |group, key: &'static str, label: &str, quantity| {
-        let chosen = draft.units.get(key).and_then(|it| it.map(|unit| unit.symbol()));
-        of(group, &format!("unit.{key}"), label, units(quantity), chosen, false)
-    };
-    let mut found = Vec::new();
-    found.extend(draft.joints.iter().map(|(name, _, it)| column("joints", name, name, it, true)));
-    for (key, quantity, label) in
-        [("angle", Unit::Radian, "unit of the angles"), ("length", Unit::Metre, "unit of the slides")]
-    {
-        if draft.joints.iter().any(|it| it.1 == quantity) {
-            found.push(unit("joints", key, label, quantity));
-        }
-    }
-    let axes = ["x", "y", "z"].into_iter().zip(&draft.position);
-    found.extend(axes.map(|(axis, it)| column("position", axis, axis, it, true)));
-    found.push(unit("position", "position", "unit", Unit::Metre));
-    let chosen = draft.form.map(OrientationForm::mapped);
-    found.push(of("orientation", "orientation", "form", forms(), chosen.as_deref(), false));
-    if let Some(form) = draft.form {
-        for (part, (name, it)) in form.part_names().iter().zip(&draft.parts).enumerate() {
-            found.push(column("orientation", &format!("orientation.{}", part + 1), name, it, true));
-        }
-        if form.quantity() == Unit::Radian {
-            found.push(unit("orientation", "orientation", "unit", Unit::Radian));
-        }
-        let [seen, seeing] = WAYS;
-        let ways = vec![
-            MappedChoice::new(seen, "of the target, as the device sees it"),
-            MappedChoice::new(seeing, "of the device, as the target sees it"),
-        ];
-        let chosen = if draft.is_inverted { seeing } else { seen };
-        found.push(of("orientation", "pose", "the poses are", ways, Some(chosen), false));
-    }
-    found.push(column("rows", "target", "name of the target", &draft.target, false));
-    found.push(column("rows", "id", "name of the row", &draft.id, false));
-    found
+    std::iter::once(none).chain(OrientationForm::with_names().chain(angles).map(choice)).collect()
 }

@@ -1,6 +1,5 @@
 //! The pictures of a file as rows of the session.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::gathering::Sight;
@@ -9,7 +8,7 @@ use crate::read::Reader;
 use crate::table::Table;
 use crate::table::inputs::InputReader;
 use crate::table::layout::ColumnLayout;
-use crate::table::understanding::{self, ColumnUnderstanding, FileUnderstanding};
+use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
 use poecal_model::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
 use poecal_model::measurement::Source;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
@@ -87,26 +86,10 @@ impl Reader<'_> {
         let pictures = self.found.data.len() - first;
         self.warn_of_ignored(path, layout);
         self.take_controller(path, layout)?;
-        let mut columns = understanding::columns(table, layout, &inputs.ranges);
-        columns.extend(own);
-        self.found.understood.push(FileUnderstanding {
-            understood: table.understood(),
-            path: path.to_path_buf(),
-            form: table.form(),
-            rows,
-            points: 0,
-            poses: 0,
-            others: BTreeMap::from([("pictures", pictures)]),
-            lost: crate::LostBeams::default(),
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns,
-            orientation: None,
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
+        let mut understood = FileUnderstanding::new(table, layout, inputs, rows);
+        understood.columns.extend(own);
+        understood.others.insert("pictures", pictures);
+        self.found.understood.push(understood);
         Ok(())
     }
 }

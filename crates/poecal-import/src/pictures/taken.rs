@@ -62,13 +62,16 @@ impl Reader<'_> {
         let Some((column, name)) = layout.pair.and_then(|at| Some((at, row.cells.get(at)?.text()))) else {
             return Ok(false);
         };
-        if name.is_empty() || self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
-            return Ok(false);
-        }
-        if let Some((_, line)) = self.begun.get(name.as_ref()) {
-            let message =
-                format!("found a third row of the pair `{name}` (line {line} is the first), expected two");
-            return Err(row.error(column, message));
+        match self.begun.get(name.as_ref()) {
+            _ if name.is_empty() => return Ok(false),
+            Some((Some(_), _)) => return Ok(false),
+            Some((None, line)) => {
+                let message = format!(
+                    "found a third row of the pair `{name}` (line {line} is the first), expected two"
+                );
+                return Err(row.error(column, message));
+            }
+            None => {}
         }
         let further = self.found.data.push_further(inputs.readings());
         let further = further.map_err(|error| row.error(column, error.message()))?;
@@ -163,12 +166,9 @@ impl Reader<'_> {
             return Err(row.error(columns.last().copied().unwrap_or(0), message));
         }
         let place = kind.map(KindColumns::place).filter(|(_, columns)| !columns.is_empty());
-        let (what, column) = match (&own, place, layout.instrument) {
-            (Some(_), Some((what, columns)), _) => (what, columns.last().copied()),
-            (None, Some((what, columns)), Some(_)) if instrument.is_none() => (what, columns.last().copied()),
-            (_, _, Some(column)) => ("instrument", Some(column)),
-            (None, Some((what, columns)), None) => (what, columns.last().copied()),
-            (_, None, None) => ("instrument", None),
+        let (what, column) = match place.filter(|_| own.is_some() || instrument.is_none()) {
+            Some((what, columns)) => (what, columns.last().copied()),
+            None => ("instrument", layout.instrument),
         };
         let pair = shared.filter(|_| own.is_none() && instrument.is_none()).map(|target| {
             let target = self.found.data.targets.get(target).cloned().flatten();

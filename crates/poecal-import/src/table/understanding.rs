@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::cells::Separator;
-use super::inputs::{Input, InputSource, Range};
+use super::inputs::{Input, InputReader, InputSource, Range};
 use super::layout::{ColumnLayout, SetRule};
 use super::lost::LostBeams;
 use super::mapping::PoseDirection;
@@ -69,6 +69,35 @@ pub struct FileUnderstanding {
     pub pose: &'static str,
     /// Ignored columns.
     pub ignored: Vec<String>,
+}
+
+impl FileUnderstanding {
+    /// Of a file with so many rows; what was measured in them is yet to be said.
+    pub(crate) fn new(
+        table: &Table<'_>,
+        layout: &ColumnLayout,
+        inputs: &InputReader<'_>,
+        rows: usize,
+    ) -> Self {
+        FileUnderstanding {
+            path: table.header.path.to_path_buf(),
+            form: table.form(),
+            understood: table.understood(),
+            rows,
+            points: 0,
+            poses: 0,
+            others: BTreeMap::new(),
+            lost: LostBeams::default(),
+            separator: table.separator,
+            separator_line: table.separator_line,
+            units_line: table.header.units_line,
+            decimal_sign: inputs.numbers.sign(),
+            columns: columns(table, layout, &inputs.ranges),
+            orientation: orientation(layout),
+            pose: pose_word(layout.pose),
+            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
+        }
+    }
 }
 
 /// Our columns with their sources.

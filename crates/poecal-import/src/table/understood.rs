@@ -6,7 +6,6 @@ use std::path::Path;
 use super::inputs::InputReader;
 use super::layout::ColumnLayout;
 use super::lost::LostBeams;
-use super::understanding;
 use super::understanding::{ColumnUnderstanding, FileUnderstanding};
 use crate::checks::turns;
 use crate::read::Reader;
@@ -52,24 +51,9 @@ impl Reader<'_> {
         let turns = turns::warning(&table.header, layout, self.map);
         self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
         self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
-        self.found.understood.push(FileUnderstanding {
-            path: path.to_path_buf(),
-            form: table.form(),
-            understood: table.understood(),
-            rows,
-            points,
-            poses,
-            others,
-            lost,
-            separator: table.separator,
-            separator_line: table.separator_line,
-            units_line: table.header.units_line,
-            decimal_sign: inputs.numbers.sign(),
-            columns: self.own_columns(understanding::columns(table, layout, &inputs.ranges)),
-            orientation: understanding::orientation(layout),
-            pose: understanding::pose_word(layout.pose),
-            ignored: layout.ignored.iter().map(|(name, _)| name.clone()).collect(),
-        });
+        let mut understood = FileUnderstanding::new(table, layout, inputs, rows);
+        understood.columns = self.own_columns(understood.columns);
+        self.found.understood.push(FileUnderstanding { points, poses, others, lost, ..understood });
         Ok(())
     }
 
