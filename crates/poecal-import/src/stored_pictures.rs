@@ -266,7 +266,7 @@ impl CameraEntry {
             format!("found {count} coefficients of a distortion `{model}`, expected 8 of `brown` or 4 of `fisheye`")
         })?;
         let CameraEntry { focal_px, centre_px, size_px, .. } = *self;
-        let size = size_px.map(|it| size_of_pictures(it.map(f64::from))).transpose();
+        let size = size_of_pictures(size_px.map_or([None; 2], |it| it.map(|side| Some(f64::from(side)))));
         size.map_err(|error| error.message().to_owned())?;
         Ok(Camera::new(self.name.clone(), Lens { focal_px, centre_px, distortion, size_px }))
     }

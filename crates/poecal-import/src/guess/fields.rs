@@ -2,14 +2,13 @@
 
 use serde::Serialize;
 
-use super::draft::Draft;
 use crate::table::orientation::OrientationForm;
-use poecal_arm::lie::angles::MAKERS;
+use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::named_unit::units_of;
 use poecal_numerics::unit::Unit;
 
 /// A choice of a mapping: a column for what poecal reads, or one of some words.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MappedField {
     /// What `--column` calls it.
     pub key: String,
@@ -24,6 +23,9 @@ pub struct MappedField {
     pub chosen: String,
     /// Whether nothing can be read without it.
     pub required: bool,
+    /// The key of the field with the unit of this column; empty for none.
+    #[serde(skip)]
+    pub(crate) unit: &'static str,
 }
 
 /// A word to choose.
@@ -41,89 +43,69 @@ impl MappedChoice {
     }
 }
 
-/// Forms that are not three angles about axes, and the most frequent first.
-const FORMS: [&str; 6] = [
-    "quaternion_xyzw",
-    "quaternion_wxyz",
-    "rotation_vector",
-    "roll_pitch_yaw",
-    "rotation_matrix",
-    "rotation_matrix_by_columns",
+/// Where the unit of angles of joints, slides, positions and angles of orientations stands.
+pub(crate) const UNITS: [(&str, Unit); 4] = [
+    ("unit.angle", Unit::Radian),
+    ("unit.length", Unit::Metre),
+    ("unit.position", Unit::Metre),
+    ("unit.orientation", Unit::Radian),
 ];
+/// Ways in which poses may point, as a mapping calls them.
+pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
 
-/// The forms of an orientation.
+impl MappedField {
+    /// A field for a column.
+    pub(crate) fn column(group: &'static str, key: &str, label: &str, column: Option<String>) -> Self {
+        let (key, label, chosen) = (key.to_owned(), label.to_owned(), column.unwrap_or_default());
+        MappedField { key, group, label, chosen, ..MappedField::default() }
+    }
+
+    /// The same of a column without which nothing can be read, in a unit.
+    pub(crate) fn of_number(self, unit: &'static str) -> Self {
+        MappedField { required: true, unit, ..self }
+    }
+
+    /// A field for the unit of columns.
+    pub(crate) fn unit(group: &'static str, key: &str, label: &str) -> Self {
+        let quantity = UNITS.iter().find(|it| it.0 == key).map_or(Unit::One, |it| it.1);
+        let stated = MappedChoice::new("", "as the file says, else SI");
+        let units = units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol()));
+        let choices = std::iter::once(stated).chain(units).collect();
+        MappedField { choices, ..MappedField::column(group, key, label, None) }
+    }
+
+    /// The field for the form of an orientation.
+    pub(crate) fn form(form: Option<OrientationForm>) -> Self {
+        let chosen = form.map(OrientationForm::mapped);
+        let choices = forms();
+        MappedField { choices, ..MappedField::column("orientation", "orientation", "form", chosen) }
+    }
+
+    /// The field for the way in which poses point.
+    pub(crate) fn way() -> Self {
+        let texts = ["of the target, as the device sees it", "of the device, as the target sees it"];
+        let choices = WAYS.into_iter().zip(texts).map(|(way, text)| MappedChoice::new(way, text)).collect();
+        let chosen = Some(WAYS[0].to_owned());
+        MappedField { choices, ..MappedField::column("orientation", "pose", "the poses are", chosen) }
+    }
+
+    /// The column that is chosen.
+    pub(crate) fn used(&self) -> Option<&String> {
+        Some(&self.chosen).filter(|it| self.choices.is_empty() && !it.is_empty())
+    }
+}
+
+/// The forms of an orientation, the most frequent first.
 fn forms() -> Vec<MappedChoice> {
-    let axes = || "xyz".chars();
-    let turns = axes().flat_map(|a| axes().flat_map(move |b| axes().map(move |c| format!("{a}{b}{c}"))));
-    let turns: Vec<String> = turns.collect();
-    let angles = ["intrinsic_", "extrinsic_"]
-        .into_iter()
-        .flat_map(|kind| turns.iter().map(move |it| format!("{kind}{it}")));
-    let words = FORMS.into_iter().map(str::to_owned).chain(angles.filter(|it| it != "extrinsic_xyz"));
-    let choice = |word: String| {
-        let form: OrientationForm = word.parse().ok()?;
+    let axes = (0..27).map(|it| [it / 9, it / 3 % 3, it % 3]).filter(|[a, b, c]| a != b && b != c);
+    let angles = axes.clone().map(Angles::Intrinsic).chain(axes.map(Angles::Extrinsic));
+    let angles = angles.filter(|it| *it != Angles::ROLL_PITCH_YAW).map(OrientationForm::Angles);
+    let choice = |form: OrientationForm| {
         let own = MAKERS.iter().filter(|it| OrientationForm::Angles(it.angles) == form);
         let makers: Vec<String> = own.map(|it| format!("{} {}", it.maker, it.names.join(", "))).collect();
         let before = if makers.is_empty() { "" } else { ": " };
-        Some(MappedChoice::new(&word, format!("{form}{before}{}", makers.join("; "))))
+        MappedChoice::new(&form.mapped(), format!("{form}{before}{}", makers.join("; ")))
     };
-    std::iter::once(MappedChoice::new("", "none: positions alone")).chain(words.filter_map(choice)).collect()
-}
-
-fn units(quantity: Unit) -> Vec<MappedChoice> {
-    let stated = MappedChoice::new("", "as the file says, else SI");
-    std::iter::once(stated)
-        .chain(units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol())))
-        .collect()
-}
-
-/// All fields of a draft.
-pub(crate) fn fields(draft: &Draft) -> Vec<MappedField> {
-    let mut found = Vec::new();
-    let mut field =
-        |group, key: &str, label: &str, choices: Vec<MappedChoice>, chosen: Option<&str>, required| {
-            let (key, label, chosen) =
-                (key.to_owned(), label.to_owned(), chosen.unwrap_or_default().to_owned());
-            found.push(MappedField { key, group, label, choices, chosen, required });
-        };
-    let unit = |key: &str| draft.units.get(key).and_then(|it| it.map(|unit| unit.symbol()));
-    for (name, _, column) in &draft.joints {
-        field("joints", name, name, Vec::new(), column.as_deref(), true);
-    }
-    for (key, quantity, label) in
-        [("angle", Unit::Radian, "unit of the angles"), ("length", Unit::Metre, "unit of the slides")]
-    {
-        if draft.joints.iter().any(|it| it.1 == quantity) {
-            field("joints", &format!("unit.{key}"), label, units(quantity), unit(key), false);
-        }
-    }
-    for (axis, column) in ["x", "y", "z"].into_iter().zip(&draft.position) {
-        field("position", axis, axis, Vec::new(), column.as_deref(), true);
-    }
-    field("position", "unit.position", "unit", units(Unit::Metre), unit("position"), false);
-    field("orientation", "orientation", "form", forms(), draft.form.as_deref(), false);
-    if let Some(form) = draft.orientation() {
-        for (part, (name, column)) in form.part_names().iter().zip(&draft.parts).enumerate() {
-            field(
-                "orientation",
-                &format!("orientation.{}", part + 1),
-                name,
-                Vec::new(),
-                column.as_deref(),
-                true,
-            );
-        }
-        if form.quantity() == Unit::Radian {
-            field("orientation", "unit.orientation", "unit", units(Unit::Radian), unit("orientation"), false);
-        }
-        let ways = vec![
-            MappedChoice::new("device_from_target", "of the target, as the device sees it"),
-            MappedChoice::new("target_from_device", "of the device, as the target sees it"),
-        ];
-        let chosen = if draft.is_inverted { "target_from_device" } else { "device_from_target" };
-        field("orientation", "pose", "the poses are", ways, Some(chosen), false);
-    }
-    field("rows", "target", "name of the target", Vec::new(), draft.target.as_deref(), false);
-    field("rows", "id", "name of the row", Vec::new(), draft.id.as_deref(), false);
-    found
+    let none = MappedChoice::new("", "none: positions alone");
+    std::iter::once(none).chain(OrientationForm::with_names().chain(angles).map(choice)).collect()
 }

@@ -1,7 +1,6 @@
 //! Which columns of a file are the joints' readings and what was measured: a guess for a person to look over and correct, and the mapping file
 //! that it makes.
 
-mod draft;
 mod fields;
 mod names;
 mod text;
@@ -10,14 +9,12 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use self::draft::Draft;
-use self::fields::fields;
 pub use self::fields::{MappedChoice, MappedField};
+use self::fields::{UNITS, WAYS};
 use self::names::Names;
 use super::ReadOptions;
 use super::table::Table;
 use crate::instruments::{MEASURED, Opened, Opening, WORKBOOK, headerless};
-use crate::table::cells::Cell;
 use crate::table::column_names::numbered_column;
 use crate::table::header::Header;
 use crate::table::mapping::{ColumnMap, PositionSpec};
@@ -106,8 +103,8 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
     let mut table = Table::open(path, blocks, &ColumnMap::default())?;
     let (cells, largest) = first_rows(&mut table)?;
     let sample = Sample::new(&table.header, cells, largest);
-    let draft = sample.draft(robot, chosen)?;
-    Ok(sample.guess(&draft, path))
+    let fields = sample.fields(robot, chosen)?;
+    Ok(sample.guess(fields, path))
 }
 
 /// The first cells of each column, and its largest number; NaN where it has none.
@@ -125,21 +122,17 @@ fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
         {
             read += 1;
             for ((cell, shown), largest) in row.cells.iter().zip(&mut shown).zip(&mut largest) {
-                take(*cell, row.line, (shown, largest), &mut numbers);
+                let text = cell.text();
+                if let Ok(value) = numbers.parse(&text, row.line) {
+                    *largest = largest.max(value.abs());
+                }
+                if shown.len() < SHOWN {
+                    shown.push(text.into_owned());
+                }
             }
         }
     }
     Ok((shown, largest))
-}
-
-fn take(cell: Cell<'_>, line: usize, (shown, largest): (&mut Vec<String>, &mut f64), numbers: &mut Numbers) {
-    let text = cell.text();
-    if let Ok(value) = numbers.parse(&text, line) {
-        *largest = largest.max(value.abs());
-    }
-    if shown.len() < SHOWN {
-        shown.push(text.into_owned());
-    }
 }
 
 impl<'h> Sample<'h> {
@@ -163,88 +156,96 @@ impl<'h> Sample<'h> {
     }
 
     /// What poecal guesses, with what was chosen in its place.
-    fn draft(&self, robot: &Robot, chosen: &[(String, String)]) -> Result<Draft> {
+    fn fields(&self, robot: &Robot, chosen: &[(String, String)]) -> Result<Vec<MappedField>> {
         let names = robot.joint_reading_names();
-        let columns = self.names.joints(robot, &names).into_iter().map(|it| self.name(it?));
-        let quantity = |name: &String| match robot.reading_kind(name) {
-            ReadingKind::Length => Unit::Metre,
-            ReadingKind::Angle | ReadingKind::Factor => Unit::Radian,
+        let columns = self.names.joints(robot, &names);
+        let unit = |name: &String| match robot.reading_kind(name) {
+            ReadingKind::Length => "unit.length",
+            ReadingKind::Angle | ReadingKind::Factor => "unit.angle",
         };
-        let joints = names.iter().zip(columns).map(|(name, it)| (name.clone(), quantity(name), it)).collect();
-        let mut draft = Draft { joints, ..Draft::default() };
-        let position = self.names.position();
-        let near = position.as_ref().map(|it| it.0.clone());
-        for (place, column) in draft.position.iter_mut().zip(position.iter().flat_map(|it| &it.1)) {
-            *place = self.name(*column);
+        let joint = |(name, column): (&String, Option<usize>)| {
+            MappedField::column("joints", name, name, column.and_then(|it| self.name(it)))
+                .of_number(unit(name))
+        };
+        let mut fields: Vec<MappedField> = names.iter().zip(columns).map(joint).collect();
+        for (key, label) in [("unit.angle", "unit of the angles"), ("unit.length", "unit of the slides")] {
+            if names.iter().any(|name| unit(name) == key) {
+                fields.push(MappedField::unit("joints", key, label));
+            }
         }
-        if let Some((form, columns)) = self.names.orientation(near.as_deref()) {
-            let is_large = self.largest_of(columns.iter().copied()) > MOST_RADIANS;
-            // Nobody writes a rotation vector in degrees.
-            let is_vector = form == Angles::RotationVector.to_string();
-            draft.form = Some(if is_vector && is_large { Angles::XYZ.to_string() } else { form });
-            draft.parts = columns.into_iter().map(|it| self.name(it)).collect();
+        let (near, place) = self.names.position().unzip();
+        for (at, axis) in ["x", "y", "z"].into_iter().enumerate() {
+            let column = place.as_ref().and_then(|it| self.name(*it.get(at)?));
+            fields.push(MappedField::column("position", axis, axis, column).of_number("unit.position"));
         }
-        draft.target = self.names.named("target").and_then(|it| self.name(it));
-        draft.id = self.names.named("id").and_then(|it| self.name(it));
+        fields.push(MappedField::unit("position", "unit.position", "unit"));
+        fields.extend(self.orientation(near.as_deref(), chosen)?);
+        for (key, label) in [("target", "name of the target"), ("id", "name of the row")] {
+            let column = self.names.named(key).and_then(|it| self.name(it));
+            fields.push(MappedField::column("rows", key, label, column));
+        }
         let (units, others): (Vec<_>, Vec<_>) = chosen.iter().partition(|it| it.0.starts_with("unit."));
-        for (key, value) in others {
-            self.choose(&mut draft, key, value, near.as_deref())?;
+        for (key, value) in others.into_iter().filter(|it| it.0 != "orientation") {
+            self.choose(&mut fields, key, value)?;
         }
-        self.guess_units(&mut draft);
+        self.guess_units(&mut fields);
         for (key, value) in units {
-            choose_unit(&mut draft, key, value)?;
+            choose_unit(&mut fields, key, value)?;
         }
-        self.leave_out(&mut draft);
-        Ok(draft)
+        Ok(fields)
+    }
+
+    /// The fields of the orientation, beside a position whose columns begin with `near`.
+    fn orientation(&self, near: Option<&str>, chosen: &[(String, String)]) -> Result<Vec<MappedField>> {
+        let mut found = self.names.orientation(near).map(|(form, columns)| {
+            // Nobody writes a rotation vector in degrees.
+            let is_large = self.largest_of(&columns) > MOST_RADIANS;
+            let is_turned = is_large && form == OrientationForm::ROTATION_VECTOR;
+            let form = if is_turned { OrientationForm::Angles(Angles::XYZ) } else { form };
+            (form, columns.into_iter().map(Some).collect())
+        });
+        for (_, word) in chosen.iter().filter(|it| it.0 == "orientation") {
+            let form: Option<OrientationForm> =
+                if word.is_empty() { None } else { Some(word.parse().map_err(refused)?) };
+            found = form.map(|form| match found {
+                // Angles in another order are in the same columns.
+                Some((known, parts)) if known.len() == 3 && form.len() == 3 => (form, parts),
+                _ => (form, self.names.parts(form, near)),
+            });
+        }
+        let mut fields = vec![MappedField::form(found.as_ref().map(|it| it.0))];
+        let Some((form, parts)) = found else { return Ok(fields) };
+        let are_angles = form.quantity() == Unit::Radian;
+        let unit = if are_angles { "unit.orientation" } else { "" };
+        for (at, (name, column)) in (1..).zip(form.part_names().iter().zip(parts)) {
+            let (key, column) = (format!("orientation.{at}"), column.and_then(|it| self.name(it)));
+            fields.push(MappedField::column("orientation", &key, name, column).of_number(unit));
+        }
+        if are_angles {
+            fields.push(MappedField::unit("orientation", unit, "unit"));
+        }
+        fields.push(MappedField::way());
+        Ok(fields)
     }
 
     /// The largest number in some columns.
-    fn largest_of(&self, columns: impl Iterator<Item = usize>) -> f64 {
-        columns.filter_map(|it| self.largest.get(it)).fold(0.0, |most: f64, it| most.max(*it))
+    fn largest_of(&self, columns: &[usize]) -> f64 {
+        columns.iter().filter_map(|it| self.largest.get(*it)).fold(0.0, |most: f64, it| most.max(*it))
     }
 
     /// Takes a column or a word in place of what was guessed.
-    fn choose(&self, draft: &mut Draft, key: &str, value: &str, near: Option<&str>) -> Result<()> {
-        if key == "orientation" {
-            let form: Option<OrientationForm> =
-                if value.is_empty() { None } else { Some(value.parse().map_err(refused)?) };
-            let parts = form.map_or_else(Vec::new, |form| {
-                // Angles in another order are in the same columns.
-                let kept = draft.orientation().is_some_and(|it| it.len() == form.len() && form.len() == 3);
-                if kept { draft.parts.clone() } else { self.named_parts(form, near) }
-            });
-            (draft.form, draft.parts) = (form.map(|_| value.to_owned()), parts);
-            return Ok(());
+    fn choose(&self, fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
+        if key == "pose" && !WAYS.contains(&value) {
+            return ErrorKind::Option.refuse(format!(
+                "--column: found `{value}` for the way of the poses, expected {}",
+                WAYS.join(" or ")
+            ));
         }
-        if key == "pose" {
-            draft.is_inverted = match value {
-                "target_from_device" => true,
-                "device_from_target" => false,
-                _ => {
-                    return ErrorKind::Option.refuse(format!(
-                        "--column: found `{value}` for the way of the poses, expected device_from_target or target_from_device"
-                    ));
-                }
-            };
-            return Ok(());
-        }
-        let column = if value.is_empty() { None } else { Some(self.known(value, key)?) };
-        let keys: Vec<String> = fields(draft).into_iter().map(|it| it.key).collect();
-        let part = key.strip_prefix("orientation.").and_then(|it| it.parse::<usize>().ok()?.checked_sub(1));
-        let axis = ["x", "y", "z"].iter().position(|it| *it == key);
-        let place = if let Some(joint) = draft.joints.iter_mut().find(|it| it.0 == key) {
-            Some(&mut joint.2)
-        } else if let Some(axis) = axis {
-            draft.position.get_mut(axis)
-        } else if let Some(part) = part {
-            draft.parts.get_mut(part)
-        } else if key == "target" {
-            Some(&mut draft.target)
-        } else {
-            Some(&mut draft.id).filter(|_| key == "id")
-        };
-        match place {
-            Some(place) => *place = column,
+        let is_word = key == "pose" || value.is_empty();
+        let chosen = if is_word { value.to_owned() } else { self.known(value, key)? };
+        let keys: Vec<String> = fields.iter().map(|it| it.key.clone()).collect();
+        match fields.iter_mut().find(|it| it.key == key) {
+            Some(field) => field.chosen = chosen,
             None => {
                 let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
                 let hint = nearest_or_all(key, &keys);
@@ -267,39 +268,30 @@ impl<'h> Sample<'h> {
         })
     }
 
-    fn named_parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<String>> {
-        self.names.parts(form, near).into_iter().map(|it| self.name(it?)).collect()
-    }
-
     /// Units of columns that state none.
-    fn guess_units(&self, draft: &mut Draft) {
-        let index = |name: &String| self.index(name);
-        let of_joints = |quantity: Unit| {
-            let joints = draft.joints.iter().filter(move |it| it.1 == quantity);
-            joints.filter_map(|it| it.2.as_ref()).filter_map(index).collect()
-        };
-        let position = draft.position.iter().flatten().filter_map(index).collect();
-        let turns = draft.orientation().is_some_and(|it| it.quantity() == Unit::Radian);
-        let parts = draft.parts.iter().flatten().filter(|_| turns).filter_map(index).collect();
-        let units = [
-            ("angle", self.guess_unit(of_joints(Unit::Radian), Unit::Radian, MOST_RADIANS)),
-            ("length", self.guess_unit(of_joints(Unit::Metre), Unit::Metre, MOST_METRES[0])),
-            ("position", self.guess_unit(position, Unit::Metre, MOST_METRES[1])),
-            ("orientation", self.guess_unit(parts, Unit::Radian, MOST_RADIANS)),
-        ];
-        draft.units = units.into();
+    fn guess_units(&self, fields: &mut [MappedField]) {
+        for (key, quantity) in UNITS {
+            let own = fields.iter().filter(|it| it.unit == key).filter_map(|it| self.index(it.used()?));
+            let unit = self.guess_unit(&own.collect::<Vec<_>>(), (key, quantity));
+            if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
+                field.chosen = unit.map_or("", NamedUnit::symbol).to_owned();
+            }
+        }
     }
 
     /// The unit of some columns, unless all state theirs: that in the first one's name, or by the size of the numbers.
-    fn guess_unit(&self, columns: Vec<usize>, quantity: Unit, most: f64) -> Option<NamedUnit> {
-        let is_stated =
-            |column: &usize| self.header.cells.get(*column).is_some_and(|it| it.units().next().is_some());
-        if columns.iter().all(is_stated) {
+    fn guess_unit(&self, columns: &[usize], (key, quantity): (&str, Unit)) -> Option<NamedUnit> {
+        let mut cells = columns.iter().filter_map(|it| self.header.cells.get(*it));
+        if cells.all(|cell| cell.units().next().is_some()) {
             return None;
         }
+        let most = match key {
+            "unit.length" => MOST_METRES[0],
+            "unit.position" => MOST_METRES[1],
+            _ => MOST_RADIANS,
+        };
         let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == quantity);
-        let is_large = self.largest_of(columns.into_iter()) > most;
-        let symbol = match (quantity, is_large) {
+        let symbol = match (quantity, self.largest_of(columns) > most) {
             (Unit::Metre, true) => "mm",
             (Unit::Metre, false) => "m",
             (_, true) => "deg",
@@ -309,39 +301,45 @@ impl<'h> Sample<'h> {
     }
 
     /// Columns with a name of ours that would be read without being chosen.
-    fn leave_out(&self, draft: &mut Draft) {
-        let own = ["qx", "qy", "qz", "qw", "rx", "ry", "rz", "roll", "pitch", "yaw"];
-        let orientation = own.iter().filter(|_| draft.form.is_none());
-        let names = orientation.chain(Some(&"target").filter(|_| draft.target.is_none()));
-        let names = names.chain(Some(&"id").filter(|_| draft.id.is_none()));
-        let columns = names.filter_map(|it| self.names.named(it)).filter_map(|it| self.name(it));
-        let left_out: Vec<String> = columns.filter(|it| !draft.used().any(|used| used == it)).collect();
-        draft.left_out = left_out;
+    fn left_out(&self, fields: &[MappedField]) -> Vec<String> {
+        let is_chosen = |key: &str| {
+            let is_it = |it: &&MappedField| it.group != "joints" && it.key == key;
+            fields.iter().find(is_it).is_some_and(|it| !it.chosen.is_empty())
+        };
+        let mut names: Vec<&str> = Vec::new();
+        if !is_chosen("orientation") {
+            names.extend(OrientationForm::BY_NAME.iter().flat_map(|it| it.part_names()));
+        }
+        names.extend(["target", "id"].into_iter().filter(|it| !is_chosen(it)));
+        let columns = names.into_iter().filter_map(|it| self.name(self.names.named(it)?));
+        columns.filter(|it| !fields.iter().any(|field| field.used() == Some(it))).collect()
     }
 
-    fn guess(self, draft: &Draft, path: &Path) -> ColumnGuess {
-        let fields = fields(draft);
-        let is_missing = |it: &&MappedField| it.required && it.choices.is_empty() && it.chosen.is_empty();
+    fn guess(self, fields: Vec<MappedField>, path: &Path) -> ColumnGuess {
+        let is_missing = |it: &&MappedField| it.required && it.chosen.is_empty();
         let missing = fields.iter().filter(is_missing).map(|it| it.label.clone()).collect();
         let names = self.columns.iter().map(|it| &it.name);
-        let ignored = names.filter(|name| !draft.used().any(|used| used == *name)).cloned().collect();
+        let is_ignored = |name: &&String| !fields.iter().any(|it| it.used() == Some(*name));
+        let ignored = names.filter(is_ignored).cloned().collect();
         let file = path.file_name().map_or_else(String::new, |it| it.to_string_lossy().into_owned());
-        ColumnGuess { mapping: text::mapping(draft, &file), columns: self.columns, fields, ignored, missing }
+        let mapping = text::mapping(&fields, &self.left_out(&fields), &file);
+        ColumnGuess { mapping, columns: self.columns, fields, ignored, missing }
     }
 }
 
-fn choose_unit(draft: &mut Draft, key: &str, value: &str) -> Result<()> {
-    let group = key.strip_prefix("unit.").unwrap_or(key);
-    let quantity = if matches!(group, "length" | "position") { Unit::Metre } else { Unit::Radian };
+fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
+    let Some((_, quantity)) = UNITS.iter().find(|it| it.0 == key) else {
+        let keys = UNITS.map(|it| it.0);
+        return ErrorKind::Option.refuse(format!(
+            "--column: found `{key}`, expected {} or {}",
+            keys[..3].join(", "),
+            keys[3]
+        ));
+    };
     let unit =
-        if value.is_empty() { None } else { Some(NamedUnit::parse(value, quantity).map_err(refused)?) };
-    match draft.units.iter_mut().find(|it| *it.0 == group) {
-        Some((_, place)) => *place = unit,
-        None => {
-            return ErrorKind::Option.refuse(format!(
-                "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
-            ));
-        }
+        if value.is_empty() { None } else { Some(NamedUnit::parse(value, *quantity).map_err(refused)?) };
+    if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
+        field.chosen = unit.map_or("", NamedUnit::symbol).to_owned();
     }
     Ok(())
 }

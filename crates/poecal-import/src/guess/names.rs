@@ -2,45 +2,34 @@
 
 use std::collections::BTreeMap;
 
-use crate::table::conventions::CONVENTIONS;
+use crate::table::conventions::{CONVENTIONS, Convention};
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
-use crate::table::numbered::{OTHERS, numbered, plain};
+use crate::table::numbered::numbered;
 use crate::table::orientation::OrientationForm;
+use crate::table::roles::{Role, plain, without_unit};
 use poecal_arm::lie::angles::Angles;
 use poecal_model::robot::Robot;
 use poecal_numerics::named_unit::NamedUnit;
 
-/// What names of columns of joints have in them.
-const JOINT_WORDS: [&str; 5] = ["joint", "axis", "axe", "achse", "gelenk"];
-/// What names of columns of what was measured have in them.
-const MEASURED: [&str; 9] = ["meas", "actual", "tracker", "laser", "leica", "prism", "smr", "refl", "point"];
-/// What names of columns have in them that say how good another one is.
-const STATISTICS: [&str; 9] = ["std", "sigma", "stdev", "dev", "err", "rms", "cov", "noise", "u95"];
-/// The coordinates of a position by the last words of their names.
-const AXES: [[&str; 3]; 2] = [["x", "y", "z"], ["east", "north", "up"]];
-/// What is written before x, y and z without anything between.
-const BEFORE_AXIS: [&str; 8] = ["p", "t", "pos", "position", "tcp", "point", "meas", "target"];
-/// Three angles that no maker calls so, and the form that they have most often.
-const GREEK: (&[&str], Angles) = (&["alpha", "beta", "gamma"], Angles::XYZ);
+/// The last words of the names of an orientation's columns, and its form.
+type Ends = (&'static [&'static str], OrientationForm);
 
-/// Three angles by the last words of their names.
-fn angles() -> impl Iterator<Item = (&'static [&'static str], Angles)> {
-    // Our own names come first, as where they are read.
-    let known = [false, true]
-        .into_iter()
-        .flat_map(|is_unique| CONVENTIONS.iter().filter(move |it| it.is_unique == is_unique));
-    let known = known.filter_map(|it| {
-        let OrientationForm::Angles(angles) = it.form else { return None };
-        Some((it.columns, angles))
-    });
-    known.chain([GREEK])
+/// Three angles that no maker calls so, and the form that they have most often.
+const GREEK: Ends = (&["alpha", "beta", "gamma"], OrientationForm::Angles(Angles::XYZ));
+
+/// Orientations by the last words of their names: quaternions, then our own angles, as where they are read, then those of makers.
+fn orientations() -> impl Iterator<Item = Ends> {
+    let rank = |it: &&Convention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique) };
+    // Joints are called q0 to q3.
+    let is_sought = |it: &&Convention| it.form.len() <= 4 && !it.has("q0");
+    let mut known: Vec<&Convention> = CONVENTIONS.iter().filter(is_sought).collect();
+    known.sort_by_key(rank);
+    known.into_iter().map(|it| (it.columns, it.form)).chain([GREEK])
 }
 
 /// What the names of some columns begin with, and the columns.
 type Begun = (String, Vec<usize>);
-/// The form of an orientation, and its columns.
-type Oriented = (String, Vec<usize>);
 
 /// The name of a column in words.
 struct Words {
@@ -51,34 +40,24 @@ struct Words {
 
 impl Words {
     fn of(name: &str) -> Self {
-        let mut words: Vec<String> = name
-            .split(|it: char| !it.is_alphanumeric())
-            .filter(|it| !it.is_empty())
-            .map(str::to_lowercase)
-            .collect();
-        let unit = words.last().and_then(|it| NamedUnit::parse_any(it).ok()).filter(|_| words.len() > 1);
-        if unit.is_some() {
-            words.pop();
-        }
+        let (name, unit) = without_unit(name);
+        let words = name.split(|it: char| !it.is_alphanumeric()).filter(|it| !it.is_empty());
+        let mut words: Vec<String> = words.map(str::to_lowercase).collect();
         let last = words.pop().unwrap_or_default();
-        let alone =
-            last.strip_suffix(['x', 'y', 'z']).filter(|it| words.is_empty() && BEFORE_AXIS.contains(it));
-        match alone {
-            Some(stem) => {
-                Words { stem: stem.to_owned(), last: last.chars().skip(stem.len()).collect(), unit }
-            }
+        let is_before_axis = |stem: &&str| words.is_empty() && Role::Guessed.has(stem);
+        match last.strip_suffix(['x', 'y', 'z']).filter(is_before_axis) {
+            Some(stem) => Words { stem: stem.to_owned(), last: last.replacen(stem, "", 1), unit },
             None => Words { stem: words.join(" "), last, unit },
         }
     }
 
     /// How well a stem says that its columns were measured; none of statistics.
     fn rank(stem: &str) -> Option<usize> {
-        let has = |words: &[&str]| words.iter().any(|word| stem.contains(word));
         match stem {
-            _ if has(&STATISTICS) => None,
+            _ if Role::InStatistic.is_in(stem) => None,
             "" => Some(3),
-            _ if has(&MEASURED) => Some(2),
-            _ if has(&OTHERS) => Some(0),
+            _ if Role::InMeasured.is_in(stem) => Some(2),
+            _ if Role::Other.is_in(stem) => Some(0),
             _ => Some(1),
         }
     }
@@ -102,8 +81,10 @@ impl<'h> Names<'h> {
         self.words.get(column)?.unit
     }
 
-    fn is_numeric(&self, column: usize) -> bool {
-        self.numeric.get(column).copied().unwrap_or(false)
+    /// The columns whose cells are numbers, with their names in words.
+    fn numeric(&self) -> impl Iterator<Item = (usize, &Words)> {
+        let words = self.words.iter().enumerate().zip(&self.numeric);
+        words.filter(|(_, is_numeric)| **is_numeric).map(|(it, _)| it)
     }
 
     /// The column with exactly this name.
@@ -123,18 +104,19 @@ impl<'h> Names<'h> {
         }
         let is_joint = |column: &usize| {
             let name = self.header.cells.get(*column).map(|cell| plain(&cell.name)).unwrap_or_default();
-            let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
-            self.is_numeric(*column) && has(&JOINT_WORDS) && !has(&OTHERS) && !has(&STATISTICS)
+            Role::InJoint.is_in(&name) && !Role::Other.is_in(&name) && !Role::InStatistic.is_in(&name)
         };
-        let found: Vec<usize> = (0..self.words.len()).filter(is_joint).collect();
+        let found: Vec<usize> = self.numeric().map(|it| it.0).filter(is_joint).collect();
         if found.len() == names.len() { found.into_iter().map(Some).collect() } else { own }
     }
 
     /// The columns whose names end with these words and begin alike, with what they begin with; those that were measured, if there are several.
     fn ending(&self, last: &[&str], near: Option<&str>) -> Option<Begun> {
         let mut stems: BTreeMap<&str, Vec<Option<usize>>> = BTreeMap::new();
-        for (column, words) in self.words.iter().enumerate().filter(|(column, _)| self.is_numeric(*column)) {
-            let Some(part) = last.iter().position(|it| *it == words.last) else { continue };
+        for (column, words) in self.numeric() {
+            let Some(part) = last.iter().position(|it| it.eq_ignore_ascii_case(&words.last)) else {
+                continue;
+            };
             let found = stems.entry(&words.stem).or_insert_with(|| vec![None; last.len()]);
             if let Some(place) = found.get_mut(part) {
                 place.get_or_insert(column);
@@ -142,35 +124,28 @@ impl<'h> Names<'h> {
         }
         let whole = stems.into_iter().filter_map(|(stem, found)| {
             let found: Vec<usize> = found.into_iter().collect::<Option<_>>()?;
-            let rank =
-                Words::rank(stem).filter(|_| near.is_none_or(|near| stem.is_empty() || stem == near))?;
+            let is_near = near.is_none_or(|near| stem.is_empty() || stem == near);
+            let rank = Words::rank(stem).filter(|_| is_near)?;
             Some((rank + usize::from(near == Some(stem)) * 4, stem, found))
         });
-        let best = whole.reduce(|best, it| if it.0 > best.0 { it } else { best })?;
-        Some((best.1.to_owned(), best.2))
+        let (_, stem, found) = whole.reduce(|best, it| if it.0 > best.0 { it } else { best })?;
+        Some((stem.to_owned(), found))
     }
 
     /// The columns of the position, and what their names begin with.
     pub(crate) fn position(&self) -> Option<Begun> {
-        AXES.iter().find_map(|axes| self.ending(axes, None))
+        Role::Axes.rows().find_map(|axes| self.ending(&axes.split(' ').collect::<Vec<_>>(), None))
     }
 
     /// The form of the orientation and its columns, beside a position whose columns begin with `near`.
-    pub(crate) fn orientation(&self, near: Option<&str>) -> Option<Oriented> {
-        let ends = |last: &[&str]| self.ending(last, near).map(|it| it.1);
-        let of_four = |last: [&str; 4], form: &str| Some((form.to_owned(), ends(&last)?));
-        let of_three = || angles().find_map(|(last, form)| Some((form.to_string(), ends(last)?)));
-        of_four(["qx", "qy", "qz", "qw"], "quaternion_xyzw")
-            .or_else(|| of_four(["q1", "q2", "q3", "q4"], "quaternion_wxyz"))
-            .or_else(of_three)
+    pub(crate) fn orientation(&self, near: Option<&str>) -> Option<(OrientationForm, Vec<usize>)> {
+        orientations().find_map(|(last, form)| Some((form, self.ending(last, near)?.1)))
     }
 
     /// The columns of a form that was chosen, as far as their names say so.
     pub(crate) fn parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<usize>> {
-        let found = self.ending(form.part_names(), near).or_else(|| {
-            let mut angles = angles().filter(|_| form.len() == 3);
-            angles.find_map(|(last, _)| self.ending(last, near))
-        });
+        let angles = orientations().filter(|it| it.1.len() == 3 && form.len() == 3).map(|it| it.0);
+        let found = std::iter::once(form.part_names()).chain(angles).find_map(|last| self.ending(last, near));
         found.map_or_else(|| vec![None; form.len()], |it| it.1.into_iter().map(Some).collect())
     }
 }
@@ -182,13 +157,13 @@ mod tests {
 
     use crate::Separator;
 
-    fn found(header: &str) -> (Option<Begun>, Option<Oriented>) {
+    fn found(header: &str) -> (Option<Begun>, Option<(String, Vec<usize>)>) {
         let header = Header::new(Path::new("x.csv"), 1, header, Separator::Comma).unwrap();
         let names = Names::new(&header, vec![true; header.cells.len()]);
         let position = names.position();
         let near = position.as_ref().map(|it| it.0.clone());
         let orientation = names.orientation(near.as_deref());
-        (position, orientation)
+        (position, orientation.map(|(form, columns)| (form.mapped(), columns)))
     }
 
     #[test]

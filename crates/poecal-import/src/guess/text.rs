@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::draft::Draft;
+use super::fields::{MappedField, WAYS};
 use poecal_numerics::text::visible;
-use poecal_numerics::unit::Unit;
 
 /// A text in TOML's quotes.
 fn quoted(text: &str) -> String {
@@ -17,55 +16,51 @@ fn key(name: &str) -> String {
     if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
 }
 
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    format!("[{}]", names.map(quoted).collect::<Vec<_>>().join(", "))
+fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
+    format!("[{}]", names.into_iter().map(|it| quoted(it)).collect::<Vec<_>>().join(", "))
 }
 
 /// The mapping in TOML; what has no column is a comment.
-pub(crate) fn mapping(draft: &Draft, file: &str) -> String {
+pub(crate) fn mapping(fields: &[MappedField], left_out: &[String], file: &str) -> String {
     let mut out = format!("# How the columns of {} are read, by the option --columns.\n", visible(file));
-    let unit = |group: &str| draft.units.get(group).and_then(|it| it.map(|unit| unit.symbol()));
-    for (name, column) in [("id", &draft.id), ("target", &draft.target)] {
-        if let Some(column) = column {
-            let _ = writeln!(out, "{name} = {}", quoted(column));
+    let of = |group: &'static str| fields.iter().filter(move |it| it.group == group && it.choices.is_empty());
+    let word = |key: &str| {
+        let field = fields.iter().find(|it| it.key == key && !it.choices.is_empty());
+        field.map(|it| it.chosen.as_str()).filter(|it| !it.is_empty())
+    };
+    for key in ["id", "target"] {
+        if let Some(column) = of("rows").find(|it| it.key == key).and_then(MappedField::used) {
+            let _ = writeln!(out, "{key} = {}", quoted(column));
         }
     }
-    if draft.is_inverted {
-        out.push_str("pose = \"target_from_device\"\n");
+    if let Some(way) = word("pose").filter(|it| *it != WAYS[0]) {
+        let _ = writeln!(out, "pose = \"{way}\"");
     }
-    if !draft.left_out.is_empty() {
-        let _ = writeln!(out, "ignore = {}", list(draft.left_out.iter().map(String::as_str)));
+    if !left_out.is_empty() {
+        let _ = writeln!(out, "ignore = {}", list(left_out));
     }
     out.push_str("\n[joints]\n");
-    for (name, quantity, column) in &draft.joints {
-        let unit = unit(if *quantity == Unit::Metre { "length" } else { "angle" });
-        let _ = match (column, unit) {
-            (None, _) => writeln!(out, "# {} = found no column", visible(&key(name))),
-            (Some(column), None) => writeln!(out, "{} = {}", key(name), quoted(column)),
+    for joint in of("joints") {
+        let name = key(&joint.key);
+        let _ = match (joint.used(), word(joint.unit)) {
+            (None, _) => writeln!(out, "# {} = found no column", visible(&name)),
+            (Some(column), None) => writeln!(out, "{name} = {}", quoted(column)),
             (Some(column), Some(unit)) => {
-                writeln!(out, "{} = {{ column = {}, unit = \"{unit}\" }}", key(name), quoted(column))
+                writeln!(out, "{name} = {{ column = {}, unit = \"{unit}\" }}", quoted(column))
             }
         };
     }
-    let position: Option<Vec<&str>> = draft.position.iter().map(Option::as_deref).collect();
-    if let Some(columns) = position {
-        section(&mut out, "position", None, &columns, unit("position"));
-    }
-    let parts: Option<Vec<&str>> = draft.parts.iter().map(Option::as_deref).collect();
-    if let (Some(form), Some(columns)) = (&draft.form, parts) {
-        section(&mut out, "orientation", Some(form), &columns, unit("orientation"));
+    for (group, form) in [("position", None), ("orientation", word("orientation"))] {
+        let columns: Option<Vec<&String>> = of(group).map(MappedField::used).collect();
+        let Some(columns) = columns.filter(|it| !it.is_empty()) else { continue };
+        let _ = writeln!(out, "\n[{group}]");
+        if let Some(form) = form {
+            let _ = writeln!(out, "form = \"{form}\"");
+        }
+        let _ = writeln!(out, "columns = {}", list(columns));
+        if let Some(unit) = word(&format!("unit.{group}")) {
+            let _ = writeln!(out, "unit = \"{unit}\"");
+        }
     }
     out
-}
-
-/// A section with columns.
-fn section(out: &mut String, name: &str, form: Option<&str>, columns: &[&str], unit: Option<&str>) {
-    let _ = writeln!(out, "\n[{name}]");
-    if let Some(form) = form {
-        let _ = writeln!(out, "form = \"{form}\"");
-    }
-    let _ = writeln!(out, "columns = {}", list(columns.iter().copied()));
-    if let Some(unit) = unit {
-        let _ = writeln!(out, "unit = \"{unit}\"");
-    }
 }

@@ -6,30 +6,12 @@ use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
 use crate::Separator;
 use crate::table::header::bracketed;
-use crate::table::numbered::plain;
+use crate::table::roles::{Role, plain};
 
 pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinates", is_it, table };
 
 /// Lines in which the header is sought.
 const FIRST: usize = 20;
-/// What a set is called that was wanted or computed, and one that was measured.
-const NOMINAL: [&str; 14] = [
-    "nominal",
-    "nom",
-    "theoretical",
-    "theory",
-    "ideal",
-    "command",
-    "commanded",
-    "cmd",
-    "desired",
-    "reference",
-    "ref",
-    "design",
-    "calculated",
-    "target",
-];
-const MEASURED: [&str; 7] = ["measured", "measurement", "meas", "actual", "act", "real", "laser"];
 /// Coordinates; the angles behind them have as many conventions as makers.
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "roll", "pitch", "yaw"];
@@ -52,8 +34,8 @@ struct Sets {
 }
 
 fn called(word: &str) -> Option<Called> {
-    let is = |words: &[&str]| words.contains(&word);
-    if is(&MEASURED) { Some(Called::Measured) } else { is(&NOMINAL).then_some(Called::Nominal) }
+    let of = [(Role::MeasuredSet, Called::Measured), (Role::NominalSet, Called::Nominal)];
+    of.into_iter().find(|it| it.0.has(word)).map(|it| it.1)
 }
 
 /// A name of a column as a coordinate, with what its set is called.

@@ -292,7 +292,7 @@ fn lens(info: &CameraInfo, path: &Path) -> Result<(Lens, Option<String>)> {
     }
     // Messages of a camera that is not calibrated have zeros.
     let is_stated = size_px.iter().any(|it| *it != 0.0);
-    let size_px = is_stated.then(|| size_of_pictures(*size_px)).transpose();
+    let size_px = size_of_pictures(size_px.map(|side| is_stated.then_some(side)));
     let size_px = size_px.map_err(|error| error.in_file(path))?;
     let distortion = distortion(model, d, path)?;
     let whole = Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px };

@@ -142,8 +142,8 @@ fn camera_info(node: &Node, path: &Path) -> Result<Option<CameraInfo>> {
     let model = node.get("distortion_model").and_then(Node::text).unwrap_or_default().to_owned();
     let mut part = [0.0; KEYS.len()];
     for (value, keys) in part.iter_mut().zip(KEYS) {
-        let found = keys.iter().try_fold(node, |node, key| node.get(key));
-        *value = found.map_or(Ok(0.0), |node| number(node, &keys.join("."), path))?;
+        let found = keys.split('.').try_fold(node, |node, key| node.get(key));
+        *value = found.map_or(Ok(0.0), |node| number(node, keys, path))?;
     }
     let region = Region::new(part).map_err(|found| node.error(path, found))?;
     Ok(Some(CameraInfo { size_px, k: matrix, d, model, region }))

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use super::stated::Stated;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::limits::Limit;
-use poecal_storage::other_keys::{KeysOf, other_keys};
+use poecal_storage::other_keys::KeysOf;
 use poecal_storage::source_text::read_up_to;
 use poecal_storage::xml::parsed;
 use poecal_storage::yaml::{Leaf, leaves};
@@ -19,72 +20,46 @@ const LEAST_MM: f64 = 1.0;
 /// Markers of industrial_calibration where it states none.
 const USUAL_MARKERS: &str = "DICT_6X6_250";
 /// Sets of markers in the order in which OpenCV numbers them.
-const DICTIONARIES: [&str; 21] = [
-    "DICT_4X4_50",
-    "DICT_4X4_100",
-    "DICT_4X4_250",
-    "DICT_4X4_1000",
-    "DICT_5X5_50",
-    "DICT_5X5_100",
-    "DICT_5X5_250",
-    "DICT_5X5_1000",
-    "DICT_6X6_50",
-    "DICT_6X6_100",
-    "DICT_6X6_250",
-    "DICT_6X6_1000",
-    "DICT_7X7_50",
-    "DICT_7X7_100",
-    "DICT_7X7_250",
-    "DICT_7X7_1000",
-    "DICT_ARUCO_ORIGINAL",
-    "DICT_APRILTAG_16h5",
-    "DICT_APRILTAG_25h9",
-    "DICT_APRILTAG_36h10",
-    "DICT_APRILTAG_36h11",
-];
+const DICTIONARIES: &str = "DICT_4X4_50 DICT_4X4_100 DICT_4X4_250 DICT_4X4_1000 DICT_5X5_50 DICT_5X5_100 DICT_5X5_250 DICT_5X5_1000 DICT_6X6_50 \
+                            DICT_6X6_100 DICT_6X6_250 DICT_6X6_1000 DICT_7X7_50 DICT_7X7_100 DICT_7X7_250 DICT_7X7_1000 DICT_ARUCO_ORIGINAL \
+                            DICT_APRILTAG_16h5 DICT_APRILTAG_25h9 DICT_APRILTAG_36h10 DICT_APRILTAG_36h11";
 
 /// Whose files have boards.
-const KALIBR: &str = "Kalibr";
-const INDUSTRIAL: &str = "industrial_calibration";
-/// Keys of Kalibr's boards that are read, in small letters.
-const OF_KALIBR: [&str; 12] = [
-    "target_type",
-    "tagcols",
-    "tagrows",
-    "tagsize",
-    "tagspacing",
-    "codeoffset",
-    "targetcols",
-    "targetrows",
-    "rowspacingmeters",
-    "colspacingmeters",
-    "spacingmeters",
-    "asymmetricgrid",
-];
-/// Keys of industrial_calibration's boards that are read, or say how their circles are sought.
-const OF_INDUSTRIAL: [&str; 9] = [
-    "type",
-    "cols",
-    "rows",
-    "spacing",
-    "chessboard_dim",
-    "aruco_marker_dim",
-    "dictionary",
-    "circle_diameter",
-    "circle_detector_params",
-];
-/// Beginnings of OpenCV's keys that are read, or say how pictures are taken and what is written.
-const OF_OPENCV: [&str; 10] = [
-    "boardsize_",
-    "square_size",
-    "marker_size",
-    "aruco_",
-    "calibrate_",
-    "input",
-    "write_",
-    "show_",
-    "fix_",
-    "grid_width",
+struct Maker {
+    name: &'static str,
+    /// What only its files have.
+    mark: &'static str,
+    /// Where the board is in the file.
+    section: &'static str,
+    /// Keys, or the beginnings of keys that end with a star, which are read, or change no board; in small letters.
+    known: &'static str,
+    words: fn(&Stated<'_>) -> Result<String>,
+}
+
+const MAKERS: [Maker; 3] = [
+    Maker {
+        name: "Kalibr",
+        mark: "target_type",
+        section: "Settings",
+        known: "target_type tagcols tagrows tagsize tagspacing codeoffset targetcols targetrows rowspacingmeters colspacingmeters spacingmeters asymmetricgrid",
+        words: |it| it.kalibr(),
+    },
+    Maker {
+        name: "industrial_calibration",
+        mark: "target_finder.type",
+        section: "target_finder",
+        // The last ones say how its circles are sought.
+        known: "type cols rows spacing chessboard_dim aruco_marker_dim dictionary circle_diameter circle_detector_params",
+        words: |it| it.industrial(),
+    },
+    Maker {
+        name: "OpenCV's settings",
+        mark: "BoardSize_Width",
+        // Or at the top. Beside the board they say how pictures are taken and what is written.
+        section: "Settings",
+        known: "boardsize_* square_size* marker_size* aruco_* calibrate_* input* write_* show_* fix_* grid_width*",
+        words: |it| it.opencv(),
+    },
 ];
 
 /// A board of a file in words.
@@ -107,19 +82,12 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let text = read_up_to(path, EXPECTED, Limit::Settings)?;
     let leaves = if ending == "xml" { of_xml(&text, path)? } else { leaves(&text, path, EXPECTED)? };
     let stated = Stated { leaves, path };
-    let (words, of) = if stated.find("target_type").is_some() {
-        (stated.kalibr()?, KALIBR)
-    } else if stated.find("target_finder.type").is_some() {
-        (stated.industrial()?, INDUSTRIAL)
-    } else if stated.find("BoardSize_Width").is_some() {
-        (stated.opencv()?, "OpenCV's settings")
-    } else {
-        return Err(
-            Error::new(ErrorKind::Option, format!("found no board, expected {EXPECTED}")).in_file(path)
-        );
+    let Some(maker) = MAKERS.iter().find(|it| stated.find(it.mark).is_some()) else {
+        return Err(ErrorKind::Option.error(format!("found no board, expected {EXPECTED}")).in_file(path));
     };
-    let others = stated.others(of)?.map_or(String::new(), |it| format!("; {it}"));
-    let said = format!("{}: read the board `{words}` ({of}){others}", path.display());
+    let words = (maker.words)(&stated)?;
+    let others = stated.unread(maker)?.map_or(String::new(), |it| format!("; {it}"));
+    let said = format!("{}: read the board `{words}` ({}){others}", path.display(), maker.name);
     Ok(Some(BoardOfFile { words, said }))
 }
 
@@ -139,46 +107,45 @@ fn of_xml(text: &str, path: &Path) -> Result<Vec<Leaf>> {
     Ok(elements.filter(|node| !node.children().any(|it| it.is_element())).filter_map(leaf).collect())
 }
 
-/// What a file states.
-struct Stated<'a> {
-    leaves: Vec<Leaf>,
-    path: &'a Path,
-}
-
 impl Stated<'_> {
     /// The value behind keys that are joined by dots, alone or below others.
     fn find(&self, keys: &str) -> Option<&Leaf> {
-        let keys: Vec<&str> = keys.split('.').collect();
-        let is_it = |leaf: &&Leaf| {
-            let start = leaf.path.len().checked_sub(keys.len());
-            start.and_then(|start| leaf.path.get(start..)).is_some_and(|end| end.iter().eq(keys.iter()))
-        };
-        self.leaves.iter().find(is_it)
+        let count = keys.split('.').count();
+        self.leaves.iter().find(|leaf| leaf.path.iter().rev().take(count).eq(keys.rsplit('.')))
     }
 
     fn refuse(&self, leaf: &Leaf, expected: &str) -> Error {
         let key = leaf.path.last().map_or("", String::as_str);
         let message = format!("found `{}` for `{key}`, expected {expected}", leaf.text);
-        Error::new(ErrorKind::Option, message).at_line(self.path, leaf.line)
+        ErrorKind::Option.error(message).at_line(self.path, leaf.line)
     }
 
-    fn text(&self, keys: &str) -> Result<&Leaf> {
+    fn needed(&self, keys: &str) -> Result<&Leaf> {
         self.find(keys).ok_or_else(|| {
             let message = format!("found no `{keys}`, expected it beside the other numbers of the board");
-            Error::new(ErrorKind::Option, message).in_file(self.path)
+            ErrorKind::Option.error(message).in_file(self.path)
         })
     }
 
-    fn number(&self, keys: &str) -> Result<f64> {
-        let leaf = self.text(keys)?;
+    fn above_0(&self, keys: &str) -> Result<f64> {
+        let leaf = self.needed(keys)?;
         let number = leaf.text.parse().ok().filter(|it: &f64| it.is_finite() && *it > 0.0);
         number.ok_or_else(|| self.refuse(leaf, "a number above 0"))
     }
 
-    fn count(&self, keys: &str) -> Result<usize> {
-        let leaf = self.text(keys)?;
-        let count = leaf.text.parse().ok().filter(|it| (1..=1000).contains(it));
-        count.ok_or_else(|| self.refuse(leaf, "a count of 1 to 1000"))
+    /// A length in millimetres, as words of boards have it.
+    fn length(&self, keys: &str) -> Result<String> {
+        self.above_0(keys).map(millimetres)
+    }
+
+    /// Counts along x and along y.
+    fn counts(&self, columns: &str, rows: &str) -> Result<[usize; 2]> {
+        let count = |keys: &str| {
+            let leaf = self.needed(keys)?;
+            let count = leaf.text.parse().ok().filter(|it| (1..=1000).contains(it));
+            count.ok_or_else(|| self.refuse(leaf, "a count of 1 to 1000"))
+        };
+        Ok([count(columns)?, count(rows)?])
     }
 
     /// Whether a key that may be missing says so.
@@ -191,46 +158,45 @@ impl Stated<'_> {
         }
     }
 
-    /// The keys of the board that were not read. Those of industrial_calibration stand below `target_finder`; OpenCV's settings are beside the board
-    /// of how pictures are taken and what is written, which change no board unless they flip the pictures.
-    fn others(&self, of: &str) -> Result<Option<String>> {
-        // OpenCV's stand below `Settings`, or at the top.
-        let section = if of == INDUSTRIAL { "target_finder" } else { "Settings" };
-        let is_below = |leaf: &Leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == section);
+    /// The keys of the board that were not read.
+    fn unread(&self, maker: &Maker) -> Result<Option<String>> {
+        let is_below =
+            |leaf: &Leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
         let at = usize::from(self.leaves.iter().any(is_below));
-        let own: Vec<Leaf> = self.leaves.iter().filter(|it| at == 0 || is_below(it)).cloned().collect();
-        let read = |key: &str| match of {
-            KALIBR => OF_KALIBR.contains(&key),
-            INDUSTRIAL => OF_INDUSTRIAL.contains(&key),
-            _ => !key.contains("flip") && OF_OPENCV.iter().any(|part| key.starts_with(part)),
+        let is_known = |key: &str| {
+            let known = |known: &str| match known.strip_suffix('*') {
+                Some(start) => key.starts_with(start) && !key.contains("flip"),
+                None => key == known,
+            };
+            maker.known.split(' ').any(known)
         };
-        other_keys(&own, at, read, (KeysOf::Board, self.path))
+        self.others(KeysOf::Board, (at, |leaf| at == 0 || is_below(leaf)), is_known)
     }
 
     fn kalibr(&self) -> Result<String> {
-        let kind = self.text("target_type")?;
+        let kind = self.needed("target_type")?;
         match kind.text.as_str() {
             "aprilgrid" => {
                 if let Some(offset) = self.find("codeOffset").filter(|it| it.text.parse() != Ok(0)) {
                     return Err(self.refuse(offset, "0: a grid begins with tag 0"));
                 }
-                let (columns, rows) = (self.count("tagCols")?, self.count("tagRows")?);
-                let (size, spacing) = (millimetres(self.number("tagSize")?), self.number("tagSpacing")?);
+                let [columns, rows] = self.counts("tagCols", "tagRows")?;
+                let (size, spacing) = (self.length("tagSize")?, self.above_0("tagSpacing")?);
                 Ok(format!("aprilgrid:{columns}x{rows}:{size}:{spacing}"))
             }
             "checkerboard" => {
-                let (columns, rows) = (self.count("targetCols")?, self.count("targetRows")?);
-                let side_m = self.number("rowSpacingMeters")?;
-                if self.number("colSpacingMeters")? != side_m {
-                    let other = self.text("colSpacingMeters")?;
+                let [columns, rows] = self.counts("targetCols", "targetRows")?;
+                let side_m = self.above_0("rowSpacingMeters")?;
+                if self.above_0("colSpacingMeters")? != side_m {
+                    let other = self.needed("colSpacingMeters")?;
                     return Err(self.refuse(other, "the same as `rowSpacingMeters`: squares"));
                 }
                 // Kalibr counts inner corners.
                 Ok(format!("chessboard:{}x{}:{}", columns + 1, rows + 1, millimetres(side_m)))
             }
             "circlegrid" => {
-                let (columns, rows) = (self.count("targetCols")?, self.count("targetRows")?);
-                let pitch = millimetres(self.number("spacingMeters")?);
+                let [columns, rows] = self.counts("targetCols", "targetRows")?;
+                let pitch = self.length("spacingMeters")?;
                 let end = if self.is_true("asymmetricGrid")? { ":asymmetric" } else { "" };
                 Ok(format!("circles:{columns}x{rows}:{pitch}{end}"))
             }
@@ -239,22 +205,20 @@ impl Stated<'_> {
     }
 
     fn industrial(&self) -> Result<String> {
-        let kind = self.text("target_finder.type")?;
-        let size = || -> Result<String> {
-            Ok(format!("{}x{}", self.count("target_finder.cols")?, self.count("target_finder.rows")?))
-        };
+        let kind = self.needed("target_finder.type")?;
+        let counts = || self.counts("target_finder.cols", "target_finder.rows");
         match kind.text.as_str() {
             "ModifiedCircleGridTargetFinder" | "CircleGridTargetFinder" => {
-                Ok(format!("circles:{}:{}", size()?, millimetres(self.number("target_finder.spacing")?)))
+                let ([columns, rows], pitch) = (counts()?, self.length("target_finder.spacing")?);
+                Ok(format!("circles:{columns}x{rows}:{pitch}"))
             }
             "CharucoGridTargetFinder" => {
-                let square = millimetres(self.number("target_finder.chessboard_dim")?);
-                let marker = millimetres(self.number("target_finder.aruco_marker_dim")?);
-                let markers = match self.find("target_finder.dictionary") {
-                    Some(leaf) => self.dictionary(leaf)?,
-                    None => USUAL_MARKERS,
-                };
-                Ok(format!("charuco:{}:{square}:{marker}:{markers}", size()?))
+                let square = self.length("target_finder.chessboard_dim")?;
+                let marker = self.length("target_finder.aruco_marker_dim")?;
+                let markers = self.find("target_finder.dictionary");
+                let markers = markers.map_or(Ok(USUAL_MARKERS), |leaf| self.dictionary(leaf))?;
+                let [columns, rows] = counts()?;
+                Ok(format!("charuco:{columns}x{rows}:{square}:{marker}:{markers}"))
             }
             _ => Err(self.refuse(kind, "ModifiedCircleGridTargetFinder or CharucoGridTargetFinder")),
         }
@@ -262,31 +226,32 @@ impl Stated<'_> {
 
     /// Markers by their name or OpenCV's number.
     fn dictionary<'a>(&self, leaf: &'a Leaf) -> Result<&'a str> {
+        let is_name = leaf.text.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_');
         match leaf.text.parse::<usize>() {
             Ok(at) => DICTIONARIES
-                .get(at)
-                .copied()
+                .split(' ')
+                .nth(at)
                 .ok_or_else(|| self.refuse(leaf, "a number of OpenCV's dictionaries, 0 to 20")),
-            Err(_) if leaf.text.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_') => Ok(&leaf.text),
+            Err(_) if is_name => Ok(&leaf.text),
             Err(_) => Err(self.refuse(leaf, "the name of a dictionary, such as DICT_6X6_250")),
         }
     }
 
     fn opencv(&self) -> Result<String> {
-        let (columns, rows) = (self.count("BoardSize_Width")?, self.count("BoardSize_Height")?);
+        let [columns, rows] = self.counts("BoardSize_Width", "BoardSize_Height")?;
         let length = |keys: &str| -> Result<String> {
-            let stated = self.number(keys)?;
+            let stated = self.above_0(keys)?;
             Ok(millimetres(if stated < LEAST_MM { stated } else { 1e-3 * stated }))
         };
-        let (kind, square) = (self.text("Calibrate_Pattern")?, length("Square_Size")?);
+        let (kind, square) = (self.needed("Calibrate_Pattern")?, length("Square_Size")?);
         match kind.text.trim_matches('"') {
             // Inner corners; of a ChArUco board squares.
             "CHESSBOARD" => Ok(format!("chessboard:{}x{}:{square}", columns + 1, rows + 1)),
             "CIRCLES_GRID" => Ok(format!("circles:{columns}x{rows}:{square}")),
             "ASYMMETRIC_CIRCLES_GRID" => Ok(format!("circles:{columns}x{rows}:{square}:asymmetric")),
             "CHARUCOBOARD" => {
-                let (marker, markers) =
-                    (length("Marker_Size")?, self.dictionary(self.text("ArUco_Dict_Name")?)?);
+                let marker = length("Marker_Size")?;
+                let markers = self.dictionary(self.needed("ArUco_Dict_Name")?)?;
                 Ok(format!("charuco:{columns}x{rows}:{square}:{marker}:{markers}"))
             }
             _ => Err(self.refuse(kind, "CHESSBOARD, CIRCLES_GRID, ASYMMETRIC_CIRCLES_GRID or CHARUCOBOARD")),

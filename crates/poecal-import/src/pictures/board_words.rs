@@ -1,53 +1,37 @@
 //! Boards in words, as `poecal detect` has them: what moves the points of a board. Which markers it has, or in which pattern, does not.
 
 use poecal_model::camera::Board;
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::positive_length_m;
 
 /// The board of all corners where no column names it.
 pub(crate) const BOARD: &str = "board";
 
-/// A kind of board: its name, what is expected, and its reader.
-struct Kind {
-    name: &'static str,
-    expected: &'static str,
-    read: fn(&[&str]) -> Result<Option<Board>>,
-}
-
 const SQUARES: &str =
     "squares along x and y and their side, as chessboard:10x7:27mm or charuco:5x7:36mm:18mm:DICT_6X6_250";
 
-const KINDS: [Kind; 5] = [
-    Kind { name: "chessboard", expected: SQUARES, read: chessboard },
-    Kind { name: "charuco", expected: SQUARES, read: charuco },
-    Kind {
-        name: "circles",
-        expected: "dots along x and y and the pitch of the rows, as circles:9x6:30mm or circles:4x11:20mm:asymmetric",
-        read: circles,
-    },
-    Kind {
-        name: "aprilgrid",
-        expected: "tags along x and y, their side, and what is between them as a part of it, as aprilgrid:6x6:88mm:0.3",
-        read: april_grid,
-    },
-    Kind {
-        name: "tags",
-        expected: "a family and the side of a tag with its black border, as tags:36h11:50mm",
-        read: tags,
-    },
+/// Kinds of boards, and what is expected of each.
+const KINDS: [(&str, &str); 5] = [
+    ("chessboard", SQUARES),
+    ("charuco", SQUARES),
+    (
+        "circles",
+        "dots along x and y and the pitch of the rows, as circles:9x6:30mm or circles:4x11:20mm:asymmetric",
+    ),
+    (
+        "aprilgrid",
+        "tags along x and y, their side, and what is between them as a part of it, as aprilgrid:6x6:88mm:0.3",
+    ),
+    ("tags", "a family and the side of a tag with its black border, as tags:36h11:50mm"),
 ];
 
 /// The board of a specification; `None` of what is none, such as the name of a file.
 pub(crate) fn in_words(typed: &str) -> Option<Result<Board>> {
-    let mut parts = typed.trim().split(':');
-    let name = parts.next()?;
-    let rest: Vec<&str> = parts.collect();
-    let kind = KINDS.iter().find(|it| it.name == name && !rest.is_empty())?;
-    let refuse = || {
-        let message = format!("found the board `{typed}`, expected {}", kind.expected);
-        Error::new(ErrorKind::Option, message)
-    };
-    Some((kind.read)(&rest).and_then(|board| board.ok_or_else(refuse)))
+    let (name, rest) = typed.trim().split_once(':')?;
+    let (_, expected) = KINDS.iter().find(|it| it.0 == name)?;
+    let refuse = || ErrorKind::Option.error(format!("found the board `{typed}`, expected {expected}"));
+    let parts: Vec<&str> = rest.split(':').collect();
+    Some(board(name, &parts).and_then(|board| board.ok_or_else(refuse)))
 }
 
 /// `COLSxROWS`.
@@ -56,45 +40,34 @@ fn size(text: &str) -> Option<[usize; 2]> {
     Some([columns.trim().parse().ok()?, rows.trim().parse().ok()?])
 }
 
-/// Two things that may be missing, both of which a board needs.
-fn both<T>(one: Option<T>, length: &str) -> Result<Option<(T, f64)>> {
-    Ok(one.zip(positive_length_m(length)?))
-}
-
-fn chessboard(parts: &[&str]) -> Result<Option<Board>> {
-    let [squares, side] = parts else { return Ok(None) };
-    let Some((squares, side_m)) = both(size(squares), side)? else { return Ok(None) };
-    Board::chessboard(BOARD, squares, side_m).map(Some)
-}
-
-/// As a chessboard: its markers do not move the corners.
-fn charuco(parts: &[&str]) -> Result<Option<Board>> {
-    chessboard(parts.get(..2).unwrap_or_default())
-}
-
-fn circles(parts: &[&str]) -> Result<Option<Board>> {
-    let (dots, pitch, is_asymmetric) = match parts {
-        [dots, pitch] => (dots, pitch, false),
-        [dots, pitch, "asymmetric"] => (dots, pitch, true),
-        _ => return Ok(None),
+/// The board of a kind; `None` of parts that are none of it.
+fn board(kind: &str, parts: &[&str]) -> Result<Option<Board>> {
+    let sized = |counts: &str, length: &str| Ok(size(counts).zip(positive_length_m(length)?));
+    let circles = |dots: &str, pitch: &str, is_asymmetric| match sized(dots, pitch)? {
+        Some((dots, pitch_m)) => Board::circles(BOARD, dots, pitch_m, is_asymmetric).map(Some),
+        None => Ok(None),
     };
-    let Some((dots, pitch_m)) = both(size(dots), pitch)? else { return Ok(None) };
-    Board::circles(BOARD, dots, pitch_m, is_asymmetric).map(Some)
-}
-
-/// The family of its tags does not move them.
-fn april_grid(parts: &[&str]) -> Result<Option<Board>> {
-    let ([tags, side, spacing] | [tags, side, spacing, _]) = parts else { return Ok(None) };
-    let wanted = size(tags).zip(spacing.trim().parse().ok());
-    let Some(((tags, spacing), side_m)) = both(wanted, side)? else { return Ok(None) };
-    Board::april_grid(BOARD, tags, side_m, spacing).map(Some)
-}
-
-/// One tag, of which there are as many as the corners name: each is a board at a place of its own.
-fn tags(parts: &[&str]) -> Result<Option<Board>> {
-    let [_, side] = parts else { return Ok(None) };
-    let Some(side_m) = positive_length_m(side)? else { return Ok(None) };
-    Board::tag(BOARD, side_m).map(Some)
+    match (kind, parts) {
+        // Markers do not move the corners.
+        ("chessboard", [squares, side]) | ("charuco", [squares, side, ..]) => match sized(squares, side)? {
+            Some((squares, side_m)) => Board::chessboard(BOARD, squares, side_m).map(Some),
+            None => Ok(None),
+        },
+        ("circles", [dots, pitch]) => circles(dots, pitch, false),
+        ("circles", [dots, pitch, "asymmetric"]) => circles(dots, pitch, true),
+        // Nor does the family of tags.
+        ("aprilgrid", [tags, side, spacing] | [tags, side, spacing, _]) => {
+            match (sized(tags, side)?, spacing.trim().parse()) {
+                (Some((tags, side_m)), Ok(spacing)) => {
+                    Board::april_grid(BOARD, tags, side_m, spacing).map(Some)
+                }
+                _ => Ok(None),
+            }
+        }
+        // One tag, of which there are as many as the corners name: each is a board at a place of its own.
+        ("tags", [_, side]) => positive_length_m(side)?.map(|side_m| Board::tag(BOARD, side_m)).transpose(),
+        _ => Ok(None),
+    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use crate::table::number::Numbers;
 use crate::table::text::Blocks;
 use crate::table::{Row, Table};
 use poecal_model::camera::Board;
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
@@ -37,22 +37,20 @@ pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
     }
 }
 
+/// A column of a coordinate on a board, with its unit.
+pub(crate) type Coordinate = (usize, NamedUnit);
+
 /// A column of a coordinate, with its unit: `x[mm]`, `x_mm`.
-fn coordinate(header: &Header<'_>, name: &str) -> Result<(usize, NamedUnit)> {
+fn coordinate(header: &Header<'_>, name: &str) -> Result<Coordinate> {
     if let Some(at) = header.find(name)? {
         let unit = header.unit(at, Unit::Metre, "for a point")?;
-        return Ok((at, unit.map_or(NamedUnit::from(Unit::Metre), |(unit, _)| unit)));
+        return Ok((at, unit.map_or(Unit::Metre.into(), |(unit, _)| unit)));
     }
-    let found =
-        header.cells.iter().enumerate().find_map(|(at, cell)| Some((at, unit_in_name(&cell.name, name)?)));
+    let mut cells = header.cells.iter().enumerate();
+    let found = cells.find_map(|(at, cell)| Some((at, unit_in_name(&cell.name, name)?)));
     match found.filter(|(_, unit)| unit.of() == Unit::Metre) {
         Some(found) => Ok(found),
-        None => {
-            Err(header.require(name, "for a point of the board", |_| false, "").err().unwrap_or_else(|| {
-                Error::new(ErrorKind::Measurement, format!("found no column `{name}`"))
-                    .at_line(header.path, header.line)
-            }))
-        }
+        None => Ok((header.require(name, "for a point of the board", |_| false, "")?, Unit::Metre.into())),
     }
 }
 
@@ -63,43 +61,35 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
     let name = ["target", "marker", "corner", "name"].iter().find(|name| header.count(name) > 0);
     let Some(name) = name else {
         let message = "found no column `target`, expected one with the names of the points";
-        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, header.line));
+        return Err(ErrorKind::Measurement.error(message).at_line(path, header.line));
     };
     let (name_at, of_board) = (header.find(name)?.unwrap_or(0), header.find("board")?);
     let columns = [coordinate(header, "x")?, coordinate(header, "y")?, coordinate(header, "z")?];
     let mut numbers = Numbers::new(None);
     let mut boards: Vec<Board> = Vec::new();
-    while let Some(mut rows) = table.next_block()? {
-        while let Some(row) = rows.next()? {
-            let text =
-                |at: usize| row.cells.get(at).map(|cell| cell.text().trim().to_owned()).unwrap_or_default();
-            let mut point = Vector3::zeros();
-            for ((value, (at, unit)), axis) in point.iter_mut().zip(columns).zip(["x", "y", "z"]) {
-                let words = (format!("`{axis}`"), axis);
-                *value = length_on_board(&row, (at, &text(at)), unit, (&mut numbers, (&words.0, words.1)))?;
-            }
-            let own = of_board.map(text).filter(|it| !it.is_empty()).unwrap_or_else(|| BOARD.to_owned());
-            let at = boards.iter().position(|it| it.name == own).unwrap_or_else(|| {
-                boards.push(Board { name: own, ..Board::default() });
-                boards.len() - 1
-            });
-            let Some(board) = boards.get_mut(at) else { continue };
-            // Points that are only numbered are named by their column too.
-            let word = text(name_at);
-            let point_name =
-                if word.bytes().all(|it| it.is_ascii_digit()) { format!("{name}{word}") } else { word };
-            if board.find(&point_name).is_some() {
-                let message = format!("found the point `{point_name}` a second time, expected it once");
-                return Err(row.error(name_at, message));
-            }
-            board.names.push(point_name);
-            board.points.push(point);
+    table.some_rows("the points of a board", |row| {
+        let mut point = Vector3::zeros();
+        for ((value, column), axis) in point.iter_mut().zip(columns).zip(["x", "y", "z"]) {
+            *value = length_on_board(row, column, &mut numbers, (&format!("`{axis}`"), axis))?;
         }
-    }
-    if boards.is_empty() {
-        let message = "found a header and no rows, expected the points of a board";
-        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
-    }
+        let own = Some(row.word(of_board)).filter(|it| !it.is_empty()).unwrap_or_else(|| BOARD.to_owned());
+        let at = boards.iter().position(|it| it.name == own).unwrap_or_else(|| {
+            boards.push(Board { name: own, ..Board::default() });
+            boards.len() - 1
+        });
+        let Some(board) = boards.get_mut(at) else { return Ok(()) };
+        // Points that are only numbered are named by their column too.
+        let word = row.word(Some(name_at));
+        let is_number = word.bytes().all(|it| it.is_ascii_digit());
+        let point_name = if is_number { format!("{name}{word}") } else { word };
+        if board.find(&point_name).is_some() {
+            let message = format!("found the point `{point_name}` a second time, expected it once");
+            return Err(row.error(name_at, message));
+        }
+        board.names.push(point_name);
+        board.points.push(point);
+        Ok(())
+    })?;
     Ok(boards)
 }
 
@@ -109,15 +99,13 @@ pub(crate) const FARTHEST_M: f64 = 10.0;
 /// A coordinate of a point of a board in a cell, metres; `of` says of what, and `axis` how its column is called.
 pub(crate) fn length_on_board(
     row: &Row<'_>,
-    (at, raw): (usize, &str),
-    unit: NamedUnit,
-    (numbers, (of, axis)): (&mut Numbers, (&str, &str)),
+    (at, unit): Coordinate,
+    numbers: &mut Numbers,
+    (of, axis): (&str, &str),
 ) -> Result<f64> {
-    let found = numbers.parse(raw, row.line);
-    let found =
-        found.map_err(|expected| row.error(at, format!("found `{raw}` for {of}, expected {expected}")))?;
-    let value = unit.to_si(found);
+    let value = unit.to_si(row.number(at, numbers, format_args!(" for {of}"))?);
     if value.abs() > FARTHEST_M {
+        let raw = row.raw(at);
         let message = format!(
             "found `{raw}` for {of}, {value} m, expected a point of a board: state the unit of the column, as {axis}[mm]"
         );

@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::pictures::lens_checks::{EXPECTED, size_of_pictures};
-use crate::table::cells::Cell;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;
 use crate::table::{Row, Table};
 use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens};
-use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::yaml::Leaf;
 
@@ -19,13 +18,13 @@ use poecal_storage::yaml::Leaf;
 struct CameraColumns {
     name: Option<usize>,
     /// Of the numbers of a lens.
-    numbers: Vec<Option<usize>>,
+    numbers: [Option<usize>; LENS_NAMES.len()],
     /// Width and height of its pictures.
     size: [Option<usize>; 2],
     model: Option<usize>,
     version: Option<usize>,
-    /// Names of all columns.
-    names: Vec<String>,
+    /// Columns that are not read, with their names.
+    others: Vec<(usize, String)>,
 }
 
 /// A camera of a table with its version and its line.
@@ -36,143 +35,98 @@ pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Came
     let map = ColumnMap::default();
     let mut table = Table::open(path, Blocks::open(path, "a camera (CSV)")?, &map)?;
     let columns = CameraColumns::find(&table.header)?;
-    let mut cameras: Vec<CameraRow> = Vec::new();
-    let mut reader = Numbers::new(None);
-    let mut others: Vec<Leaf> = Vec::new();
-    while let Some(mut rows) = table.next_block()? {
-        while let Some(row) = rows.next()? {
-            others.extend(columns.others(&row));
-            cameras.push(columns.read(&mut reader, &row)?);
-        }
-    }
+    let (mut cameras, mut others) = (Vec::new(), Vec::new());
+    let mut numbers = Numbers::new(None);
+    table.some_rows(EXPECTED, |row| {
+        others.extend(columns.others.iter().map(|(at, name)| Leaf {
+            path: vec![name.clone()],
+            text: row.word(Some(*at)),
+            line: row.line,
+        }));
+        cameras.push(columns.read(&mut numbers, row)?);
+        Ok(())
+    })?;
     if let Some(version) = version {
-        let known: Vec<String> = cameras.iter().map(|it| it.1.clone()).collect();
+        let known: Vec<String> = cameras.iter().map(|it: &CameraRow| it.1.clone()).collect();
         cameras.retain(|(_, own, _)| own == version);
         if cameras.is_empty() {
             let message = format!("found the version `{version}`, expected one of {}", first_few(&known));
-            return Err(Error::new(ErrorKind::Option, message).in_file(path));
+            return Err(ErrorKind::Option.error(message).in_file(path));
         }
     }
-    refuse_twice(&table, columns.name.is_some(), &cameras)?;
-    if cameras.is_empty() {
-        let message = format!("found a header and no rows, expected {EXPECTED}");
-        return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
-    }
-    let said = other_keys(&others, 0, |_| false, (KeysOf::Pictures, path))?
-        .map(|it| format!("{}: {it}", path.display()));
+    refuse_twice(&table.header, columns.name.is_some(), &cameras)?;
+    let said = other_keys(&others, 0, |_| false, (KeysOf::Pictures, path))?;
     Ok((cameras.into_iter().map(|(camera, ..)| camera).collect(), said.into_iter().collect()))
 }
 
 impl CameraColumns {
-    /// The cells of a row that are not read.
-    fn others(&self, row: &Row<'_>) -> Vec<Leaf> {
-        let CameraColumns { name, numbers, size, model, version, .. } = self;
-        let read = numbers.iter().chain(size).chain([name, model, version]).flatten().copied();
-        let read: Vec<usize> = read.collect();
-        let cells = row.cells.iter().enumerate().filter(|(at, _)| !read.contains(at));
-        let leaf = |(at, cell): (usize, &Cell<'_>)| {
-            let name = self.names.get(at).filter(|it| !it.is_empty())?;
-            Some(Leaf { path: vec![name.clone()], text: cell.text().trim().to_owned(), line: row.line })
-        };
-        cells.filter_map(leaf).collect()
-    }
-
     /// Finds the columns in a header.
     fn find(header: &Header<'_>) -> Result<Self> {
-        let place = |name: &str| header.require(name, "for the camera", |_| false, "");
-        let name = match header.find("name")? {
-            Some(at) => Some(at),
-            None => header.find("camera")?,
-        };
-        let first = [place("fx")?, place("fy")?, place("cx")?, place("cy")?];
-        let mut numbers: Vec<Option<usize>> = first.map(Some).to_vec();
-        for own in &LENS_NAMES[4..] {
-            numbers.push(header.find(own)?);
+        let name = header.find("name")?.map_or_else(|| header.find("camera"), |at| Ok(Some(at)))?;
+        let mut numbers = [None; LENS_NAMES.len()];
+        for (at, (column, own)) in numbers.iter_mut().zip(LENS_NAMES).enumerate() {
+            let is_required = at < 4;
+            *column = if is_required {
+                Some(header.require(own, "for the camera", |_| false, "")?)
+            } else {
+                header.find(own)?
+            };
         }
         let size = [header.find("width")?, header.find("height")?];
         let (model, version) = (header.find("model")?, header.find("version")?);
-        let names = header.cells.iter().map(|cell| cell.name.clone()).collect();
-        Ok(CameraColumns { name, numbers, size, model, version, names })
+        let read: Vec<usize> =
+            numbers.iter().chain(&size).chain([&name, &model, &version]).copied().flatten().collect();
+        let others = header.cells.iter().map(|cell| cell.name.clone()).enumerate();
+        let others = others.filter(|(at, name)| !read.contains(at) && !name.is_empty()).collect();
+        Ok(CameraColumns { name, numbers, size, model, version, others })
     }
 
     /// The camera of a row, with its version and its line.
     fn read(&self, reader: &mut Numbers, row: &Row<'_>) -> Result<CameraRow> {
-        let mut lens = [0.0; LENS_NAMES.len()];
-        for ((number, column), own) in lens.iter_mut().zip(&self.numbers).zip(LENS_NAMES) {
-            if let Some(value) = column.map(|at| cell(reader, row, at, own)).transpose()?.flatten() {
-                *number = value;
-            }
+        let mut number = |column: &Option<usize>, name: &str| {
+            let Some(at) = column.filter(|at| !row.raw(*at).is_empty()) else { return Ok(None) };
+            row.number(at, reader, format_args!(" for `{name}`")).map(Some)
+        };
+        let mut numbers = [0.0; LENS_NAMES.len()];
+        for ((value, column), own) in numbers.iter_mut().zip(&self.numbers).zip(LENS_NAMES) {
+            *value = number(column, own)?.unwrap_or(0.0);
         }
-        let size = self.size.map(|column| column.map(|at| cell(reader, row, at, "size")).transpose());
-        let [width, height] = size;
-        let size_px = match (width?.flatten(), height?.flatten()) {
-            (Some(width), Some(height)) => {
-                let found = size_of_pictures([width, height]);
-                Some(found.map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?)
-            }
-            _ => None,
-        };
-        let word = |column: Option<usize>| {
-            column.and_then(|at| row.cells.get(at)).map(|it| it.text().trim().to_owned())
-        };
-        let is_fisheye = ["fisheye", "equidistant"]
-            .contains(&word(self.model).unwrap_or_default().to_lowercase().as_str());
-        let lens = lens_of(&lens, is_fisheye, size_px);
-        let own = word(self.version).unwrap_or_default();
+        let size = [number(&self.size[0], "size")?, number(&self.size[1], "size")?];
+        let size_px =
+            size_of_pictures(size).map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?;
+        let is_fisheye = ["fisheye", "equidistant"].contains(&row.word(self.model).to_lowercase().as_str());
         // The only one needs no name.
-        let name = self.name.map_or_else(|| "camera".to_owned(), |at| word(Some(at)).unwrap_or_default());
-        Ok((Camera::new(name, lens), own, row.line))
+        let name = self.name.map_or_else(|| "camera".to_owned(), |at| row.word(Some(at)));
+        Ok((Camera::new(name, lens_of(numbers, is_fisheye, size_px)), row.word(self.version), row.line))
     }
 }
 
 /// Refuses two cameras of one name.
-fn refuse_twice(table: &Table<'_>, is_named: bool, cameras: &[CameraRow]) -> Result<()> {
-    let path = table.header.path;
+fn refuse_twice(header: &Header<'_>, is_named: bool, cameras: &[CameraRow]) -> Result<()> {
     let mut firsts: BTreeMap<&str, &CameraRow> = BTreeMap::new();
     for row in cameras {
+        let Some((_, other, first)) = firsts.insert(&row.0.name, row) else { continue };
         let (camera, own, line) = row;
-        let first = *firsts.entry(&camera.name).or_insert(row);
-        if !std::ptr::eq(first, row) {
-            let (_, other, first) = first;
-            if !is_named && own == other {
-                return Err(header_without_names(table));
-            }
-            let file = path.display();
-            let advice = if own == other {
-                String::new()
-            } else {
-                format!(": choose one with --camera {file}#{other} or --camera {file}#{own}")
-            };
-            let message = format!(
-                "found the camera `{}` a second time (line {first} is the first), expected it once{advice}",
-                camera.name
-            );
-            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, *line));
+        if !is_named && own == other {
+            header.require("name", "for the name of each camera", |_| false, "")?;
         }
+        let file = header.path.display();
+        let advice = if own == other {
+            String::new()
+        } else {
+            format!(": choose one with --camera {file}#{other} or --camera {file}#{own}")
+        };
+        let message = format!(
+            "found the camera `{}` a second time (line {first} is the first), expected it once{advice}",
+            camera.name
+        );
+        return Err(ErrorKind::Measurement.error(message).at_line(header.path, *line));
     }
     Ok(())
 }
 
-/// The error of several cameras without names.
-fn header_without_names(table: &Table<'_>) -> Error {
-    let missing = table.header.require("name", "for the name of each camera", |_| false, "");
-    missing.err().unwrap_or_else(|| Error::new(ErrorKind::Measurement, "found cameras without names"))
-}
-
-/// The number of a cell; `None` of an empty one.
-fn cell(numbers: &mut Numbers, row: &Row<'_>, at: usize, name: &str) -> Result<Option<f64>> {
-    let raw = row.cells.get(at).map_or("", |cell| cell.raw);
-    if raw.is_empty() {
-        return Ok(None);
-    }
-    let found = numbers.parse(raw, row.line);
-    let found = found
-        .map_err(|expected| row.error(at, format!("found `{raw}` for `{name}`, expected {expected}")))?;
-    Ok(Some(found))
-}
-
-fn lens_of(numbers: &[f64; LENS_NAMES.len()], is_fisheye: bool, size_px: Option<[u32; 2]>) -> Lens {
-    let [fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6] = *numbers;
+fn lens_of(numbers: [f64; LENS_NAMES.len()], is_fisheye: bool, size_px: Option<[u32; 2]>) -> Lens {
+    let [fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6] = numbers;
     let distortion = if is_fisheye {
         // A table names them k1 to k4, a list has them in this order.
         Distortion::Fisheye(if p1 == 0.0 && p2 == 0.0 { [k1, k2, k3, k4] } else { [k1, k2, p1, p2] })

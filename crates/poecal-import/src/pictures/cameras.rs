@@ -10,7 +10,7 @@ use super::unknown_camera::{UNKNOWN, unknown};
 use crate::pictures::lens_checks::{EXPECTED, check, size_of_pictures};
 use crate::stored_pictures::stored_cameras;
 use poecal_model::camera::{Camera, Distortion, Lens};
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::is_file;
 use poecal_storage::limits::Limit;
 use poecal_storage::source_text::read_up_to;
@@ -34,20 +34,18 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
         return Ok(CameraFile { cameras: vec![unknown(size, typed)?], said: Vec::new() });
     }
     let (path, version) = camera_file(typed).unwrap_or((Path::new(typed), None));
-    let extension = path.extension().map(|it| it.to_ascii_lowercase());
-    let is = |names: &[&str]| extension.as_ref().is_some_and(|it| names.iter().any(|name| it == name));
-    let (cameras, said) = if is(&["yaml", "yml"]) {
-        read_yaml(&read_up_to(path, "a camera (YAML)", Limit::Settings)?, path)?
-    } else if is(&["json"]) {
-        (stored_cameras(path)?, Vec::new())
-    } else if is(&["xml"]) {
-        (read_visp(&read_up_to(path, "a camera (XML)", Limit::Settings)?, path)?, Vec::new())
-    } else {
-        read_table(path, version)?
+    let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
+    let text = |what: &str| read_up_to(path, what, Limit::Settings);
+    let (cameras, said) = match ending.as_deref() {
+        Some("yaml" | "yml") => read_yaml(&text("a camera (YAML)")?, path)?,
+        Some("json") => (stored_cameras(path)?, Vec::new()),
+        Some("xml") => (read_visp(&text("a camera (XML)")?, path)?, Vec::new()),
+        _ => read_table(path, version)?,
     };
     for Camera { name, lens, .. } in &cameras {
         check(name, lens).map_err(|error| error.in_file(path))?;
     }
+    let said = said.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
     Ok(CameraFile { cameras, said })
 }
 
@@ -70,13 +68,13 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
     for node in document.descendants().filter(|node| node.has_tag_name("camera")) {
         let camera = visp_camera(node).map_err(|(at, message)| {
             let place = document.text_pos_at(at);
-            Error::new(ErrorKind::Measurement, message).at(path, place.row as usize, place.col as usize)
+            ErrorKind::Measurement.error(message).at(path, place.row as usize, place.col as usize)
         })?;
         cameras.extend(camera.filter(|camera| !cameras.iter().any(|it| it.name == camera.name)));
     }
     if cameras.is_empty() {
-        return Err(Error::new(ErrorKind::Measurement, format!("found no `<camera>`, expected {EXPECTED}"))
-            .in_file(path));
+        let message = format!("found no `<camera>`, expected {EXPECTED}");
+        return Err(ErrorKind::Measurement.error(message).in_file(path));
     }
     Ok(cameras)
 }
@@ -85,21 +83,20 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
 fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize, String)> {
     let text = |of: Node<'_, '_>, name: &str| {
         let child = of.children().find(|child| child.has_tag_name(name));
-        child.and_then(|child| child.text()).map(|text| text.trim().to_owned())
+        child.and_then(|child| child.text()).map_or_else(String::new, |text| text.trim().to_owned())
     };
-    let number = |of: Node<'_, '_>, name: &str| {
-        text(of, name).and_then(|it| it.parse::<f64>().ok()).filter(|it| it.is_finite())
+    let number = |of: Node<'_, '_>, name: &str| text(of, name).parse().ok().filter(|it: &f64| it.is_finite());
+    let models = || node.children().filter(|child| child.has_tag_name("model"));
+    let is_read = |model: &Node<'_, '_>| {
+        let kind = text(*model, "type");
+        kind.is_empty() || VISP_MODELS.contains(&kind.as_str())
     };
-    let kind = |model: &Node<'_, '_>| text(*model, "type").unwrap_or_default();
-    let is_read =
-        |model: &Node<'_, '_>| kind(model).is_empty() || VISP_MODELS.contains(&kind(model).as_str());
-    let models: Vec<Node<'_, '_>> = node.children().filter(|child| child.has_tag_name("model")).collect();
     // The model with distortion, where both are there.
-    let chosen = models.iter().copied().filter(is_read).max_by_key(|model| number(*model, "kud").is_some());
+    let chosen = models().filter(is_read).max_by_key(|model| number(*model, "kud").is_some());
     let Some(model) = chosen else {
-        let Some(other) = models.first() else { return Ok(None) };
-        let message = format!("found the model `{}`, expected {}", kind(other), VISP_MODELS.join(" or "));
-        return Err((other.range().start, message));
+        let Some(other) = models().next() else { return Ok(None) };
+        let (found, expected) = (text(other, "type"), VISP_MODELS.join(" or "));
+        return Err((other.range().start, format!("found the model `{found}`, expected {expected}")));
     };
     let [Some(px), Some(py), Some(u0), Some(v0)] = ["px", "py", "u0", "v0"].map(|name| number(model, name))
     else {
@@ -108,14 +105,8 @@ fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize
     };
     let mut k = [0.0; 8];
     k[0] = number(model, "kud").unwrap_or(0.0);
-    let size = ["image_width", "image_height"].map(|name| number(node, name));
-    let size_px = match size {
-        [Some(width), Some(height)] => {
-            let found = size_of_pictures([width, height]);
-            Some(found.map_err(|error| (node.range().start, error.to_string()))?)
-        }
-        _ => None,
-    };
+    let size_px = size_of_pictures(["image_width", "image_height"].map(|name| number(node, name)))
+        .map_err(|error| (node.range().start, error.to_string()))?;
     let lens = Lens { focal_px: [px, py], centre_px: [u0, v0], distortion: Distortion::Brown(k), size_px };
-    Ok(Some(Camera::new(text(node, "name").unwrap_or_default(), lens)))
+    Ok(Some(Camera::new(text(node, "name"), lens)))
 }

@@ -1,40 +1,15 @@
 //! The columns of files of pictures: what each means, and what HALCON, OpenCV and scripts around them call it.
 
+use super::boards::Coordinate;
 use crate::table::header::{Header, HeaderCell, unit_in_name};
 use crate::table::inputs::Range;
 use crate::table::kinds;
 use crate::table::mapping::ColumnMap;
-use crate::table::numbered::plain;
+use crate::table::roles::{Role, plain};
 use crate::table::understanding::ColumnUnderstanding;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
-
-/// Names of the pixel along and down the picture, ours first; case, separators and the unit px do not count. HALCON's row and column have their zero in
-/// the centre of the first pixel, as OpenCV's.
-const PIXELS: [[&str; 2]; 7] = [
-    ["u", "v"],
-    ["column", "row"],
-    ["col", "row"],
-    ["xpx", "ypx"],
-    ["px", "py"],
-    ["pixelx", "pixely"],
-    ["imagex", "imagey"],
-];
-/// Names of the corner.
-const CORNER: [&str; 8] = ["target", "corner", "cornerid", "id", "index", "mark", "point", "marker"];
-/// Names of the picture.
-const PICTURE: [&str; 6] = ["image", "picture", "file", "filename", "frame", "imageid"];
-/// Names of the standard deviation.
-const SIGMA: [&str; 2] = ["sigma", "sigmapx"];
-/// Names of the camera and of the board.
-const CAMERA: [&str; 1] = ["camera"];
-const BOARD: [&str; 1] = ["board"];
-/// What stands before x, y and z where they are the place of the corner on its board.
-const ON_BOARD: [&str; 5] = ["", "obj_", "object_", "obj", "object"];
-
-/// A column of a coordinate on the board, with its unit.
-type Coordinate = (usize, NamedUnit);
 
 /// Columns of a file of corners.
 #[derive(Clone, Debug)]
@@ -60,7 +35,11 @@ fn key(cell: &HeaderCell) -> String {
 }
 
 /// The column that has the first of some names which is there, and is no joint's; a second one of that name is an error.
-fn column(header: &Header<'_>, names: &[&str], joints: &[String]) -> Result<Option<usize>> {
+fn column(
+    header: &Header<'_>,
+    names: impl IntoIterator<Item = &'static str>,
+    joints: &[String],
+) -> Result<Option<usize>> {
     let keys: Vec<String> = header.cells.iter().map(key).collect();
     for name in names {
         let is_it = |key: &String| key == name || key.strip_suffix("px") == Some(name);
@@ -69,11 +48,10 @@ fn column(header: &Header<'_>, names: &[&str], joints: &[String]) -> Result<Opti
             cells.filter(|(_, (cell, key))| is_it(key) && !joints.contains(&cell.name)).map(|(at, _)| at);
         let Some(first) = found.next() else { continue };
         let Some(second) = found.next() else { return Ok(Some(first)) };
-        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
         let message = format!(
             "found a second column `{}` beside `{}`, expected one; rename or remove one of them",
-            text(second),
-            text(first)
+            header.text(second),
+            header.text(first)
         );
         return Err(header.error(ErrorKind::Measurement, second, message));
     }
@@ -98,21 +76,20 @@ fn pixels(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<Opt
     if is_measured(header, map) {
         return Ok(None);
     }
-    let mut found: Vec<[usize; 2]> = Vec::new();
-    for [u, v] in PIXELS {
-        let both = column(header, &[u], joints)?.zip(column(header, &[v], joints)?);
-        found.extend(both.map(<[usize; 2]>::from));
+    let mut found: Option<[usize; 2]> = None;
+    for (u, v) in Role::Pixel.rows().filter_map(|names| names.split_once(' ')) {
+        let both = column(header, [u], joints)?.zip(column(header, [v], joints)?);
+        if let (Some([first, _]), Some((second, _))) = (found, both) {
+            let message = format!(
+                "found the pixel in column `{}` and again in `{}`, expected it once: call the two columns that are meant u[px] and v[px]",
+                header.text(first),
+                header.text(second)
+            );
+            return Err(header.error(ErrorKind::Measurement, second, message));
+        }
+        found = found.or(both.map(<[usize; 2]>::from));
     }
-    if let [[first, _], [second, _], ..] = *found {
-        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
-        let message = format!(
-            "found the pixel in column `{}` and again in `{}`, expected it once: call the two columns that are meant u[px] and v[px]",
-            text(first),
-            text(second)
-        );
-        return Err(header.error(ErrorKind::Measurement, second, message));
-    }
-    Ok(found.into_iter().next())
+    Ok(found)
 }
 
 /// Whether the columns of a file are those of corners.
@@ -132,19 +109,19 @@ pub(crate) fn are_readings_of_pictures(header: &Header<'_>, joints: &[String], m
 
 /// The column of the picture's name.
 pub(crate) fn picture(header: &Header<'_>, joints: &[String]) -> Result<Option<usize>> {
-    column(header, &PICTURE, joints)
+    column(header, Role::Picture.words().chain(Role::Frame.words()), joints)
 }
 
 /// The columns of the place on the board.
 fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
-    for before in ON_BOARD {
-        let names = ["x", "y", "z"].map(|axis| format!("{before}{axis}"));
-        let [Some(x), Some(y), Some(z)] = names.each_ref().map(|name| of_length(header, name)) else {
-            continue;
-        };
-        return Ok(Some([x?, y?, z?]));
-    }
-    Ok(None)
+    let before = Role::OnBoard.words().flat_map(|word| [format!("{word}_"), word.to_owned()]);
+    let found = std::iter::once(String::new()).chain(before).find_map(|before| {
+        let of = ["x", "y", "z"].map(|axis| of_length(header, &format!("{before}{axis}")));
+        let [Some(x), Some(y), Some(z)] = of else { return None };
+        Some([x, y, z])
+    });
+    let Some([x, y, z]) = found else { return Ok(None) };
+    Ok(Some([x?, y?, z?]))
 }
 
 /// A column of a length whose name is this one but for its case and unit.
@@ -177,14 +154,14 @@ impl CornerColumns {
         (map, has_boards): (&ColumnMap, bool),
     ) -> Result<Option<Self>> {
         let Some([u, v]) = pixels(header, joints, map)? else { return Ok(None) };
-        let sigma = column(header, &SIGMA, joints)?;
+        let sigma = column(header, Role::PixelSigma.words(), joints)?;
         for column in [Some(u), Some(v), sigma].into_iter().flatten() {
             if !header.cells.get(column).is_some_and(|cell| cell.units().all(is_pixel)) {
                 header.only_unit(column, "px")?;
             }
         }
         let place = place(header)?;
-        let name = match column(header, &CORNER, joints)? {
+        let name = match column(header, Role::Corner.words(), joints)? {
             // What counts rows, where the file says where the corner is.
             Some(at) if place.is_some() && is_count(header, at) => None,
             name => name,
@@ -198,8 +175,8 @@ impl CornerColumns {
             sigma,
             name,
             place: place.filter(|_| name.is_none() || !has_boards),
-            camera: column(header, &CAMERA, joints)?,
-            board: column(header, &BOARD, joints)?,
+            camera: column(header, Role::Camera.words(), joints)?,
+            board: column(header, Role::Board.words(), joints)?,
             image: picture(header, joints)?,
         }))
     }
@@ -213,14 +190,11 @@ impl CornerColumns {
     /// Meaning and column of each.
     fn all(&self) -> Vec<(&'static str, usize)> {
         let mut all = vec![("u", self.u), ("v", self.v)];
-        let more = [
-            ("sigma", self.sigma),
-            ("target", self.name),
-            ("image", self.image),
-            ("camera", self.camera),
-            ("board", self.board),
-        ];
-        all.extend(more.into_iter().filter_map(|(name, at)| Some((name, at?))));
+        let (names, more) = (
+            ["sigma", "target", "image", "camera", "board"],
+            [self.sigma, self.name, self.image, self.camera, self.board],
+        );
+        all.extend(names.into_iter().zip(more).filter_map(|(name, at)| Some((name, at?))));
         let place = self.place.iter().flatten().map(|(at, _)| *at);
         all.extend(["point x", "point y", "point z"].into_iter().zip(place));
         all
@@ -238,34 +212,29 @@ impl CornerColumns {
 
     /// What was taken for what, of columns whose name is not ours; `None` if all are ours.
     pub(crate) fn words(&self, header: &Header<'_>) -> Option<String> {
-        let text = |at: usize| header.cells.get(at).map_or("", |cell| cell.text.as_str());
         let is_foreign =
             |(name, at): &(&str, usize)| header.cells.get(*at).is_some_and(|cell| cell.name != *name);
         let foreign = self.all().into_iter().filter(is_foreign);
-        let words: Vec<String> = foreign.map(|(name, at)| format!("`{}` for {name}", text(at))).collect();
+        let words: Vec<String> =
+            foreign.map(|(name, at)| format!("`{}` for {name}", header.text(at))).collect();
         (!words.is_empty()).then(|| format!("took {}", words.join(", ")))
     }
 
     /// How they were read, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
     pub(crate) fn understood(&self, header: &Header<'_>, seen: &[Range; 3]) -> Vec<ColumnUnderstanding> {
         let of = |(name, at): (&'static str, usize)| {
-            let range = match name {
-                "u" => seen[0],
-                "v" => seen[1],
-                "sigma" => seen[2],
-                _ => Range::default(),
-            };
+            let pixel = ["u", "v", "sigma"].into_iter().zip(seen).find(|it| it.0 == name).map(|it| it.1);
             let place = self.place.iter().flatten().find(|(own, _)| *own == at);
-            let stated = header.cells.get(at).is_some_and(|cell| cell.units().next().is_some());
-            let is_pixel = ["u", "v", "sigma"].contains(&name);
-            let unit = if is_pixel { Some("px") } else { place.map(|(_, unit)| unit.symbol()) };
+            let unit = pixel.map(|_| "px").or(place.map(|(_, unit)| unit.symbol()));
+            let (cell, range) = (header.cells.get(at), pixel.and_then(|it| it.0));
+            let is_stated = cell.is_some_and(|cell| cell.units().next().is_some());
             ColumnUnderstanding {
                 name: name.to_owned(),
-                column: header.cells.get(at).map(|cell| cell.text.clone()),
+                column: cell.map(|cell| cell.text.clone()),
                 unit,
-                unit_from: (unit.is_some() && stated).then_some(UnitSource::Header),
-                min: range.0.map(|(min, _)| min),
-                max: range.0.map(|(_, max)| max),
+                unit_from: unit.filter(|_| is_stated).map(|_| UnitSource::Header),
+                min: range.map(|(min, _)| min),
+                max: range.map(|(_, max)| max),
             }
         };
         self.all().into_iter().map(of).collect()

@@ -3,10 +3,9 @@
 use nalgebra::Vector3;
 
 use super::board_words::BOARD;
-use super::boards::length_on_board;
+use super::boards::{Coordinate, length_on_board};
 use super::corner_columns::CornerColumns;
 use super::gathering::{Gathering, not_a_point};
-use super::pixels::text;
 use crate::read::Reader;
 use crate::table::Row;
 use crate::table::number::Numbers;
@@ -31,30 +30,23 @@ fn board_before<'a>(board: &Board, name: &'a str) -> Option<&'a str> {
 impl Reader<'_> {
     /// Index of the row's board, by the columns of its name and of the corner's.
     pub(crate) fn board(&mut self, row: &Row<'_>, columns: &CornerColumns) -> Result<usize> {
-        let corner = text(row, columns.name).unwrap_or_default();
         let only = self.options.boards.first().filter(|_| self.options.boards.len() == 1);
-        let name = text(row, columns.board)
-            .filter(|name| !name.is_empty())
-            .or_else(|| Some(board_before(only?, &corner)?.to_owned()));
+        let stated = Some(row.word(columns.board)).filter(|name| !name.is_empty());
+        let name = stated.or_else(|| Some(board_before(only?, &row.word(columns.name))?.to_owned()));
         // Boards that the rows themselves state are named, or there is one.
         let is_of_file = self.options.boards.is_empty() && columns.place.is_some();
-        let name = name.or_else(|| is_of_file.then(|| BOARD.to_owned()));
-        let Some(name) = name else { return Ok(0) };
+        let Some(name) = name.or_else(|| is_of_file.then(|| BOARD.to_owned())) else { return Ok(0) };
         if let Some(at) = self.boards.iter().position(|it| it.name == name) {
             return Ok(at);
         }
         // One board that is at several places, by its names there.
-        let new = match only {
-            Some(again) => Some(Board { name: name.clone(), ..again.clone() }),
-            None => is_of_file.then(|| Board { name: name.clone(), ..Board::default() }),
+        let Some(again) = only.cloned().or_else(|| is_of_file.then(Board::default)) else {
+            let names: Vec<&str> = self.boards.iter().map(|it| it.name.as_str()).collect();
+            let message = format!("found the board `{name}`, expected one of {}", first_few(&names));
+            return Err(row.error(columns.board.unwrap_or(columns.corner()), message));
         };
-        if let Some(board) = new {
-            self.boards.push(board);
-            return Ok(self.boards.len() - 1);
-        }
-        let names: Vec<&str> = self.boards.iter().map(|it| it.name.as_str()).collect();
-        let message = format!("found the board `{name}`, expected one of {}", first_few(&names));
-        Err(row.error(columns.board.unwrap_or(columns.corner()), message))
+        self.boards.push(Board { name, ..again });
+        Ok(self.boards.len() - 1)
     }
 
     /// Index of the row's corner on its board; of one that is numbered, the number.
@@ -64,19 +56,18 @@ impl Reader<'_> {
         columns: &CornerColumns,
         (board, gathering): (usize, &mut Gathering),
     ) -> Result<u32> {
-        let name = text(row, columns.name);
-        if columns.place.is_some() {
-            return self.point_at(row, columns, (board, name));
+        if let Some(place) = columns.place {
+            return self.point_at(row, columns.name, (board, place));
         }
-        let (name, column) = (name.unwrap_or_default(), columns.corner());
+        let (name, column) = (row.word(columns.name), columns.corner());
         let Some(own) = self.boards.get(board) else { return Ok(0) };
         let place = row.place(column);
         if let Some(at) = point_of(own, &name) {
             gathering.named.entry(board).or_insert((name, place));
             return Ok(u32::try_from(at).unwrap_or(u32::MAX));
         }
-        let is_number = !name.is_empty() && name.bytes().all(|it| it.is_ascii_digit());
         let has_numbers = gathering.numbers.contains_key(&board) || !own.numbered().is_empty();
+        let is_number = name.bytes().all(|it| it.is_ascii_digit());
         match name.parse::<u32>() {
             Ok(number) if is_number && has_numbers => {
                 gathering.numbers.entry(board).or_default().entry(number).or_insert(place);
@@ -90,37 +81,40 @@ impl Reader<'_> {
     fn point_at(
         &mut self,
         row: &Row<'_>,
-        columns: &CornerColumns,
-        (board, name): (usize, Option<String>),
+        name: Option<usize>,
+        (board, columns): (usize, [Coordinate; 3]),
     ) -> Result<u32> {
-        let Some((place, at)) = place(row, columns, &mut Numbers::new(self.map.decimal))? else {
-            return Ok(0);
-        };
+        let (mut numbers, mut place) = (Numbers::new(self.map.decimal), Vector3::zeros());
+        for (value, column) in place.iter_mut().zip(columns) {
+            *value = length_on_board(row, column, &mut numbers, ("a place on the board", "X"))?;
+        }
+        let at = columns[0].0;
         let is_stated = !self.options.boards.is_empty();
         let Some(own) = self.boards.get_mut(board) else { return Ok(0) };
-        let index = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
         // A point without a name is called by its place, which stays its name where the board is bent by a calibration.
         let [x, y, z] = [place.x, place.y, place.z].map(|it| (1e6 * it).round() / 1e3 + 0.0);
-        let called = name.clone().unwrap_or_else(|| format!("{x}/{y}/{z}"));
-        let named = own.find(&called);
+        let called = if name.is_some() { row.word(name) } else { format!("{x}/{y}/{z}") };
         let near = |at: &usize| own.points.get(*at).is_some_and(|it| (it - place).norm() <= SAME_M);
-        if let (Some(named), Some(name)) = (named.filter(|at| !near(at)), &name) {
+        let named = own.find(&called);
+        let apart = |it: &&Vector3<f64>| name.is_some() && (*it - place).norm() > SAME_M;
+        if let Some(point) = named.and_then(|at| own.points.get(at)).filter(apart) {
             let message = format!(
-                "found the corner `{name}` at {}, expected {} as in the row before: a point of a board stays where it is",
+                "found the corner `{called}` at {}, expected {} as in the row before: a point of a board stays where it is",
                 millimetres(&place),
-                own.points.get(named).map(millimetres).unwrap_or_default()
+                millimetres(point)
             );
             return Err(row.error(at, message));
         }
-        if let Some(found) = named.or_else(|| (0..own.points.len()).find(near)) {
-            return Ok(index(found));
-        }
-        if is_stated {
+        let found = named.or_else(|| (0..own.points.len()).find(near));
+        if found.is_none() && is_stated {
             return Err(far_from(row, at, &place, own));
         }
-        own.names.push(called);
-        own.points.push(place);
-        Ok(index(own.points.len() - 1))
+        let found = found.unwrap_or_else(|| {
+            own.names.push(called);
+            own.points.push(place);
+            own.points.len() - 1
+        });
+        Ok(u32::try_from(found).unwrap_or(u32::MAX))
     }
 
     /// What boards a file stated by the places of its corners, in words.
@@ -141,21 +135,6 @@ impl Reader<'_> {
     }
 }
 
-/// The place on the board in a row, metres, and its first column.
-fn place(
-    row: &Row<'_>,
-    columns: &CornerColumns,
-    numbers: &mut Numbers,
-) -> Result<Option<(Vector3<f64>, usize)>> {
-    let Some(own) = columns.place else { return Ok(None) };
-    let mut point = Vector3::zeros();
-    for (value, (at, unit)) in point.iter_mut().zip(own) {
-        let raw = row.cells.get(at).map_or("", |cell| cell.raw);
-        *value = length_on_board(row, (at, raw), unit, (&mut *numbers, ("a place on the board", "X")))?;
-    }
-    Ok(Some((point, own.map(|(at, _)| at)[0])))
-}
-
 fn millimetres(point: &Vector3<f64>) -> String {
     let [x, y, z] = [point.x, point.y, point.z].map(|it| (1e6 * it).round() / 1e3);
     format!("({x}, {y}, {z}) mm")
@@ -165,11 +144,11 @@ fn millimetres(point: &Vector3<f64>) -> String {
 fn far_from(row: &Row<'_>, at: usize, place: &Vector3<f64>, board: &Board) -> Error {
     let distance = |index: &usize| board.points.get(*index).map_or(f64::MAX, |it| (it - place).norm());
     let nearest = (0..board.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+    let name = board.names.get(nearest).map_or("", String::as_str);
     let message = format!(
-        "found a corner at {} on its board, where the board of --markers has no point (the nearest is `{}` at {}), expected the same points in its \
+        "found a corner at {} on its board, where the board of --markers has no point (the nearest is `{name}` at {}), expected the same points in its \
          frame: leave --markers out to take the board from this file",
         millimetres(place),
-        board.names.get(nearest).map_or("", String::as_str),
         board.points.get(nearest).map(millimetres).unwrap_or_default()
     );
     row.error(at, message)

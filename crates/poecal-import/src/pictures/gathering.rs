@@ -8,17 +8,15 @@ use crate::table::picture_names::Partners;
 use poecal_model::camera::{Board, Corner};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
-/// A board in a picture, as its corners were read, with the readings of its joints.
-pub(crate) struct Sight<T> {
-    pub(crate) taken: T,
+/// A board in a picture, as its corners were read.
+pub(crate) struct Sight {
+    /// The readings of the joints, unless another file has them.
+    pub(crate) taken: Option<Taken>,
     pub(crate) image: Option<String>,
     pub(crate) camera: usize,
     pub(crate) board: usize,
     pub(crate) corners: Vec<Corner>,
 }
-
-/// With readings that are known.
-pub(crate) type Gathered = Sight<Taken>;
 
 /// Line and column.
 type Place = (usize, usize);
@@ -26,19 +24,12 @@ type Place = (usize, usize);
 /// Pictures of a file, in the order in which they begin.
 #[derive(Default)]
 pub(crate) struct Gathering {
-    pub(crate) pictures: Vec<Sight<Option<Taken>>>,
+    pub(crate) pictures: Vec<Sight>,
     pub(crate) known: BTreeMap<(String, usize, usize), usize>,
     /// Of each board the numbers by which its points are called, and where each stands first.
     pub(crate) numbers: BTreeMap<usize, BTreeMap<u32, Place>>,
     /// Of each board the first point that is called by its name.
     pub(crate) named: BTreeMap<usize, (String, Place)>,
-}
-
-/// How the pictures of two files were joined, in words, and what was left out.
-#[derive(Default)]
-pub(crate) struct Joined {
-    pub(crate) pictures: Vec<Gathered>,
-    pub(crate) words: Vec<String>,
 }
 
 impl Gathering {
@@ -50,13 +41,10 @@ impl Gathering {
         let all =
             || numbers.iter().flat_map(|(at, all)| all.iter().map(|(number, place)| (*at, *number, *place)));
         let beyond = all().find(|(at, number, _)| point(*at, *number).is_none());
-        let from_one = |board: usize, number: u32| point(board, number.checked_sub(1)?);
-        let of = |board: usize, number: u32| match beyond {
-            Some(_) => from_one(board, number),
-            None => point(board, number),
-        };
-        let wrong = all().find(|(at, number, _)| of(*at, *number).is_none());
-        if let (Some(_), Some((at, number, (line, column)))) = (wrong, beyond)
+        let from = u32::from(beyond.is_some());
+        let of = |board: usize, number: u32| point(board, number.checked_sub(from)?);
+        if let Some((at, number, (line, column))) = beyond
+            && all().any(|(at, number, _)| of(at, number).is_none())
             && let Some(board) = boards.get(at)
         {
             return Err(not_a_point(&number.to_string(), board).at(path, line, column));
@@ -66,7 +54,7 @@ impl Gathering {
             let message = format!(
                 "found the corner `{name}` beside ones that are numbered, as `{number}`, expected names or numbers alone"
             );
-            return Err(Error::new(ErrorKind::Measurement, message).at(path, *line, *column));
+            return Err(ErrorKind::Measurement.error(message).at(path, *line, *column));
         }
         for picture in pictures.iter_mut().filter(|it| numbers.contains_key(&it.board)) {
             for corner in &mut picture.corners {
@@ -75,29 +63,22 @@ impl Gathering {
         }
         let name = of(at, number).and_then(|point| boards.get(at)?.names.get(point as usize));
         let name = name.map_or("", String::as_str);
-        let first = own.get(at).and_then(|own| own.keys().next().copied());
-        let counted = match (beyond, first) {
-            (Some(_), _) => "as counted from 1",
-            (None, Some(first)) if first < number => {
+        let first = own.get(at).and_then(|own| own.keys().next());
+        let counted = match first {
+            _ if from == 1 => "as counted from 1",
+            Some(first) if *first < number => {
                 "as the board counts them (if they count from 1, write them as names)"
             }
-            (None, _) => "as the board counts them",
+            _ => "as the board counts them",
         };
         Ok(Some(format!(
             "took the numbers of corners for the points of the board, {counted}: `{number}` is `{name}`"
         )))
     }
 
-    /// The pictures with the readings of their joints, which another file has by picture unless the rows have their own: those of the same name, and
-    /// of the others those that end in the same number, if no other picture does.
-    pub(crate) fn joined(self, path: &Path, others: Option<(&TakenByImage, &str)>) -> Result<Joined> {
-        let Some((others, what)) = others else {
-            let own = |it: Sight<Option<Taken>>| it.taken.clone().map(|taken| it.with(taken));
-            return Ok(Joined {
-                pictures: self.pictures.into_iter().filter_map(own).collect(),
-                words: Vec::new(),
-            });
-        };
+    /// Gives the pictures the readings of their joints, which another file, of `what`, has by picture: those of the same name, and of the others those
+    /// that end in the same number, if no other picture does. Says what was left out.
+    pub(crate) fn join(&mut self, path: &Path, (others, what): (&TakenByImage, &str)) -> Result<Vec<String>> {
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
         let partners = Partners::new(&seen, others.keys().collect());
         let mut words = Vec::new();
@@ -108,7 +89,6 @@ impl Gathering {
                 seen.len()
             ));
         }
-        let named = |names: Vec<&String>| format!("{} ({})", names.len(), first_few(&names));
         let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.of(name).is_none()).collect();
         let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
@@ -119,26 +99,23 @@ impl Gathering {
                 "found no picture that has {what}, as `{one}` beside `{other}`, expected the same names in both files, or ones that end in the \
                  same number, each once"
             );
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+            return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        if !unknown.is_empty() {
-            words.push(format!("left out the pictures that have corners and no {what}: {}", named(unknown)));
+        for (names, which) in
+            [(unknown, format!("corners and no {what}")), (without, format!("{what} and no corners"))]
+        {
+            if !names.is_empty() {
+                let few = first_few(&names);
+                words.push(format!("left out the pictures that have {which}: {} ({few})", names.len()));
+            }
         }
-        if !without.is_empty() {
-            words.push(format!("left out the pictures that have {what} and no corners: {}", named(without)));
-        }
-        let taken = |sight: &Sight<Option<Taken>>| others.get(partners.of(sight.image.as_ref()?)?).cloned();
+        let taken = |sight: &Sight| others.get(partners.of(sight.image.as_ref()?)?).cloned();
         let taken: Vec<Option<Taken>> = self.pictures.iter().map(taken).collect();
-        let pictures =
-            self.pictures.into_iter().zip(taken).filter_map(|(it, taken)| Some(it.with(taken?))).collect();
-        Ok(Joined { pictures, words })
-    }
-}
-
-impl Sight<Option<Taken>> {
-    fn with(self, taken: Taken) -> Gathered {
-        let Sight { image, camera, board, corners, .. } = self;
-        Sight { taken, image, camera, board, corners }
+        for (picture, taken) in self.pictures.iter_mut().zip(taken) {
+            picture.taken = taken;
+        }
+        self.pictures.retain(|it| it.taken.is_some());
+        Ok(words)
     }
 }
 
@@ -149,5 +126,5 @@ pub(crate) fn not_a_point(name: &str, board: &Board) -> Error {
         board.names.len(),
         first_few(&board.names)
     );
-    Error::new(ErrorKind::Measurement, message)
+    ErrorKind::Measurement.error(message)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use poecal_model::camera::{Distortion, LENS_NAMES, Lens};
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::numbers::LARGEST_NUMBER;
 
 /// What a file of cameras is expected to be.
@@ -15,27 +15,23 @@ pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
     let of = || if name.is_empty() { String::new() } else { format!(" of camera `{name}`") };
     let [fx, fy] = lens.focal_px;
     let refuse = |found: String, expected: &str| {
-        Err(Error::new(ErrorKind::Measurement, format!("found {found}{}, expected {expected}", of())))
+        ErrorKind::Measurement.refuse(format!("found {found}{}, expected {expected}", of()))
     };
+    let focal = || format!("the focal lengths {fx} and {fy}");
     let is_none = |number: f64| !number.is_finite() || number.abs() > LARGEST_NUMBER;
     if let Some((own, number)) = LENS_NAMES.iter().zip(lens.numbers()).find(|it| is_none(it.1)) {
-        return refuse(
-            format!("{number:?} for `{own}`"),
-            &format!("a finite number of at most {LARGEST_NUMBER:e}"),
-        );
+        let most = format!("a finite number of at most {LARGEST_NUMBER:e}");
+        return refuse(format!("{number:?} for `{own}`"), &most);
     }
     if !(fx > 0.0 && fy > 0.0) {
-        return refuse(format!("the focal lengths {fx} and {fy}"), "pixels above 0");
+        return refuse(focal(), "pixels above 0");
     }
     // In millimetres they are about 4 to 50, and cx, cy about 2 to 12.
     if fx < 60.0 && fy < 60.0 {
-        return refuse(
-            format!("the focal lengths {fx} and {fy}"),
-            "pixels, not millimetres: focal length over the size of a pixel",
-        );
+        return refuse(focal(), "pixels, not millimetres: focal length over the size of a pixel");
     }
     if !(0.5..2.0).contains(&(fx / fy)) {
-        return refuse(format!("the focal lengths {fx} and {fy}"), "two that are nearly alike");
+        return refuse(focal(), "two that are nearly alike");
     }
     let [cx, cy] = lens.centre_px;
     if let Some([width, height]) = lens.size_px {
@@ -53,19 +49,19 @@ pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
 /// Largest side of a picture, pixels.
 pub(crate) const LARGEST_SIDE: u32 = 100_000;
 
-/// Width and height of a camera's pictures, as a file states them.
+/// Width and height of a camera's pictures, as a file states them; none if it does not state both.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] without a place, if they are not whole numbers of pixels.
-pub(crate) fn size_of_pictures([width, height]: [f64; 2]) -> Result<[u32; 2]> {
+pub(crate) fn size_of_pictures(stated: [Option<f64>; 2]) -> Result<Option<[u32; 2]>> {
+    let [Some(width), Some(height)] = stated else { return Ok(None) };
     let is_side = |side: f64| side.fract() == 0.0 && (1.0..=f64::from(LARGEST_SIDE)).contains(&side);
     if is_side(width) && is_side(height) {
-        return Ok([width as u32, height as u32]);
+        return Ok(Some([width as u32, height as u32]));
     }
-    let message = format!(
+    ErrorKind::Measurement.refuse(format!(
         "found pictures of {width} × {height} pixels, expected whole numbers from 1 to {LARGEST_SIDE}, or no size"
-    );
-    Err(Error::new(ErrorKind::Measurement, message))
+    ))
 }
 
 /// A distortion by the name of its model and its coefficients.
@@ -73,7 +69,7 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
     let refuse = |expected: &str| {
         let message =
             format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());
-        Err(Error::new(ErrorKind::Measurement, message).in_file(path))
+        Err(ErrorKind::Measurement.error(message).in_file(path))
     };
     match kind {
         "" | "none" | "plumb_bob" | "radtan" | "rational_polynomial" => {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::gathering::Gathered;
+use super::gathering::Sight;
 use poecal_model::camera::{Camera, Corner};
 use poecal_numerics::error::{Error, ErrorKind, Result, shown};
 
@@ -16,7 +16,7 @@ const REACH: f64 = 0.9;
 
 /// Refuses corners outside the pictures that the lenses state; gives a sentence for each camera whose corners fill one part of its pictures, as
 /// those of smaller pictures do.
-pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Gathered]) -> Result<Vec<String>> {
+pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Sight]) -> Result<Vec<String>> {
     let mut said = Vec::new();
     for (at, camera) in cameras.iter().enumerate() {
         let Some(size) = camera.lens.size_px.map(|size| size.map(f64::from)) else { continue };

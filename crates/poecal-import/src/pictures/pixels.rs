@@ -12,10 +12,10 @@ use crate::table::header::Header;
 use crate::table::inputs::Range;
 use crate::table::layout::ColumnLayout;
 use crate::table::number::Numbers;
-use crate::table::{Row, Table, refuse_more_rows};
+use crate::table::{Row, Table};
 use nalgebra::Vector2;
 use poecal_model::camera::Corner;
-use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_numerics::error::{ErrorKind, Result, first_few};
 
 /// Largest pixel coordinate.
 const LARGEST_PX: f64 = 1e6;
@@ -31,33 +31,27 @@ impl Reader<'_> {
         let column = table.header.cells.get(image).map_or(String::new(), |cell| cell.text.clone());
         layout.ignored.retain(|(name, _)| *name != column);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
-        while let Some(mut rows) = table.next_block()? {
-            while let Some(row) = rows.next()? {
-                let taken = self.taken(&row, &mut inputs)?;
-                let name = text(&row, Some(image)).unwrap_or_default();
-                if name.is_empty() {
-                    let message =
-                        format!("found an empty cell in column `{column}`, expected the name of a picture");
-                    return Err(row.error(image, message));
-                }
-                if let Some(first) = self.taken.get(&name) {
-                    let message = format!(
-                        "found the picture `{name}` a second time ({}:{} is the first), expected it once",
-                        first.place.0.display(),
-                        first.place.1
-                    );
-                    return Err(row.error(image, message));
-                }
-                self.taken.insert(name, taken);
+        table.each_row(|row| {
+            let taken = self.taken(row, &mut inputs)?;
+            let name = row.word(Some(image));
+            if name.is_empty() {
+                let message =
+                    format!("found an empty cell in column `{column}`, expected the name of a picture");
+                return Err(row.error(image, message));
             }
-        }
-        if column != "image" {
-            self.found.warnings.push(format!("{}: took `{column}` for image", path.display()));
-        }
+            if let Some(Taken { place: (path, line), .. }) = self.taken.get(&name) {
+                let message = format!(
+                    "found the picture `{name}` a second time ({}:{line} is the first), expected it once",
+                    path.display()
+                );
+                return Err(row.error(image, message));
+            }
+            self.taken.insert(name, taken);
+            Ok(())
+        })?;
+        self.warn(path, (column != "image").then(|| format!("took `{column}` for image")));
         self.warn_of_ignored(path, &inputs.layout);
-        let words =
-            inputs.layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display()));
-        self.found.warnings.extend(words);
+        self.warn(path, inputs.layout.joint_words());
         self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         Ok(())
@@ -75,44 +69,44 @@ impl Reader<'_> {
         let mut numbers = Numbers::new(self.map.decimal);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         let is_named = columns.names_pictures(&table.header);
-        let (mut gathering, mut rows, mut seen) = (Gathering::default(), 0, [Range::default(); 3]);
-        while let Some(mut some) = table.next_block()? {
-            while let Some(row) = some.next()? {
-                rows += 1;
-                refuse_more_rows(rows, &row)?;
-                let image = text(&row, columns.image).filter(|name| !name.is_empty());
-                let taken = match has_joints {
-                    true => Some(self.taken(&row, &mut inputs)?),
-                    false if image.is_none() => return Err(no_picture(&row, columns.image)),
-                    false => None,
-                };
-                if let Some(corner) = self.corner(&row, &columns, &mut numbers)? {
-                    let numbers = [Some(corner.pixel.x), Some(corner.pixel.y), corner.sigma_px];
-                    for (range, number) in seen.iter_mut().zip(numbers) {
-                        number.into_iter().for_each(|number| range.include(number));
-                    }
-                    let picture = (image, taken, is_named);
-                    self.gather(&row, &columns, &mut gathering, picture, corner)?;
+        let (mut gathering, mut seen) = (Gathering::default(), [Range::default(); 3]);
+        let rows = table.some_rows("at least one corner", |row| {
+            let image = Some(row.word(columns.image)).filter(|name| !name.is_empty());
+            let taken = match (has_joints, &image) {
+                (true, _) => Some(self.taken(row, &mut inputs)?),
+                (false, Some(_)) => None,
+                (false, None) => {
+                    let message =
+                        "found an empty cell in the column of the picture, expected the name of a picture";
+                    return Err(row.error(columns.image.unwrap_or(0), message));
                 }
+            };
+            let Some(corner) = corner(row, &columns, &mut numbers)? else { return Ok(()) };
+            let numbers = [Some(corner.pixel.x), Some(corner.pixel.y), corner.sigma_px];
+            for (range, number) in seen.iter_mut().zip(numbers) {
+                number.into_iter().for_each(|number| range.include(number));
             }
+            self.gather(row, &columns, &mut gathering, (image, taken, is_named), corner)
+        })?;
+        self.warn(path, columns.words(&table.header));
+        self.warn(path, gathering.settle_numbers(path, &self.boards)?);
+        if !has_joints {
+            self.warn(path, gathering.join(path, (&self.taken, self.taken_as))?);
         }
-        if rows == 0 {
-            let message = "found a header and no rows, expected at least one corner";
-            return Err(Error::new(ErrorKind::Measurement, message).at_line(path, table.header.line));
-        }
-        let own = |words: String| format!("{}: {words}", path.display());
-        self.found.warnings.extend(columns.words(&table.header).map(own));
-        self.found.warnings.extend(gathering.settle_numbers(path, &self.boards)?.map(own));
-        let joined = gathering.joined(path, (!has_joints).then_some((&self.taken, self.taken_as)))?;
-        self.found.warnings.extend(joined.words.into_iter().map(own));
-        self.found.warnings.extend(self.board_of_file(&columns, has_boards).map(own));
+        self.warn(path, self.board_of_file(&columns, has_boards));
         self.found.sha256.extend(table.sha256().map(|sha256| (path.display().to_string(), sha256)));
         self.found.warnings.extend(inputs.joint_warnings(&table.header)?);
         self.found.data.files.push(path.to_path_buf());
         let first = self.found.data.len();
-        self.take_pictures(path, joined.pictures)?;
+        self.take_pictures(path, gathering.pictures)?;
         let own = columns.understood(&table.header, &seen);
         self.understand_pictures(&table, &inputs, (first, rows, own))
+    }
+
+    /// Adds what was found in a file to the warnings.
+    pub(crate) fn warn(&mut self, path: &Path, words: impl IntoIterator<Item = String>) {
+        let own = words.into_iter().map(|words| format!("{}: {words}", path.display()));
+        self.found.warnings.extend(own);
     }
 
     /// The columns of the joints beside those of the corners, and what is ignored.
@@ -122,12 +116,11 @@ impl Reader<'_> {
         columns: &CornerColumns,
         has_joints: bool,
     ) -> Result<ColumnLayout> {
-        let mut layout = match has_joints {
-            true => ColumnLayout::pictures(header, self.robot, self.options, self.map)?,
-            false => {
-                let cells = header.cells.iter().filter(|cell| !cell.text.is_empty());
-                ColumnLayout::without(cells.map(|cell| (cell.text.clone(), None)).collect())
-            }
+        let mut layout = if has_joints {
+            ColumnLayout::pictures(header, self.robot, self.options, self.map)?
+        } else {
+            let cells = header.cells.iter().filter(|cell| !cell.text.is_empty());
+            ColumnLayout::without(cells.map(|cell| (cell.text.clone(), None)).collect())
         };
         if !has_joints && columns.image.is_none() {
             header.require("image", "for the name of the picture", |_| false, "")?;
@@ -159,60 +152,9 @@ impl Reader<'_> {
         Ok(Taken {
             readings: inputs.read_joints(row)?.to_vec(),
             set: self.set(row, &inputs.layout)?,
-            id: text(row, inputs.layout.id).unwrap_or_default(),
+            id: row.word(inputs.layout.id),
             place: (row.path.to_path_buf(), row.line),
         })
-    }
-
-    /// The corner of a row; `None` where it was not seen.
-    fn corner(
-        &self,
-        row: &Row<'_>,
-        columns: &CornerColumns,
-        numbers: &mut Numbers,
-    ) -> Result<Option<Corner>> {
-        let mut number = |column: usize, name: &str| match row.cells.get(column).map_or("", |cell| cell.raw) {
-            "" => Ok(None),
-            raw => {
-                let value = numbers.parse(raw, row.line).map_err(|expected| {
-                    row.error(column, format!("found `{raw}` in column `{name}`, expected {expected}"))
-                })?;
-                if value.abs() > LARGEST_PX {
-                    let message = format!("found `{raw}` in column `{name}`, expected a pixel below 1e6");
-                    return Err(row.error(column, message));
-                }
-                Ok(Some(value))
-            }
-        };
-        let (u, v) = (number(columns.u, "u")?, number(columns.v, "v")?);
-        let sigma_px = columns.sigma.map(|column| number(column, "sigma")).transpose()?.flatten();
-        if let (Some(column), Some(value)) = (columns.sigma, sigma_px.filter(|value| *value <= 0.0)) {
-            let message = format!("found `{value}` in column `sigma`, expected a standard deviation above 0");
-            return Err(row.error(column, message));
-        }
-        let pixel = match (u, v) {
-            (Some(u), Some(v)) => Vector2::new(u, v),
-            (None, None) => return Ok(None),
-            (Some(_), None) => {
-                return Err(row.error(
-                    columns.v,
-                    "found an empty cell in column `v`, expected both of u and v, or none",
-                ));
-            }
-            (None, Some(_)) => {
-                return Err(row.error(
-                    columns.u,
-                    "found an empty cell in column `u`, expected both of u and v, or none",
-                ));
-            }
-        };
-        Ok(Some(Corner {
-            point: 0,
-            pixel,
-            sigma_px,
-            weight: 1.0,
-            line: u32::try_from(row.line).unwrap_or(u32::MAX),
-        }))
     }
 
     /// Puts a corner to its picture.
@@ -252,7 +194,7 @@ impl Reader<'_> {
         if let Some(other) = picture.corners.iter().find(|it| it.point == corner.point) {
             let message = format!(
                 "found the corner `{}` a second time in one picture (line {} is the first), expected it once",
-                text(row, Some(columns.corner())).unwrap_or_default(),
+                row.word(Some(columns.corner())),
                 other.line
             );
             return Err(row.error(columns.corner(), message));
@@ -263,53 +205,71 @@ impl Reader<'_> {
 
     /// Index of the row's camera among those that are known.
     fn camera(&mut self, row: &Row<'_>, column: Option<usize>) -> Result<usize> {
-        let cameras = &self.cameras;
-        let name = text(row, column).unwrap_or_default();
+        let (cameras, name) = (&self.cameras, row.word(column));
         if let Some(at) = cameras.iter().position(|it| it.name == name) {
             return Ok(at);
         }
-        let is_nameless = cameras.len() == 1 && cameras.iter().all(|it| it.is_guessed);
-        if column.is_none() || name.is_empty() || is_nameless {
-            if cameras.len() == 1 {
-                return Ok(0);
-            }
+        let refuse = |found: &str, end: &str| {
             let names: Vec<&str> = cameras.iter().map(|it| it.name.as_str()).collect();
-            let message = format!(
-                "found no name of a camera, expected one of {} in a column `camera`",
-                first_few(&names)
-            );
-            return Err(row.error(column.unwrap_or(0), message));
+            let message = format!("found {found}, expected one of {}{end}", first_few(&names));
+            Err(row.error(column.unwrap_or(0), message))
+        };
+        if let [only] = cameras.as_slice()
+            && (name.is_empty() || only.is_guessed)
+        {
+            return Ok(0);
+        }
+        if name.is_empty() {
+            return refuse("no name of a camera", " in a column `camera`");
         }
         // One of which the name is a word of the other: `left` for `left_eye`.
         let is_like = |own: &str| {
             let word = |whole: &str, part: &str| whole.split(['_', '-', ' ', '/']).any(|it| it == part);
             word(&name, own) || word(own, &name)
         };
-        let like: Vec<usize> = (0..cameras.len()).filter(|&at| is_like(&cameras[at].name)).collect();
-        let [at] = like.as_slice() else {
-            let names: Vec<&str> = cameras.iter().map(|it| it.name.as_str()).collect();
-            let message = format!("found the camera `{name}`, expected one of {}", first_few(&names));
-            return Err(row.error(column.unwrap_or(0), message));
+        let mut like = cameras.iter().enumerate().filter(|(_, it)| is_like(&it.name));
+        let (Some((at, camera)), None) = (like.next(), like.next()) else {
+            return refuse(&format!("the camera `{name}`"), "");
         };
-        self.say_once(format!("took the camera `{}` for `{name}`", cameras[*at].name));
-        Ok(*at)
-    }
-
-    fn say_once(&mut self, sentence: String) {
+        let sentence = format!("took the camera `{}` for `{name}`", camera.name);
         if !self.found.warnings.contains(&sentence) {
             self.found.warnings.push(sentence);
         }
+        Ok(at)
     }
 }
 
-fn no_picture(row: &Row<'_>, image: Option<usize>) -> Error {
-    row.error(
-        image.unwrap_or(0),
-        "found an empty cell in the column of the picture, expected the name of a picture",
-    )
-}
-
-/// Text of a cell.
-pub(crate) fn text(row: &Row<'_>, column: Option<usize>) -> Option<String> {
-    Some(row.cells.get(column?)?.text().trim().to_owned())
+/// The corner of a row; `None` where it was not seen.
+fn corner(row: &Row<'_>, columns: &CornerColumns, numbers: &mut Numbers) -> Result<Option<Corner>> {
+    let mut number = |column: usize, name: &str| {
+        let raw = row.raw(column);
+        if raw.is_empty() {
+            return Ok(None);
+        }
+        match row.number(column, numbers, format_args!(" in column `{name}`"))? {
+            value if value.abs() > LARGEST_PX => {
+                let message = format!("found `{raw}` in column `{name}`, expected a pixel below 1e6");
+                Err(row.error(column, message))
+            }
+            value => Ok(Some(value)),
+        }
+    };
+    let (u, v) = (number(columns.u, "u")?, number(columns.v, "v")?);
+    let sigma_px = columns.sigma.map(|column| number(column, "sigma")).transpose()?.flatten();
+    if let (Some(column), Some(value)) = (columns.sigma, sigma_px.filter(|value| *value <= 0.0)) {
+        let message = format!("found `{value}` in column `sigma`, expected a standard deviation above 0");
+        return Err(row.error(column, message));
+    }
+    let half = |column: usize, name: &str| {
+        let message = format!("found an empty cell in column `{name}`, expected both of u and v, or none");
+        Err(row.error(column, message))
+    };
+    let pixel = match (u, v) {
+        (Some(u), Some(v)) => Vector2::new(u, v),
+        (None, None) => return Ok(None),
+        (Some(_), None) => return half(columns.v, "v"),
+        (None, Some(_)) => return half(columns.u, "u"),
+    };
+    let line = u32::try_from(row.line).unwrap_or(u32::MAX);
+    Ok(Some(Corner { point: 0, pixel, sigma_px, weight: 1.0, line }))
 }

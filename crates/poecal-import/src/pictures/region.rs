@@ -14,14 +14,8 @@ pub(crate) struct Region {
 }
 
 /// Keys of the numbers of a region.
-pub(crate) const KEYS: [&[&str]; 6] = [
-    &["roi", "x_offset"],
-    &["roi", "y_offset"],
-    &["roi", "width"],
-    &["roi", "height"],
-    &["binning_x"],
-    &["binning_y"],
-];
+pub(crate) const KEYS: [&str; 6] =
+    ["roi.x_offset", "roi.y_offset", "roi.width", "roi.height", "binning_x", "binning_y"];
 
 impl Region {
     /// A region by the numbers of its keys, in the order of [`KEYS`]; 0 of a key that is absent.
@@ -31,7 +25,7 @@ impl Region {
     pub(crate) fn new(numbers: [f64; 6]) -> Result<Self, String> {
         let is_wrong = |it: &f64| *it < 0.0 || it.fract() != 0.0 || *it > f64::from(u32::MAX);
         if let Some((keys, number)) = KEYS.iter().zip(numbers).find(|(_, number)| is_wrong(number)) {
-            return Err(format!("found {number} for `{}`, expected a count of pixels", keys.join(".")));
+            return Err(format!("found {number} for `{keys}`, expected a count of pixels"));
         }
         let [x, y, width, height, by_x, by_y] = numbers;
         if (width == 0.0) != (height == 0.0) {
@@ -54,19 +48,18 @@ impl Region {
         if let Some(whole) =
             whole.filter(|whole| is_part && (0..2).any(|k| offset_px[k] + size_px[k] > whole[k]))
         {
+            let ([width, height], [x, y], [most_x, most_y]) = (size_px, offset_px, whole);
             return Err(format!(
-                "found a region `roi` of {} × {} pixels from ({}, {}) on, expected one inside the sensor of {} × {}",
-                size_px[0], size_px[1], offset_px[0], offset_px[1], whole[0], whole[1]
+                "found a region `roi` of {width} × {height} pixels from ({x}, {y}) on, expected one inside the sensor of {most_x} × {most_y}"
             ));
         }
         let size = if is_part { Some(size_px) } else { whole };
         if offset_px == [0.0; 2] && binning == [1.0; 2] && (size == whole || whole.is_none()) {
             return Ok((*lens, None));
         }
-        let of = |k: usize| (lens.centre_px[k] - offset_px[k]) / binning[k];
         let seen = Lens {
             focal_px: [0, 1].map(|k| lens.focal_px[k] / binning[k]),
-            centre_px: [of(0), of(1)],
+            centre_px: [0, 1].map(|k| (lens.centre_px[k] - offset_px[k]) / binning[k]),
             size_px: size.map(|size| [0, 1].map(|k| (size[k] / binning[k]) as u32)),
             ..*lens
         };
@@ -79,13 +72,10 @@ impl Region {
         }
         let size =
             seen.size_px.map_or(String::new(), |[width, height]| format!(" of {width} × {height} pixels"));
+        let ([fx, fy], [cx, cy]) = (seen.focal_px, seen.centre_px);
         let words = format!(
-            "took the lens as that of pictures{size}, by {}: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px",
-            done.join(" and "),
-            seen.focal_px[0],
-            seen.focal_px[1],
-            seen.centre_px[0],
-            seen.centre_px[1]
+            "took the lens as that of pictures{size}, by {}: fx {fx:.2}, fy {fy:.2}, cx {cx:.2}, cy {cy:.2} px",
+            done.join(" and ")
         );
         Ok((seen, Some(words)))
     }

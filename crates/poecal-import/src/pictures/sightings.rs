@@ -1,9 +1,8 @@
 //! The pictures of a file as rows of the session.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::gathering::Gathered;
+use super::gathering::Sight;
 use super::picture_sizes::check_sizes;
 use crate::read::Reader;
 use crate::table::Table;
@@ -15,7 +14,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
 impl Reader<'_> {
     /// Adds pictures as rows, each with the poses that fit its corners; those without one are left out, and named.
-    pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<Gathered>) -> Result<()> {
+    pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<Sight>) -> Result<()> {
         let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.cameras);
@@ -24,24 +23,19 @@ impl Reader<'_> {
         self.found.warnings.extend(said);
         self.guess_lenses(&gathered)?;
         for one in gathered {
-            let name = one.image.clone().unwrap_or_else(|| format!("of line {}", one.taken.place.1));
+            let Some(taken) = one.taken else { continue };
+            let name = one.image.clone().unwrap_or_else(|| format!("of line {}", taken.place.1));
+            let id = if taken.id.is_empty() { one.image.clone().unwrap_or_default() } else { taken.id };
             let line = one.corners.first().map_or(0, |corner| corner.line);
-            let image = one.image.clone();
             let picture = Picture::new(one.camera, one.board, one.image, one.corners);
-            let taken = (one.taken.set, Source { file, line });
             let data = &mut self.found.data;
-            match data.push_picture(&one.taken.readings, picture, taken) {
-                Ok(Ok(())) => {}
-                Ok(Err(reason)) => {
-                    left_out.push(format!("{name} ({reason})"));
-                    continue;
-                }
-                Err(error) => {
-                    let kind = ErrorKind::Measurement;
-                    return Err(Error::new(kind, error.message()).at_line(path, line as usize));
-                }
+            let pushed = data.push_picture(&taken.readings, picture, (taken.set, Source { file, line }));
+            let refused =
+                |error: Error| ErrorKind::Measurement.error(error.message()).at_line(path, line as usize);
+            if let Err(reason) = pushed.map_err(refused)? {
+                left_out.push(format!("{name} ({reason})"));
+                continue;
             }
-            let id = if one.taken.id.is_empty() { image.unwrap_or_default() } else { one.taken.id };
             if !id.is_empty() || !data.ids.is_empty() {
                 data.ids.resize(data.len() - 1, String::new());
                 data.ids.push(id);
@@ -49,27 +43,22 @@ impl Reader<'_> {
             found += 1;
         }
         if !left_out.is_empty() {
-            self.found.warnings.push(format!(
-                "{}: left out {} of {} pictures: {}",
-                path.display(),
-                left_out.len(),
-                left_out.len() + found,
-                first_few(&left_out)
-            ));
+            let (out, few) = (left_out.len(), first_few(&left_out));
+            self.warn(path, [format!("left out {out} of {} pictures: {few}", out + found)]);
         }
         if found == 0 {
             let message =
                 "found no picture with a pose, expected at least four corners of a board in a picture";
-            return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
+            return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
         Ok(())
     }
 
     /// Finds the lenses that are unknown from the corners of flat boards.
-    fn guess_lenses(&mut self, gathered: &[Gathered]) -> Result<()> {
+    fn guess_lenses(&mut self, gathered: &[Sight]) -> Result<()> {
         let pictures = &mut self.found.data.pictures;
         for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
-            let view = |one: &Gathered| -> Option<FlatView> {
+            let view = |one: &Sight| -> Option<FlatView> {
                 let board = pictures.boards.get(one.board).filter(|board| is_flat_sheet(board))?;
                 let of =
                     |corner: &Corner| Some((board.points.get(corner.point as usize)?.xy(), corner.pixel));
@@ -79,7 +68,7 @@ impl Reader<'_> {
                 gathered.iter().filter(|one| one.camera == at).filter_map(view).collect();
             let size_px = camera.lens.size_px.unwrap_or([1, 1]);
             camera.lens =
-                guessed_lens(size_px, &views).map_err(|found| Error::new(ErrorKind::Measurement, found))?;
+                guessed_lens(size_px, &views).map_err(|found| ErrorKind::Measurement.error(found))?;
         }
         Ok(())
     }
@@ -97,7 +86,7 @@ impl Reader<'_> {
         self.take_controller(path, &inputs.layout)?;
         let mut understood = FileUnderstanding::new(table, inputs, rows);
         understood.columns.extend(own);
-        understood.others = BTreeMap::from([("pictures", pictures)]);
+        understood.others.insert("pictures", pictures);
         self.found.understood.push(understood);
         Ok(())
     }

@@ -154,12 +154,9 @@ impl Reader<'_> {
             return Err(row.error(columns.last().copied().unwrap_or(0), message));
         }
         let place = kind.map(KindColumns::place).filter(|(_, columns)| !columns.is_empty());
-        let (what, column) = match (&own, place, layout.instrument) {
-            (Some(_), Some((what, columns)), _) => (what, columns.last().copied()),
-            (None, Some((what, columns)), Some(_)) if instrument.is_none() => (what, columns.last().copied()),
-            (_, _, Some(column)) => ("instrument", Some(column)),
-            (None, Some((what, columns)), None) => (what, columns.last().copied()),
-            (_, None, None) => ("instrument", None),
+        let (what, column) = match place.filter(|_| own.is_some() || instrument.is_none()) {
+            Some((what, columns)) => (what, columns.last().copied()),
+            None => ("instrument", layout.instrument),
         };
         let pair = shared.filter(|_| own.is_none() && instrument.is_none()).map(|target| {
             let target = self.found.data.targets.get(target).cloned().flatten();

@@ -1,8 +1,9 @@
 //! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
 
 use crate::table::conventions::{CONVENTIONS, OPENCV};
-use crate::table::header::{Header, unit_in_name};
+use crate::table::header::Header;
 use crate::table::orientation::OrientationForm;
+use crate::table::roles::{Role, plain, without_unit};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
@@ -16,16 +17,6 @@ pub(crate) enum Whose {
     Target,
 }
 
-const ARM: [&str; 11] =
-    ["flange", "robot", "tcp", "base", "ee", "tool0", "tool", "gripper", "arm", "hand", "end_effector"];
-const TARGET: [&str; 10] =
-    ["target", "board", "marker", "camera", "cam", "tag", "pattern", "object", "chessboard", "c"];
-/// Columns that name a row.
-const NAMES: [&str; 9] = ["image", "picture", "file", "filename", "name", "id", "index", "image_id", "frame"];
-
-/// Letters of makers, by the first of which the columns are the arm's.
-const MAKERS: [&str; 4] = ["a", "w", "o", "u"];
-
 /// A column of numbers with its unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NumberColumn {
@@ -36,7 +27,7 @@ pub(crate) struct NumberColumn {
 /// The columns of one list.
 #[derive(Clone, Debug)]
 pub(crate) struct PoseColumns {
-    pub(crate) position: [NumberColumn; 3],
+    pub(crate) position: Vec<NumberColumn>,
     pub(crate) orientation: Vec<NumberColumn>,
     pub(crate) form: OrientationForm,
     /// Whether stated units are of its angles: OpenCV's are radians.
@@ -46,95 +37,72 @@ pub(crate) struct PoseColumns {
     pub(crate) whose: Whose,
 }
 
-/// A column that belongs to a pose: whose it is if its name says so, and its name without that.
-struct Named {
+/// A column that belongs to a pose: whose it is if its name says so, and which part of the pose, as conventions call it.
+struct Part {
     at: usize,
     whose: Option<Whose>,
     key: String,
 }
 
-/// The name of the part of a pose that a column's name means.
+const PLACE: [&str; 3] = ["x", "y", "z"];
+/// The place in the last column of a matrix.
+const IN_MATRIX: [&str; 3] = ["r14", "r24", "r34"];
+
+/// Whether a part is of the place, else it is of the orientation.
+fn is_of_place(key: &str) -> bool {
+    PLACE.contains(&key) || IN_MATRIX.contains(&key)
+}
+
+/// The part of a pose that letters and digits mean.
 fn key_of(name: &str) -> Option<String> {
-    let name = name.replace(['.', '[', ' ', '-'], "_").replace(']', "");
-    let squeezed: String = name.chars().filter(|c| *c != '_').collect();
-    let axis = |rest: &str| match rest {
+    let axis = |word: &str| match word {
         "x" | "0" => Some('x'),
         "y" | "1" => Some('y'),
         "z" | "2" => Some('z'),
         "w" | "3" => Some('w'),
         _ => None,
     };
-    for (start, key) in [
-        ("position", ""),
-        ("pos", ""),
-        ("tvec", ""),
-        ("translation", ""),
-        ("trans", ""),
-        ("rvec", "rv"),
-        ("rotvec", "rv"),
-        ("intrinsic", "i"),
-        ("orientation", "q"),
-        ("quaternion", "q"),
-        ("quat", "q"),
-        ("rotation", "q"),
-    ] {
-        if let Some(axis) = squeezed.strip_prefix(start).and_then(axis) {
-            return Some(format!("{key}{axis}"));
-        }
+    if let Some((part, axis)) = Role::part(name).and_then(|(part, rest)| Some((part, axis(rest)?))) {
+        return Some(format!("{part}{axis}"));
     }
-    let digits: String = squeezed.chars().filter(char::is_ascii_digit).collect();
-    if digits.len() == 2
-        && matches!(squeezed.trim_end_matches(|c: char| c.is_ascii_digit()), "r" | "m" | "t" | "h")
-    {
-        return Some(format!("m{digits}"));
+    let digits = name.trim_start_matches(['r', 'm', 't', 'h']);
+    if name.len() == 3 && digits.len() == 2 && digits.bytes().all(|it| it.is_ascii_digit()) {
+        return Some(format!("r{digits}"));
     }
-    let known = [
-        "x", "y", "z", "qx", "qy", "qz", "qw", "q0", "q1", "q2", "q3", "q4", "rx", "ry", "rz", "a", "b", "c",
-        "w", "p", "r", "o", "t", "e", "u", "v", "roll", "pitch", "yaw",
-    ];
-    let plain = match squeezed.as_str() {
-        "tx" | "px" => "x",
-        "ty" | "py" => "y",
-        "tz" | "pz" => "z",
-        other => other,
-    };
-    known.contains(&plain).then(|| plain.to_owned())
+    let of_place = Role::Place.words().filter_map(|it| name.strip_prefix(it)).find(|it| PLACE.contains(it));
+    let known = of_place.unwrap_or(name);
+    let is_known = PLACE.contains(&known) || CONVENTIONS.iter().any(|it| it.has(known));
+    is_known.then(|| known.to_owned())
 }
 
-/// The name of a column without the unit at its end, as `x_mm`, and that unit.
-fn without_unit(name: &str) -> (String, Option<NamedUnit>) {
-    let Some((stem, last)) = name.rsplit_once(['_', ' ']) else { return (name.to_owned(), None) };
-    let unit = if last == "m" || last.len() > 1 { unit_in_name(&format!("v_{last}"), "v") } else { None };
-    match unit {
-        Some(unit) => (stem.to_owned(), Some(unit)),
-        None => (name.to_owned(), None),
+/// Whose a name says it is, and the part of a pose that it means.
+fn part_of(name: &str) -> Option<(Option<Whose>, String)> {
+    let (name, _) = without_unit(name);
+    let words: Vec<String> = name.split(|it: char| !it.is_alphanumeric()).map(plain).collect();
+    for count in 1..words.len() {
+        let (before, rest) = words.split_at(count);
+        let rest = rest.strip_prefix(&["pose".to_owned()]).unwrap_or(rest);
+        let (before, key) = (before.concat(), key_of(&rest.concat()));
+        let whose = match key {
+            Some(_) if Role::OfArm.has(&before) => Some(Whose::Arm),
+            Some(_) if Role::OfTarget.has(&before) => Some(Whose::Target),
+            _ => continue,
+        };
+        return Some((whose, key?));
     }
-}
-
-/// Whose a name says it is, with the rest of it.
-fn prefixed(name: &str) -> (Option<Whose>, String) {
-    let lower = name.to_lowercase().replace(['.', ' ', '-', '/'], "_");
-    for (whose, prefixes) in [(Whose::Arm, &ARM[..]), (Whose::Target, &TARGET[..])] {
-        for prefix in prefixes {
-            let rest = lower
-                .strip_prefix(&format!("{prefix}_pose_"))
-                .or_else(|| lower.strip_prefix(&format!("{prefix}_")));
-            if let Some(rest) = rest.filter(|rest| key_of(rest).is_some()) {
-                return (Some(whose), rest.to_owned());
-            }
-        }
-    }
+    let all = words.concat();
     // As in `cx, cy, cz` of a camera beside `X, Y, Z`.
-    if let Some(rest @ ("x" | "y" | "z")) = lower.strip_prefix('c') {
-        return (Some(Whose::Target), rest.to_owned());
+    if let Some(axis) = all.strip_prefix('c').filter(|it| PLACE.contains(it)) {
+        return Some((Some(Whose::Target), axis.to_owned()));
     }
-    let whose = (lower.starts_with("rvec") || lower.starts_with("tvec")).then_some(Whose::Target);
-    (whose, lower)
+    let is_target = all.starts_with("rvec") || all.starts_with("tvec");
+    Some((is_target.then_some(Whose::Target), key_of(&all)?))
 }
 
 /// The column that names the rows.
 pub(crate) fn name_column(header: &Header<'_>) -> Option<usize> {
-    NAMES.iter().find_map(|name| header.cells.iter().position(|cell| cell.name.to_lowercase() == *name))
+    let mut names = [Role::Picture, Role::Row, Role::Frame].into_iter().flat_map(Role::words);
+    names.find_map(|name| header.cells.iter().position(|cell| plain(&cell.name) == name))
 }
 
 /// A column of texts of this name.
@@ -175,70 +143,64 @@ pub(crate) fn found(
     joints: &[String],
     alone: Option<Whose>,
     stated: PoseUnits,
-) -> Result<Vec<(Whose, PoseColumns)>> {
-    let name = name_column(header);
-    let texts = ["point", "tip"].map(|it| text_column(header, it));
-    let mut named: Vec<Named> = Vec::new();
-    for (at, cell) in header.cells.iter().enumerate() {
-        if Some(at) == name || texts.contains(&Some(at)) || joints.contains(&cell.name) {
-            continue;
-        }
-        let (stem, _) = without_unit(&cell.name);
-        let (whose, rest) = prefixed(&stem);
-        if let Some(key) = key_of(&rest) {
-            named.push(Named { at, whose, key });
+) -> Result<Vec<PoseColumns>> {
+    let texts = [name_column(header), text_column(header, "point"), text_column(header, "tip")];
+    let cells = header.cells.iter().enumerate();
+    let cells = cells.filter(|(at, cell)| !texts.contains(&Some(*at)) && !joints.contains(&cell.name));
+    let mut parts: Vec<Part> = cells
+        .filter_map(|(at, cell)| part_of(&cell.name).map(|(whose, key)| Part { at, whose, key }))
+        .collect();
+    let has = |whose| parts.iter().any(|it| it.whose == Some(whose));
+    let is_one = !(has(Whose::Arm) && has(Whose::Target));
+    if let Some(whose) = alone.filter(|_| is_one) {
+        parts.iter_mut().for_each(|it| it.whose = Some(whose));
+    }
+    // A matrix that is counted from 0.
+    let from_0: Vec<Option<Whose>> = parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
+    for part in parts.iter_mut().filter(|it| from_0.contains(&it.whose)) {
+        if let Some(Ok(number)) = part.key.strip_prefix('r').map(str::parse::<u32>) {
+            part.key = format!("r{}", number + 11);
         }
     }
-    let one_list = alone.is_some()
-        && !(named.iter().any(|it| it.whose == Some(Whose::Arm))
-            && named.iter().any(|it| it.whose == Some(Whose::Target)));
-    if let Some(whose) = alone.filter(|_| one_list) {
-        named.iter_mut().for_each(|it| it.whose = Some(whose));
-    }
-    settle(&mut named);
+    settle(&mut parts);
     let mut lists = Vec::new();
     for whose in [Whose::Arm, Whose::Target] {
-        let own: Vec<&Named> = named.iter().filter(|it| it.whose == Some(whose)).collect();
-        if own.is_empty() {
-            continue;
+        let own: Vec<&Part> = parts.iter().filter(|it| it.whose == Some(whose)).collect();
+        if !own.is_empty() {
+            lists.push(columns(header, whose, &own, stated)?);
         }
-        lists.push((whose, columns(header, whose, &own, stated)?));
     }
     Ok(lists)
 }
 
 /// Columns whose names do not say whose they are: makers' letters are the arm's; others go where that part is missing, the arm first.
-fn settle(named: &mut [Named]) {
-    let has = |named: &[Named], whose: Whose, keys: &[&str]| {
-        named.iter().any(|it| it.whose == Some(whose) && keys.contains(&it.key.as_str()))
+fn settle(parts: &mut [Part]) {
+    let is =
+        |it: &Part, whose: Option<Whose>, name: &str| it.whose == whose && it.key.eq_ignore_ascii_case(name);
+    let has = |parts: &[Part], whose: Whose, of_place: bool| {
+        parts.iter().any(|it| it.whose == Some(whose) && is_of_place(&it.key) == of_place)
     };
-    let all = |named: &[Named], keys: &[&str]| {
-        keys.iter().all(|key| named.iter().any(|it| it.whose.is_none() && it.key == *key))
-    };
-    for keys in CONVENTIONS.iter().map(|it| it.columns).chain([&["x", "y", "z"][..]]) {
-        if !all(named, keys) {
+    let conventions = CONVENTIONS.iter().map(|it| (it.columns, it.is_makers));
+    for (columns, is_makers) in conventions.chain([(&PLACE[..], false)]) {
+        if !columns.iter().all(|name| parts.iter().any(|it| is(it, None, name))) {
             continue;
         }
-        let is_place = keys[0] == "x";
-        let orientations: Vec<&str> = CONVENTIONS.iter().flat_map(|it| it.columns.iter().copied()).collect();
-        let others: &[&str] = if is_place { &["x", "y", "z", "m03"] } else { &orientations };
-        let is_maker = MAKERS.contains(&keys[0]);
-        let whose = if is_maker || !has(named, Whose::Arm, others) { Whose::Arm } else { Whose::Target };
-        for it in named.iter_mut().filter(|it| it.whose.is_none() && keys.contains(&it.key.as_str())) {
-            it.whose = Some(whose);
+        let is_arms = is_makers || !has(parts, Whose::Arm, columns == PLACE);
+        for part in parts.iter_mut().filter(|it| columns.iter().any(|name| is(it, None, name))) {
+            part.whose = Some(if is_arms { Whose::Arm } else { Whose::Target });
         }
     }
     // A quaternion that came first, beside the arm's own angles and the place of the camera.
-    let quaternion = |it: &Named| it.key.starts_with('q');
-    let letters = named.iter().any(|it| {
-        it.whose == Some(Whose::Arm) && (MAKERS.contains(&it.key.as_str()) || it.key == "b" || it.key == "p")
-    });
-    if letters && !has(named, Whose::Target, &["qx", "rvx", "rx", "roll", "m00"]) {
-        for it in named.iter_mut().filter(|it| it.whose == Some(Whose::Arm) && quaternion(it)) {
-            it.whose = Some(Whose::Target);
+    let is_arms = |name: &&str| parts.iter().any(|it| is(it, Some(Whose::Arm), name));
+    let has_letters = CONVENTIONS.iter().any(|it| it.is_makers && it.columns.iter().all(is_arms));
+    let is_targets = has_letters && !has(parts, Whose::Target, false);
+    for part in parts {
+        let is_arms = part.whose != Some(Whose::Target);
+        let is_quaternion = part.whose == Some(Whose::Arm) && part.key.starts_with('q');
+        if is_arms {
+            part.whose = Some(if is_targets && is_quaternion { Whose::Target } else { Whose::Arm });
         }
     }
-    named.iter_mut().filter(|it| it.whose.is_none()).for_each(|it| it.whose = Some(Whose::Arm));
 }
 
 /// What a list is called in messages.
@@ -250,82 +212,49 @@ pub(crate) fn list_words(whose: Whose) -> &'static str {
 }
 
 /// The columns of one list by their parts.
-fn columns(header: &Header<'_>, whose: Whose, named: &[&Named], stated: PoseUnits) -> Result<PoseColumns> {
-    let is_from_0 = named.iter().any(|it| it.key == "m00");
-    let key = |it: &Named| match it.key.strip_prefix('m').and_then(|digits| digits.parse::<u32>().ok()) {
-        // Counted from 1.
-        Some(number) if !is_from_0 && number >= 11 => format!("m{:02}", number - 11),
-        _ => it.key.clone(),
-    };
-    let find = |wanted: &str| named.iter().find(|it| key(it) == wanted).map(|it| it.at);
-    let all = |wanted: &[&str]| wanted.iter().map(|it| find(it)).collect::<Option<Vec<usize>>>();
+fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits) -> Result<PoseColumns> {
+    let find = |name: &&str| parts.iter().find(|it| it.key.eq_ignore_ascii_case(name)).map(|it| it.at);
+    let all = |names: &[&str]| names.iter().map(find).collect::<Option<Vec<usize>>>();
     let who = list_words(whose);
-    let names = || {
-        named
-            .iter()
-            .filter_map(|it| header.cells.get(it.at))
-            .map(|it| it.name.clone())
-            .collect::<Vec<_>>()
-            .join(", ")
+    let refuse = |missing: &str, expected: &str| {
+        let names = parts.iter().filter_map(|it| header.cells.get(it.at)).map(|it| it.name.as_str());
+        let names = names.collect::<Vec<_>>().join(", ");
+        let message = format!(
+            "found no {missing} of {who} among the columns {names}, expected {expected}: name them so"
+        );
+        Err(ErrorKind::Measurement.error(message).at_line(header.path, header.line))
     };
-    let position = all(&["x", "y", "z"]).or_else(|| all(&["m03", "m13", "m23"]));
-    let Some(&[x, y, z]) = position.as_deref() else {
-        return Err(ErrorKind::Measurement
-            .error(format!("found no position of {who} among the columns {}, expected x, y, z or tvec_x, tvec_y, tvec_z: name them so", names()))
-            .at_line(header.path, header.line));
+    let Some(place) = all(&PLACE).or_else(|| all(&IN_MATRIX)) else {
+        return refuse("position", "x, y, z or tvec_x, tvec_y, tvec_z");
     };
-    let found = CONVENTIONS.iter().find_map(|form| Some((form, all(form.columns)?)));
-    let Some((form, orientation)) = found else {
-        return Err(ErrorKind::Measurement
-            .error(format!(
-                "found no orientation of {who} among the columns {}, expected qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), O, A, T (Kawasaki), \
-                 A, E, R (Comau), U, V, W (Epson), intrinsic_x, intrinsic_y, intrinsic_z (Stäubli), rx, ry, rz (rotation vector), q1 to q4 (ABB), roll, \
-                 pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33: name them so",
-                names()
-            ))
-            .at_line(header.path, header.line));
+    let found = CONVENTIONS.iter().find_map(|it| Some((it, all(it.columns)?)));
+    let Some((convention, orientation)) = found else {
+        return refuse(
+            "orientation",
+            "qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), O, A, T (Kawasaki), A, E, R (Comau), U, V, W (Epson), intrinsic_x, intrinsic_y, \
+             intrinsic_z (Stäubli), rx, ry, rz (rotation vector), q1 to q4 (ABB), roll, pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33",
+        );
     };
-    let usual = form.usual.unwrap_or(("m", "rad"));
-    let number = |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| {
-        number_column(header, (at, quantity), (stated, usual), who)
+    let (length, angle) = convention.usual.unwrap_or(("m", "rad"));
+    let (form, quantity) = (convention.form, convention.form.quantity());
+    let takes_angle_unit = quantity == Unit::Radian && convention.columns != OPENCV;
+    let stated_angle = stated.angle.filter(|_| takes_angle_unit);
+    let angle = if quantity == Unit::Radian { angle } else { "1" };
+    // As the header has the unit, as the name of the column ends, as it is stated, or the usual one.
+    let number =
+        |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
+            let in_header = header.unit(at, quantity, &format!("for {who}"))?.map(|(unit, _)| unit);
+            let in_name = header.cells.get(at).and_then(|cell| without_unit(&cell.name).1);
+            let known = in_header.or(in_name.filter(|unit| unit.of() == quantity)).or(stated);
+            Ok(NumberColumn { at, unit: known.map_or_else(|| NamedUnit::parse(usual, quantity), Ok)? })
+        };
+    let of = |columns: Vec<usize>, quantity, stated, usual| {
+        columns.into_iter().map(|at| number(at, quantity, stated, usual)).collect::<Result<Vec<_>>>()
     };
-    let quantity = form.form.quantity();
-    let takes_angle_unit = quantity == Unit::Radian && form.columns != OPENCV;
-    let angle = stated.angle.filter(|_| takes_angle_unit);
-    let usual_angle = if quantity == Unit::Radian { usual.1 } else { "1" };
-    let position = [
-        number(x, Unit::Metre, stated.length, usual.0)?,
-        number(y, Unit::Metre, stated.length, usual.0)?,
-        number(z, Unit::Metre, stated.length, usual.0)?,
-    ];
-    let orientation: Vec<NumberColumn> =
-        orientation.into_iter().map(|at| number(at, quantity, angle, usual_angle)).collect::<Result<_>>()?;
-    let symbol = orientation.first().map(|it| it.unit.symbol()).filter(|it| *it != "1");
-    let words = format!(
-        "{who}: {} ({}{})",
-        form.words,
-        position[0].unit.symbol(),
-        symbol.map_or(String::new(), |it| format!(", {it}"))
-    );
-    Ok(PoseColumns { position, orientation, form: form.form, takes_angle_unit, words, whose })
-}
-
-/// A column of numbers with its unit: as the header has it, as its name ends, as it is stated, or the usual one.
-fn number_column(
-    header: &Header<'_>,
-    (at, quantity): (usize, Unit),
-    (stated, usual): (Option<NamedUnit>, &str),
-    who: &str,
-) -> Result<NumberColumn> {
-    let purpose = format!("for {who}");
-    let in_name =
-        header.cells.get(at).and_then(|cell| without_unit(&cell.name).1).filter(|unit| unit.of() == quantity);
-    let unit = match header.unit(at, quantity, &purpose)? {
-        Some((unit, _)) => unit,
-        None => match in_name.or(stated) {
-            Some(unit) => unit,
-            None => NamedUnit::parse(usual, quantity)?,
-        },
-    };
-    Ok(NumberColumn { at, unit })
+    let position = of(place, Unit::Metre, stated.length, length)?;
+    let orientation = of(orientation, quantity, stated_angle, angle)?;
+    let symbols = [position.first(), orientation.first()].into_iter().flatten().map(|it| it.unit.symbol());
+    let symbols: Vec<&str> = symbols.filter(|it| *it != "1").collect();
+    let words = format!("{who}: {} ({})", convention.words, symbols.join(", "));
+    Ok(PoseColumns { position, orientation, form, takes_angle_unit, words, whose })
 }

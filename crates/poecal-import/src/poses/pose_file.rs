@@ -13,7 +13,7 @@ use crate::read::joints::read_joints;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;
-use crate::table::{Row, Table, refuse_more_rows};
+use crate::table::{Row, Table};
 use crate::{LARGEST_NUMBER, ReadOptions};
 use poecal_arm::lie::Pose;
 use poecal_fit::hand_eye::PoseList;
@@ -21,11 +21,12 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
+/// Largest angle, radians.
+const LARGEST_ANGLE: f64 = 2.01 * std::f64::consts::PI;
+
 /// One list of a file, while it is read.
-struct Columns {
-    whose: Whose,
+struct Rows {
     columns: PoseColumns,
-    positions: Vec<Vector3<f64>>,
     /// Numbers of the orientations, radians or none.
     numbers: Vec<Vec<f64>>,
     poses: Vec<Pose>,
@@ -40,6 +41,7 @@ pub(crate) struct List {
 }
 
 /// A file of poses.
+#[derive(Default)]
 pub(crate) struct PoseFile {
     pub(crate) path: PathBuf,
     pub(crate) lists: Vec<List>,
@@ -67,14 +69,12 @@ pub(crate) fn no_list<T>(path: &Path, whose: Whose) -> Result<T> {
 impl PoseFile {
     /// What messages call the rows: their line, and their name.
     pub(crate) fn row_names(&self) -> Vec<String> {
-        let name =
-            |row: usize| self.names.as_ref().and_then(|names| names.get(row)).filter(|it| !it.is_empty());
-        let rows = self.lines.iter().enumerate();
-        rows.map(|(row, line)| match name(row) {
+        let name = |row: usize| self.names.as_ref()?.get(row).filter(|it| !it.is_empty());
+        let words = |(row, line): (usize, &usize)| match name(row) {
             Some(name) => format!("line {line} ({name})"),
             None => format!("line {line}"),
-        })
-        .collect()
+        };
+        self.lines.iter().enumerate().map(words).collect()
     }
 
     /// The names of the rows, if a column has them.
@@ -105,122 +105,71 @@ pub(crate) fn read_poses(
     let by_joints = robot.filter(|_| alone != Some(Whose::Target));
     let alone = if by_joints.is_some() { Some(Whose::Target) } else { alone };
     let lists = found(&table.header, &joints, alone, stated)?;
-    let mut lists: Vec<Columns> =
-        lists.into_iter().map(|(whose, columns)| Columns::new(whose, columns)).collect();
-    let name = name_column(&table.header);
-    let [point, tip] = ["point", "tip"].map(|it| text_column(&table.header, it));
-    let header_line = table.header.line;
     if lists.is_empty() && by_joints.is_none() {
         return no_list(path, alone.unwrap_or(Whose::Arm));
     }
-    let (mut lines, mut points, mut tips) = (Vec::new(), Vec::new(), Vec::new());
-    let mut names = name.map(|_| Vec::new());
+    let rows = |columns| Rows { columns, numbers: Vec::new(), poses: Vec::new() };
+    let mut lists: Vec<Rows> = lists.into_iter().map(rows).collect();
+    let name = name_column(&table.header);
+    let [point, tip] = ["point", "tip"].map(|it| text_column(&table.header, it));
+    let mut file = PoseFile { path: path.to_owned(), names: name.map(|_| Vec::new()), ..PoseFile::default() };
     let mut numbers = Numbers::new(None);
-    while let Some(mut rows) = table.next_block()? {
-        while let Some(row) = rows.next()? {
-            for list in &mut lists {
-                list.add(&row, &mut numbers)?;
-            }
-            lines.push(row.line);
-            refuse_more_rows(lines.len(), &row)?;
-            let text = |at: Option<usize>| {
-                at.and_then(|at| row.cells.get(at)).map_or(String::new(), |cell| cell.text().into_owned())
-            };
-            if let Some(names) = &mut names {
-                names.push(text(name));
-            }
-            points.push(text(point));
-            tips.push(text(tip));
+    table.some_rows("a row for each pose", |row| {
+        for list in &mut lists {
+            list.add(row, &mut numbers)?;
         }
-    }
-    if lines.is_empty() {
-        return no_rows(path, header_line);
-    }
-    let mut file = PoseFile {
-        path: path.to_owned(),
-        lists: lists.into_iter().map(Columns::list).collect(),
-        lines,
-        names,
-        points,
-        tips,
-        joints: Vec::new(),
-        warnings: Vec::new(),
-        sha256: table.sha256(),
-    };
+        file.lines.push(row.line);
+        file.names.iter_mut().for_each(|names| names.push(row.word(name)));
+        file.points.push(row.word(point));
+        file.tips.push(row.word(tip));
+        Ok(())
+    })?;
+    file.lists = lists.into_iter().map(Rows::list).collect();
+    file.sha256 = table.sha256();
     if let Some(robot) = by_joints {
-        file.add_joints(robot)?;
+        let read = read_joints(path, robot, &ReadOptions::default())?;
+        let poses: Vec<Pose> = robot.forward_kinematics_of(&read.readings).collect();
+        let words =
+            format!("the arm: joint readings, by which `{}` is where the model has it", robot.tip_name);
+        file.lists.push(List { whose: Whose::Arm, poses: poses.into(), words });
+        (file.joints, file.warnings) = (read.readings, read.warnings);
     }
     Ok(file)
 }
 
-/// Refuses a file that has a header alone.
-fn no_rows<T>(path: &Path, line: usize) -> Result<T> {
-    Err(ErrorKind::Measurement
-        .error("found a header and no rows, expected a row for each pose")
-        .at_line(path, line))
-}
-
-impl PoseFile {
-    /// Adds the list of the arm's poses by the readings of its joints.
-    fn add_joints(&mut self, robot: &Robot) -> Result<()> {
-        let read = read_joints(&self.path, robot, &ReadOptions::default())?;
-        let poses: Vec<Pose> = robot.forward_kinematics_of(&read.readings).collect();
-        let words =
-            format!("the arm: joint readings, by which `{}` is where the model has it", robot.tip_name);
-        self.lists.push(List { whose: Whose::Arm, poses: poses.into(), words });
-        self.joints = read.readings;
-        self.warnings.extend(read.warnings);
-        Ok(())
-    }
-}
-
-impl Columns {
-    fn new(whose: Whose, columns: PoseColumns) -> Self {
-        Columns { whose, columns, positions: Vec::new(), numbers: Vec::new(), poses: Vec::new() }
-    }
-
+impl Rows {
     /// The poses, with other readings of their numbers.
     fn list(self) -> List {
-        let others = others(&self.columns, &self.positions, &self.numbers);
+        let others = others(&self.columns, &self.poses, &self.numbers);
         let poses = PoseList { others, ..self.poses.into() };
-        List { whose: self.whose, poses, words: self.columns.words }
+        List { whose: self.columns.whose, poses, words: self.columns.words }
     }
 
     /// Adds the pose of a row.
     fn add(&mut self, row: &Row<'_>, numbers: &mut Numbers) -> Result<()> {
-        let mut number = |column: &NumberColumn| -> Result<f64> {
-            let text = row.cells.get(column.at).map(|cell| cell.text()).unwrap_or_default();
-            let value = numbers
-                .parse(&text, row.line)
-                .map_err(|expected| row.error(column.at, format!("found `{text}`, expected {expected}")))?;
-            Ok(column.unit.to_si(value))
-        };
-        let [x, y, z] = &self.columns.position;
-        let place = Vector3::new(number(x)?, number(y)?, number(z)?);
-        let parts: Vec<f64> = self.columns.orientation.iter().map(number).collect::<Result<_>>()?;
-        let first = self.columns.orientation.first().map_or(0, |it| it.at);
-        if self.columns.form.quantity() == Unit::Radian
-            && parts.iter().any(|it| it.abs() > 2.01 * std::f64::consts::PI)
-        {
+        let PoseColumns { position, orientation, form, .. } = &self.columns;
+        let mut number =
+            |it: &NumberColumn| Ok(it.unit.to_si(row.number(it.at, numbers, format_args!(""))?));
+        let mut place = Vector3::zeros();
+        for (value, column) in place.iter_mut().zip(position) {
+            *value = number(column)?;
+        }
+        let parts: Vec<f64> = orientation.iter().map(number).collect::<Result<_>>()?;
+        let first = |columns: &[NumberColumn]| columns.first().map_or(0, |it| it.at);
+        let largest = parts.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        if form.quantity() == Unit::Radian && largest.abs() > LARGEST_ANGLE {
             let option = if self.columns.takes_angle_unit { ", or --units deg" } else { "" };
             let message = format!(
-                "found the angle {:.3} rad, expected at most a full turn: if the column is in degrees, write `[deg]` behind its name{option}",
-                parts.iter().copied().fold(0.0, |most: f64, it| if it.abs() > most.abs() {
-                    it
-                } else {
-                    most
-                })
+                "found the angle {largest:.3} rad, expected at most a full turn: if the column is in degrees, write `[deg]` behind its name{option}"
             );
-            return Err(row.error(first, message));
+            return Err(row.error(first(orientation), message));
         }
-        let rotation = self.columns.form.rotation(&parts).map_err(|message| row.error(first, message))?;
-        if !(place.iter().all(|it| it.abs() <= LARGEST_NUMBER)) {
-            return Err(row.error(
-                x.at,
-                format!("found a position {:.0} m away, expected one within a million metres", place.norm()),
-            ));
+        let rotation = form.rotation(&parts).map_err(|message| row.error(first(orientation), message))?;
+        if !place.iter().all(|it| it.abs() <= LARGEST_NUMBER) {
+            let far = place.norm();
+            let message = format!("found a position {far:.0} m away, expected one within a million metres");
+            return Err(row.error(first(position), message));
         }
-        self.positions.push(place);
         self.poses.push(Pose::new(rotation, place));
         self.numbers.push(parts);
         Ok(())

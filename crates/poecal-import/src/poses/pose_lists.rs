@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::picture_poses::{are_corners_of, poses_of_pictures};
 use super::pose_columns::{PoseUnits, Whose};
-use super::pose_file::{PoseFile, read_poses};
+use super::pose_file::{List, PoseFile, read_poses};
 use super::pose_names::by_name;
 use crate::ReadOptions;
 use poecal_fit::hand_eye::{PoseList, Touches};
@@ -68,8 +68,7 @@ pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<Pos
     match paths {
         [one] => side_by_side(read(one, None)?),
         [first, second] => {
-            let corners = [first, second].map(|path| are_corners_of(path));
-            match corners {
+            match [first, second].map(|path| are_corners_of(path)) {
                 [false, false] => joined(read(first, Some(Whose::Arm))?, read(second, Some(Whose::Target))?),
                 [false, true] => with_pictures(read(first, Some(Whose::Arm))?, second, source.pictures),
                 [true, false] => with_pictures(read(second, Some(Whose::Arm))?, first, source.pictures),
@@ -106,83 +105,61 @@ fn checksums<'a>(files: impl IntoIterator<Item = &'a PoseFile>) -> BTreeMap<Stri
     files.into_iter().filter_map(checksum).collect()
 }
 
+/// The arm's poses in some rows of its file, each with what was seen there.
+fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, String)) -> PosePairs {
+    let names = arm.row_names();
+    let width = arm.joints.len() / arm.lines.len().max(1);
+    let joints = |row: &usize| arm.joints.get(row * width..(row + 1) * width).unwrap_or_default();
+    PosePairs {
+        flange: flange.poses.of_rows(rows),
+        target: target.0,
+        joints: rows.iter().flat_map(joints).copied().collect(),
+        names: rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
+        understood: vec![flange.words, target.1],
+        ..PosePairs::default()
+    }
+}
+
 fn side_by_side(mut file: PoseFile) -> Result<PosePairs> {
     let (flange, target) = (file.take(Whose::Arm)?, file.take(Whose::Target)?);
-    Ok(PosePairs {
-        understood: vec![flange.words, target.words],
-        flange: flange.poses,
-        target: target.poses,
-        names: file.row_names(),
-        sha256: checksums([&file]),
-        joints: file.joints,
-        warnings: file.warnings,
-    })
+    let rows: Vec<usize> = (0..file.lines.len()).collect();
+    let pairs = paired(&file, flange, &rows, (target.poses, target.words));
+    Ok(PosePairs { sha256: checksums([&file]), warnings: file.warnings, ..pairs })
 }
 
 fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let mut warnings = std::mem::take(&mut first.warnings);
     let rows: Vec<(usize, usize)> = match (first.named(), second.named()) {
         (Some(one), Some(other)) => by_name(&one, &other, &mut warnings)?,
-        _ if first.lines.len() == second.lines.len() => {
-            (0..first.lines.len()).map(|row| (row, row)).collect()
-        }
+        _ if first.lines.len() == second.lines.len() => (0..first.lines.len()).zip(0..).collect(),
         _ => {
-            return Err(ErrorKind::Measurement
-                .error(format!(
-                    "found {} poses, and {} in {}, expected as many, or a column `image` of names in both files by which they are joined",
-                    first.lines.len(),
-                    second.lines.len(),
-                    second.path.display()
-                ))
-                .in_file(&first.path));
+            let message = format!(
+                "found {} poses, and {} in {}, expected as many, or a column `image` of names in both files by which they are joined",
+                first.lines.len(),
+                second.lines.len(),
+                second.path.display()
+            );
+            return Err(ErrorKind::Measurement.error(message).in_file(&first.path));
         }
     };
     let sha256 = checksums([&first, &second]);
-    let (mut arm, mut arm_rows, mut seen, mut seen_rows) = {
-        let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
-        (first, left, second, right)
-    };
-    // Named the other way round.
-    if arm.lists.iter().all(|list| list.whose == Whose::Target) {
-        std::mem::swap(&mut arm, &mut seen);
-        std::mem::swap(&mut arm_rows, &mut seen_rows);
-    }
+    let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
+    // Or named the other way round.
+    let is_turned = first.lists.iter().all(|list| list.whose == Whose::Target);
+    let [mut arm, mut seen] = if is_turned { [second, first] } else { [first, second] };
+    let [arm_rows, seen_rows] = if is_turned { [right, left] } else { [left, right] };
     let (flange, target) = (arm.take(Whose::Arm)?, seen.take(Whose::Target)?);
-    let names = arm.row_names();
-    Ok(PosePairs {
-        understood: vec![flange.words, target.words],
-        flange: flange.poses.of_rows(&arm_rows),
-        target: target.poses.of_rows(&seen_rows),
-        joints: of_rows(&arm.joints, arm.lines.len(), &arm_rows),
-        names: arm_rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
-        warnings,
-        sha256,
-    })
+    let pairs = paired(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), target.words));
+    Ok(PosePairs { warnings, sha256, ..pairs })
 }
 
 /// Poses of an arm, and the corners of pictures that were taken there.
 fn with_pictures(mut arm: PoseFile, corners: &Path, options: &ReadOptions) -> Result<PosePairs> {
     let pictures = poses_of_pictures(corners, &arm, options)?;
     let flange = arm.take(Whose::Arm)?;
-    let names = arm.row_names();
-    let mut warnings = std::mem::take(&mut arm.warnings);
-    warnings.extend(pictures.warnings);
     let mut sha256 = checksums([&arm]);
     sha256.extend(pictures.sha256);
-    Ok(PosePairs {
-        understood: vec![flange.words, pictures.words],
-        flange: flange.poses.of_rows(&pictures.rows),
-        target: pictures.poses,
-        joints: of_rows(&arm.joints, arm.lines.len(), &pictures.rows),
-        names: pictures.rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
-        warnings,
-        sha256,
-    })
-}
-
-/// Readings of some rows.
-fn of_rows(readings: &[f64], count: usize, rows: &[usize]) -> Vec<f64> {
-    let width = readings.len() / count.max(1);
-    let row = |row: &usize| readings.get(row * width..(row + 1) * width).unwrap_or_default().iter().copied();
-    rows.iter().flat_map(row).collect()
+    let pairs = paired(&arm, flange, &pictures.rows, (pictures.poses, pictures.words));
+    let warnings = arm.warnings.into_iter().chain(pictures.warnings).collect();
+    Ok(PosePairs { warnings, sha256, ..pairs })
 }

@@ -5,13 +5,13 @@ use std::path::Path;
 use crate::ReadOptions;
 use crate::instruments::Opening;
 use crate::pictures::taken::set_of;
+use crate::table::Table;
 use crate::table::configurations::in_its_file;
 use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use crate::table::times::time_of;
-use crate::table::{Table, refuse_more_rows};
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -95,11 +95,8 @@ fn of_blocks<'p>(
 /// All rows of a table of joint readings.
 pub(crate) fn rows_of(table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<JointsTable> {
     let mut joints = JointsTable::default();
-    let mut count = 0;
-    joints.rows = table.each_row("row of joint readings", |row| {
+    joints.rows = table.some_rows("at least one row of joint readings", |row| {
         joints.readings.extend_from_slice(cursor.read_joints(row)?);
-        count += 1;
-        refuse_more_rows(count, row)?;
         joints.lines.push(row.line);
         let layout = &cursor.layout;
         if layout.time.is_some() {

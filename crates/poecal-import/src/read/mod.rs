@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::messages::are_messages;
-use super::table::{Table, refuse_more_rows};
+use super::table::Table;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
 use crate::instruments::Opening;
 use crate::join::beside::{alone, beside, has_readings_of_pictures};
@@ -248,7 +248,7 @@ impl<'a> Reader<'a> {
     /// Takes all rows of a file, and counts them with the lost beams among them.
     fn rows(&mut self, table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<(usize, NamedLines)> {
         let mut lost = NamedLines::default();
-        let rows = table.each_row("measurement", |row| {
+        let rows = table.some_rows("at least one measurement", |row| {
             cursor.read(row)?;
             if let Some(by_line) = &self.readings {
                 // A line without readings has no partner.
@@ -265,7 +265,7 @@ impl<'a> Reader<'a> {
             if let Some(times) = &mut self.times {
                 times.resize(self.found.data.len(), time_of(row, &cursor.layout));
             }
-            refuse_more_rows(self.found.data.len(), row)
+            Ok(())
         })?;
         Ok((rows, lost))
     }

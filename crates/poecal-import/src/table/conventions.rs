@@ -1,23 +1,27 @@
 //! Orientations by the names of their columns: controllers', robots', cameras' and ROS's, with the units that their makers have.
 
+use std::sync::LazyLock;
+
 use super::orientation::OrientationForm;
-use poecal_arm::lie::angles::Angles;
+use poecal_arm::lie::angles::{Angles, MAKERS, MakersAngles};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
 /// A convention of orientations in columns.
 #[derive(Debug)]
 pub(crate) struct Convention {
-    /// The names of its columns, in small letters.
+    /// The names of its columns; large letters or small do not count.
     pub(crate) columns: &'static [&'static str],
     /// What they mean.
     pub(crate) form: OrientationForm,
     /// Units of places and of these columns where nothing states them, as this maker has them.
     pub(crate) usual: Option<(&'static str, &'static str)>,
     /// What it is called.
-    pub(crate) words: &'static str,
+    pub(crate) words: String,
     /// Whether no other maker means something else by columns of these names.
     pub(crate) is_unique: bool,
+    /// Whether it is the angles of a maker of controllers, in letters of its own.
+    pub(crate) is_makers: bool,
 }
 
 impl Convention {
@@ -26,59 +30,61 @@ impl Convention {
         let (length, angle) = self.usual?;
         NamedUnit::parse(if quantity == Unit::Metre { length } else { angle }, quantity).ok()
     }
+
+    /// Whether a name is that of one of its columns.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|it| it.eq_ignore_ascii_case(name))
+    }
+
+    fn of_maker(it: &'static MakersAngles) -> Self {
+        Convention {
+            columns: &it.names,
+            form: OrientationForm::Angles(it.angles),
+            usual: Some(("mm", "deg")),
+            words: format!("{}'s {}", it.maker, it.names.join(", ")),
+            is_unique: true,
+            is_makers: true,
+        }
+    }
 }
 
-const CONTROLLER: Option<(&str, &str)> = Some(("mm", "deg"));
-
-const fn by_name(columns: &'static [&'static str], form: OrientationForm, words: &'static str) -> Convention {
-    Convention { columns, form, usual: None, words, is_unique: false }
-}
-
-const fn of_maker(columns: &'static [&'static str], angles: Angles, words: &'static str) -> Convention {
-    let form = OrientationForm::Angles(angles);
-    Convention { columns, form, usual: CONTROLLER, words, is_unique: true }
-}
-
-/// OpenCV's rotation vector, by the keys of its columns.
-pub(crate) const OPENCV: &[&str] = &["rvx", "rvy", "rvz"];
-/// Angles about x, y, z as turned, which makers call rx, ry, rz, as others call rotation vectors.
-const AS_TURNED: &[&str] = &["ix", "iy", "iz"];
-const MATRIX: &[&str] = &["m00", "m01", "m02", "m10", "m11", "m12", "m20", "m21", "m22"];
-const METRES: Option<(&str, &str)> = Some(("m", "rad"));
+/// OpenCV's rotation vector.
+pub(crate) const OPENCV: &[&str] = &["rvecx", "rvecy", "rvecz"];
+/// Names of angles by which several makers mean several things.
+pub(crate) const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// All conventions: of several that a header has, the first is meant.
-pub(crate) const CONVENTIONS: [Convention; 13] = [
-    by_name(&["qx", "qy", "qz", "qw"], OrientationForm::QuaternionXyzw, "quaternion by names"),
-    Convention {
-        usual: Some(("mm", "1")),
-        is_unique: true,
-        ..by_name(&["q1", "q2", "q3", "q4"], OrientationForm::QuaternionWxyz, "ABB's quaternion, q1 real")
-    },
-    Convention {
-        is_unique: true,
-        ..by_name(&["q0", "q1", "q2", "q3"], OrientationForm::QuaternionWxyz, "quaternion, q0 real")
-    },
-    Convention {
-        usual: METRES,
-        ..by_name(OPENCV, OrientationForm::ROTATION_VECTOR, "OpenCV's rvec and tvec")
-    },
-    of_maker(&["a", "b", "c"], Angles::ZYX, "KUKA's A, B, C"),
-    of_maker(&["w", "p", "r"], Angles::ROLL_PITCH_YAW, "FANUC's W, P, R"),
-    of_maker(&["o", "a", "t"], Angles::ZYZ, "Kawasaki's O, A, T"),
-    of_maker(&["a", "e", "r"], Angles::ZYZ, "Comau's A, E, R"),
-    of_maker(&["u", "v", "w"], Angles::ZYX, "Epson's U, V, W"),
-    Convention {
-        is_unique: false,
-        ..of_maker(AS_TURNED, Angles::XYZ, "angles about x, y, z as turned (Stäubli's RX, RY, RZ)")
-    },
-    by_name(
-        &["roll", "pitch", "yaw"],
-        OrientationForm::ROLL_PITCH_YAW,
-        "roll, pitch, yaw about fixed axes x, y, z",
-    ),
-    Convention {
-        usual: METRES,
-        ..by_name(&["rx", "ry", "rz"], OrientationForm::ROTATION_VECTOR, "Universal Robots' rotation vector")
-    },
-    by_name(MATRIX, OrientationForm::MatrixByRows, "matrix by rows"),
-];
+pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
+    let named = |columns, form, words: &str, usual, is_unique| Convention {
+        columns,
+        form,
+        usual,
+        words: words.to_owned(),
+        is_unique,
+        is_makers: false,
+    };
+    let (xyzw, wxyz) = (OrientationForm::QuaternionXyzw, OrientationForm::QuaternionWxyz);
+    let (vector, turns) = (OrientationForm::ROTATION_VECTOR, OrientationForm::ROLL_PITCH_YAW);
+    let (matrix, metres) = (OrientationForm::MatrixByRows, Some(("m", "rad")));
+    let first = [
+        named(xyzw.part_names(), xyzw, "quaternion by names", None, false),
+        named(&["q1", "q2", "q3", "q4"], wxyz, "ABB's quaternion, q1 real", Some(("mm", "1")), true),
+        named(&["q0", "q1", "q2", "q3"], wxyz, "quaternion, q0 real", None, true),
+        named(OPENCV, vector, "OpenCV's rvec and tvec", metres, false),
+    ];
+    let makers = MAKERS.iter().filter(|it| it.names != AMBIGUOUS).map(Convention::of_maker);
+    let last = [
+        // As makers turn about what they call rx, ry, rz, as others call rotation vectors.
+        named(
+            &["intrinsicx", "intrinsicy", "intrinsicz"],
+            OrientationForm::Angles(Angles::XYZ),
+            "angles about x, y, z as turned (Stäubli's RX, RY, RZ)",
+            Some(("mm", "deg")),
+            false,
+        ),
+        named(turns.part_names(), turns, "roll, pitch, yaw about fixed axes x, y, z", None, false),
+        named(vector.part_names(), vector, "Universal Robots' rotation vector", metres, false),
+        named(matrix.part_names(), matrix, "matrix by rows", None, false),
+    ];
+    first.into_iter().chain(makers).chain(last).collect()
+});

@@ -8,6 +8,7 @@ use super::column_names::number_of_column;
 use super::configurations::advice;
 use super::inputs::{Input, InputSource};
 use super::places::Sheet;
+use super::roles::unit_of;
 use poecal_fit::input_doubts::{Doubt, DoubtPlace};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
@@ -83,9 +84,7 @@ pub(crate) fn unit_in_name(text: &str, name: &str) -> Option<NamedUnit> {
     let rest = text.get(start.len()..).filter(|rest| !rest.starts_with(char::is_alphanumeric))?;
     let words = rest.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty());
     match words.collect::<Vec<_>>().as_slice() {
-        [unit] | ["in", unit] => {
-            NamedUnit::parse_any(unit).or_else(|_| NamedUnit::parse_any(&unit.to_lowercase())).ok()
-        }
+        [unit] | ["in", unit] => unit_of(unit),
         _ => None,
     }
 }
@@ -286,6 +285,11 @@ impl<'a> Header<'a> {
     /// Number of columns with this name.
     pub(crate) fn count(&self, name: &str) -> usize {
         self.cells.iter().filter(|cell| cell.name == name).count()
+    }
+
+    /// A column as it is in the file.
+    pub(crate) fn text(&self, index: usize) -> &str {
+        self.cells.get(index).map_or("", |cell| cell.text.as_str())
     }
 
     /// An error at a column's name.

@@ -20,7 +20,9 @@ pub(crate) mod numbered;
 pub(crate) mod orientation;
 pub(crate) mod picture_names;
 pub(crate) mod places;
+pub(crate) mod roles;
 pub(crate) mod row;
+pub(crate) mod rows;
 pub(crate) mod socket_distance;
 pub(crate) mod targets;
 pub(crate) mod text;
@@ -182,26 +184,6 @@ impl<'a> Table<'a> {
     /// Checksum of the bytes read so far.
     pub(crate) fn sha256(&self) -> Option<String> {
         self.blocks.sha256()
-    }
-
-    /// Hands on every row, and counts them; `expected` is what there is at least one of.
-    pub(crate) fn each_row(
-        &mut self,
-        expected: &str,
-        mut each: impl FnMut(&Row<'_>) -> Result<()>,
-    ) -> Result<usize> {
-        let mut count = 0;
-        while let Some(mut rows) = self.next_block()? {
-            while let Some(row) = rows.next()? {
-                count += 1;
-                each(&row)?;
-            }
-        }
-        if count == 0 {
-            let message = format!("found a header and no rows, expected at least one {expected}");
-            return Err(ErrorKind::Measurement.error(message).at_line(self.header.path, self.header.line));
-        }
-        Ok(count)
     }
 
     /// The rows of the next block.
@@ -392,11 +374,6 @@ impl Row<'_> {
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let offset = self.cells.get(index).map_or(0, |cell| cell.offset);
         (self.line, character_column(self.text, offset))
-    }
-
-    /// The text of a cell; none beyond the last one.
-    pub(crate) fn raw(&self, index: usize) -> &str {
-        self.cells.get(index).map_or("", |cell| cell.raw)
     }
 
     /// The text of a cell without quotes, unless it is empty.

@@ -4,37 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::header::Header;
 use super::mapping::ColumnMap;
+use super::roles::{Role, plain};
 use poecal_model::robot::{ReadingKind, Robot};
-
-/// What numbered columns of joints are called, in small letters and without what separates: alone, or with a word of [`MEASURED`] before or behind.
-const NUMBERED: [&str; 11] =
-    ["q", "j", "a", "joint", "axis", "theta", "th", "jnt", "jointposition", "jointangle", "angle"];
-/// What is written beside that of a reading.
-const MEASURED: [&str; 6] = ["actual", "measured", "meas", "current", "act", "feedback"];
-/// What is written beside a joint's name where it is no reading: what was wanted, and other quantities.
-pub(crate) const OTHERS: [&str; 21] = [
-    "target",
-    "desired",
-    "wanted",
-    "command",
-    "commanded",
-    "cmd",
-    "goal",
-    "setpoint",
-    "reference",
-    "velocity",
-    "speed",
-    "acceleration",
-    "torque",
-    "effort",
-    "moment",
-    "temperature",
-    "voltage",
-    "amps",
-    "tau",
-    "error",
-    "load",
-];
 
 /// Joints with the columns that are taken for them, if no column has the name of a joint.
 pub(crate) fn numbered(
@@ -52,11 +23,6 @@ pub(crate) fn numbered(
     Some(joints.into_iter().cloned().zip(columns).collect())
 }
 
-/// Letters and digits, small.
-pub(crate) fn plain(text: &str) -> String {
-    text.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-}
-
 /// The columns that have the names of all joints with the same before and behind, if they are the only ones.
 fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
     let cells: Vec<(String, &String)> =
@@ -69,7 +35,7 @@ fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
     let around: BTreeSet<(&str, &str)> =
         cells.iter().filter_map(|(text, _)| text.split_once(first.as_str())).collect();
     let columns = |(before, behind): (&str, &str)| -> Option<Vec<String>> {
-        let is_other = OTHERS.iter().any(|word| before.contains(word) || behind.contains(word));
+        let is_other = Role::Other.is_in(before) || Role::Other.is_in(behind);
         let of = |joint: &&String| {
             let wanted = format!("{before}{}{behind}", plain(joint));
             let mut found = cells.iter().filter(|(text, _)| *text == wanted);
@@ -97,13 +63,11 @@ fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
     let of = |is_it: &dyn Fn(&str) -> bool| {
         only(groups.iter().filter(|(stem, _)| is_it(stem)).filter_map(|(_, numbers)| whole(numbers)))
     };
-    let is_measured = |stem: &str| {
-        MEASURED.iter().any(|word| {
-            let rest = stem.strip_prefix(word).or_else(|| stem.strip_suffix(word));
-            rest.is_some_and(|rest| NUMBERED.contains(&rest))
-        })
+    let is_reading = |stem: &str| {
+        let rest = |word| stem.strip_prefix(word).or_else(|| stem.strip_suffix(word));
+        Role::Reading.words().filter_map(rest).any(|rest| Role::Joint.has(rest))
     };
-    of(&is_measured).or_else(|| of(&|stem| NUMBERED.contains(&stem)))
+    of(&is_reading).or_else(|| of(&|stem| Role::Joint.has(stem)))
 }
 
 /// The letters of a name and its one number.

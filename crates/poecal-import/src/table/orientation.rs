@@ -33,25 +33,56 @@ pub(crate) enum OrientationForm {
     Angles(Angles),
 }
 
-/// Three angles.
-const fn angles(of: Angles) -> OrientationForm {
-    OrientationForm::Angles(of)
-}
+/// A form with its name in a mapping, its words, and the contents of its columns in order.
+type Named = (OrientationForm, &'static str, &'static str, &'static [&'static str]);
+
+/// Forms that are not three angles about axes, and the most frequent ones, first the most frequent.
+const NAMED: [Named; 6] = [
+    (OrientationForm::QuaternionXyzw, "quaternion_xyzw", "quaternion x, y, z, w", &["qx", "qy", "qz", "qw"]),
+    (OrientationForm::QuaternionWxyz, "quaternion_wxyz", "quaternion w, x, y, z", &["qw", "qx", "qy", "qz"]),
+    (OrientationForm::ROTATION_VECTOR, "rotation_vector", "rotation vector", &["rx", "ry", "rz"]),
+    (
+        OrientationForm::ROLL_PITCH_YAW,
+        "roll_pitch_yaw",
+        "roll, pitch, yaw (extrinsic Euler angles about x, y, z)",
+        &["roll", "pitch", "yaw"],
+    ),
+    (
+        OrientationForm::MatrixByRows,
+        "rotation_matrix",
+        "rotation matrix by rows",
+        &["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"],
+    ),
+    (
+        OrientationForm::MatrixByColumns,
+        "rotation_matrix_by_columns",
+        "rotation matrix by columns",
+        &["r11", "r21", "r31", "r12", "r22", "r32", "r13", "r23", "r33"],
+    ),
+];
 
 impl OrientationForm {
     /// Axis times angle.
-    pub(crate) const ROTATION_VECTOR: Self = angles(Angles::RotationVector);
+    pub(crate) const ROTATION_VECTOR: Self = OrientationForm::Angles(Angles::RotationVector);
     /// URDF's roll, pitch, yaw.
-    pub(crate) const ROLL_PITCH_YAW: Self = angles(Angles::ROLL_PITCH_YAW);
+    pub(crate) const ROLL_PITCH_YAW: Self = OrientationForm::Angles(Angles::ROLL_PITCH_YAW);
+    /// Forms that columns have by our names.
+    pub(crate) const BY_NAME: [Self; 3] = [Self::QuaternionXyzw, Self::ROTATION_VECTOR, Self::ROLL_PITCH_YAW];
+
+    /// Forms that have a name of their own, first the most frequent.
+    pub(crate) fn with_names() -> impl Iterator<Item = Self> {
+        NAMED.iter().map(|it| it.0)
+    }
+
+    fn named(self) -> Option<&'static Named> {
+        NAMED.iter().find(|it| it.0 == self)
+    }
 
     /// As a mapping has it.
     pub(crate) fn mapped(self) -> String {
-        match self {
-            OrientationForm::QuaternionXyzw => "quaternion_xyzw".to_owned(),
-            OrientationForm::QuaternionWxyz => "quaternion_wxyz".to_owned(),
-            OrientationForm::MatrixByRows => "rotation_matrix".to_owned(),
-            OrientationForm::MatrixByColumns => "rotation_matrix_by_columns".to_owned(),
-            OrientationForm::Angles(angles) => angles.to_string(),
+        match (self, self.named()) {
+            (OrientationForm::Angles(angles), None) => angles.to_string(),
+            (_, named) => named.map_or("", |it| it.1).to_owned(),
         }
     }
 
@@ -65,32 +96,15 @@ impl OrientationForm {
         if self.len() == 3 { Unit::Radian } else { Unit::One }
     }
 
-    /// Column names in our own files, in order; empty for Euler angles, which these do not have.
+    /// Column names in our own files, in order; empty for matrices and Euler angles, which these do not have.
     pub(crate) fn own_columns(self) -> &'static [&'static str] {
-        match self {
-            Self::ROLL_PITCH_YAW
-            | Self::ROTATION_VECTOR
-            | OrientationForm::QuaternionXyzw
-            | OrientationForm::QuaternionWxyz => self.part_names(),
-            OrientationForm::MatrixByRows | OrientationForm::MatrixByColumns | OrientationForm::Angles(_) => {
-                &[]
-            }
-        }
+        let is_own = self == Self::QuaternionWxyz || Self::BY_NAME.contains(&self);
+        if is_own { self.part_names() } else { &[] }
     }
 
     /// Contents of its columns, in order.
     pub(crate) fn part_names(self) -> &'static [&'static str] {
-        match self {
-            OrientationForm::QuaternionXyzw => &["qx", "qy", "qz", "qw"],
-            OrientationForm::QuaternionWxyz => &["qw", "qx", "qy", "qz"],
-            OrientationForm::MatrixByRows => &["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33"],
-            OrientationForm::MatrixByColumns => {
-                &["r11", "r21", "r31", "r12", "r22", "r32", "r13", "r23", "r33"]
-            }
-            Self::ROTATION_VECTOR => &["rx", "ry", "rz"],
-            Self::ROLL_PITCH_YAW => &["roll", "pitch", "yaw"],
-            OrientationForm::Angles(_) => &["first angle", "second angle", "third angle"],
-        }
+        self.named().map_or(&["first angle", "second angle", "third angle"], |it| it.3)
     }
 
     /// The rotation of the columns' values (radians, quaternion parts or a matrix), or what was found and expected.
@@ -137,14 +151,8 @@ impl FromStr for OrientationForm {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let others = [
-            OrientationForm::QuaternionXyzw,
-            OrientationForm::QuaternionWxyz,
-            OrientationForm::MatrixByRows,
-            OrientationForm::MatrixByColumns,
-        ];
-        let angles = text.parse().ok().map(OrientationForm::Angles);
-        let form = angles.or_else(|| others.into_iter().find(|it| it.mapped() == text));
+        let named = NAMED.iter().find(|it| it.1 == text).map(|it| it.0);
+        let form = named.or_else(|| text.parse().ok().map(OrientationForm::Angles));
         form.ok_or_else(|| ErrorKind::Syntax.error(format!(
                 "found the orientation form `{text}`, expected quaternion_xyzw, quaternion_wxyz, rotation_vector, \
                  rotation_matrix, rotation_matrix_by_columns, roll_pitch_yaw, or intrinsic_ or extrinsic_ and three axes such as intrinsic_xyz"
@@ -154,20 +162,13 @@ impl FromStr for OrientationForm {
 
 impl fmt::Display for OrientationForm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let euler = |f: &mut fmt::Formatter<'_>, word: &str, axes: &[usize; 3]| {
-            let letters = axes.map(|axis| ["x", "y", "z"].get(axis).copied().unwrap_or_default());
-            write!(f, "{word} Euler angles about {}", letters.join(", "))
+        let (word, axes) = match self {
+            OrientationForm::Angles(Angles::Intrinsic(axes)) => ("intrinsic", axes),
+            OrientationForm::Angles(Angles::Extrinsic(axes)) if self.named().is_none() => ("extrinsic", axes),
+            _ => return f.write_str(self.named().map_or("", |it| it.2)),
         };
-        match self {
-            OrientationForm::QuaternionXyzw => f.write_str("quaternion x, y, z, w"),
-            OrientationForm::QuaternionWxyz => f.write_str("quaternion w, x, y, z"),
-            OrientationForm::MatrixByRows => f.write_str("rotation matrix by rows"),
-            OrientationForm::MatrixByColumns => f.write_str("rotation matrix by columns"),
-            &Self::ROLL_PITCH_YAW => f.write_str("roll, pitch, yaw (extrinsic Euler angles about x, y, z)"),
-            OrientationForm::Angles(Angles::RotationVector) => f.write_str("rotation vector"),
-            OrientationForm::Angles(Angles::Intrinsic(axes)) => euler(f, "intrinsic", axes),
-            OrientationForm::Angles(Angles::Extrinsic(axes)) => euler(f, "extrinsic", axes),
-        }
+        let letters = axes.map(|axis| ["x", "y", "z"].get(axis).copied().unwrap_or_default());
+        write!(f, "{word} Euler angles about {}", letters.join(", "))
     }
 }
 

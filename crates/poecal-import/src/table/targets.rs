@@ -14,9 +14,6 @@ use poecal_numerics::error::{ErrorKind, MissingColumn, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 
-const DEFAULT_FORMS: [OrientationForm; 3] =
-    [OrientationForm::QuaternionXyzw, OrientationForm::ROTATION_VECTOR, OrientationForm::ROLL_PITCH_YAW];
-
 /// Beginning of columns of expanded uncertainties (95 %), in place of `sigma_`, and their coverage factor.
 const EXPANDED: &str = "U95_";
 
@@ -75,7 +72,7 @@ impl Builder<'_> {
         };
         let orientation = match (&target.orientation, own_form, &convention) {
             (Some(spec), ..) => Some(self.mapped_orientation(&prefix, spec)?),
-            (None, Some(form), _) => Some(self.orientation(form, form.own_columns(), None)?),
+            (None, Some(form), _) => Some(self.orientation(form, form.part_names(), None)?),
             (None, None, Some((it, columns))) => {
                 let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
                 Some(self.orientation(it.form, &columns, usual(it.form.quantity()))?)
@@ -227,13 +224,10 @@ impl Builder<'_> {
         })
     }
 
-    /// The unused column of a maker: letters as the maker writes them, large, but for those of quaternions, of which there are no more.
+    /// The unused column of a maker: letters as the maker writes them, but for those of quaternions, of which there are no more.
     fn makers_column(&self, name: &str) -> Option<usize> {
         let letter = name.strip_suffix(|it: char| it.is_ascii_digit());
-        let is_it = |text: &str| match letter {
-            Some(_) => text.eq_ignore_ascii_case(name),
-            None => text == name.to_uppercase(),
-        };
+        let is_it = |text: &str| text == name || letter.is_some() && text.eq_ignore_ascii_case(name);
         // Joints may be called q1 to q6.
         let numbers = letter.map(|letter| {
             let of = |text: &str| {
@@ -257,8 +251,8 @@ impl Builder<'_> {
     /// The form of the orientation columns with our own names: all of one form, or none.
     fn own_form(&self) -> Result<Option<OrientationForm>> {
         let mut chosen: Option<(OrientationForm, &str)> = None;
-        for form in DEFAULT_FORMS {
-            for name in form.own_columns() {
+        for form in OrientationForm::BY_NAME {
+            for name in form.part_names() {
                 let Some(index) = self.header.find(name)?.filter(|&index| !self.is_used(index)) else {
                     continue;
                 };

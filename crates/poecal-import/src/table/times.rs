@@ -1,11 +1,9 @@
 //! Columns with the times of rows.
 
 use super::layout::ColumnLayout;
-use super::numbered::plain;
+use super::roles::{Role, plain};
 use crate::table::Row;
 
-/// What columns with the time of a row are called, in small letters without what separates.
-const NAMES: [&str; 8] = ["time", "t", "timestamp", "stamp", "times", "timeseconds", "seconds", "elapsed"];
 /// Units of times, with their seconds.
 const UNITS: [(&str, f64); 6] =
     [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
@@ -14,13 +12,11 @@ const UNITS: [(&str, f64); 6] =
 pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
     let plain = plain(name);
     let own = |unit: &str| UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(unit)).map(|it| it.1);
-    match unit {
-        Some(unit) => own(unit).filter(|_| NAMES.contains(&plain.as_str())),
-        None if NAMES.contains(&plain.as_str()) => Some(1.0),
-        None => {
-            let stem = ["timestamp", "time"].into_iter().find_map(|it| plain.strip_prefix(it))?;
-            own(stem)
-        }
+    match (Role::Time.has(&plain), unit) {
+        (true, None) => Some(1.0),
+        (true, Some(unit)) => own(unit),
+        (false, None) => own(["timestamp", "time"].into_iter().find_map(|it| plain.strip_prefix(it))?),
+        (false, Some(_)) => None,
     }
 }
 

@@ -89,7 +89,7 @@ impl FileUnderstanding {
             units_line: table.header.units_line,
             decimal_sign: cursor.numbers.sign(),
             columns: columns(table, &cursor.layout, &cursor.ranges),
-            orientation: None,
+            orientation: orientation(&cursor.layout),
             pose: match cursor.layout.pose {
                 PoseDirection::DeviceFromTarget => "device_from_target",
                 PoseDirection::TargetFromDevice => "target_from_device",

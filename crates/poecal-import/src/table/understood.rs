@@ -6,7 +6,6 @@ use std::path::Path;
 use super::columns::turns;
 use super::cursor::Cursor;
 use super::layout::ColumnLayout;
-use super::understanding;
 use super::understanding::FileUnderstanding;
 use crate::read::Reader;
 use crate::table::Table;
@@ -55,7 +54,6 @@ impl Reader<'_> {
             FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
         // Joints whose readings another file has are no columns of this one.
         own.columns.drain(..if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 });
-        own.orientation = understanding::orientation(layout);
         self.found.understood.push(own);
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Robot makers' columns of orientations without a unique meaning.
 
-use crate::table::conventions::CONVENTIONS;
+use crate::table::conventions::{AMBIGUOUS, CONVENTIONS};
 use crate::table::header::{Header, HeaderCell};
 use crate::table::inputs::InputSource;
 use crate::table::layout::ColumnLayout;
@@ -8,9 +8,6 @@ use crate::table::mapping::ColumnMap;
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::named_unit::UnitSource;
-
-/// Columns that makers call alike and mean in several ways.
-const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// Advice on columns that may hold an orientation and are not read as one.
 pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
@@ -62,7 +59,7 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
         // Joints may be called q1 to q6.
         let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
         let form = it.form.mapped();
-        all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.to_owned()))
+        all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.clone()))
     });
     let ((columns, mapping), words) = known.or_else(|| {
         let own = MAKERS.iter().filter(|it| it.names == AMBIGUOUS);
