@@ -86,12 +86,12 @@ pub fn guess_columns(
 fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<ColumnGuess> {
     let plain = ReadOptions::default();
     if let Opened::Made(made) = (Opening { robot, options: &plain }).opened(path, MEASURED)?
-        && made.title() != WORKBOOK
-        && made.title() != headerless::FORM.title
+        && made.title != WORKBOOK
+        && made.title != headerless::FORM.title
     {
         let message = format!(
             "found {}, which is read as it is, expected a table with columns of its own: leave the mapping out",
-            made.title()
+            made.title
         );
         return Err(ErrorKind::Option.error(message).in_file(path));
     }

@@ -1,8 +1,8 @@
 //! The table that *Auto ID* of DELMIA reads: no header, tabs, the name, x, y, z in millimetres, roll, pitch, yaw in degrees, and the joints in
 //! degrees.
 
-use super::maker::{Made, Refused, Value};
-use super::words::{lines, number};
+use super::maker::{Column, Made, Refused, Value, place};
+use super::words::{cells, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
 
@@ -11,14 +11,10 @@ pub(crate) const FORM: Form = Form { title: "a table of Auto ID (DELMIA)", is_it
 /// Numbers before the joints.
 const POSE: usize = 6;
 
-fn cells(line: &str) -> Vec<&str> {
-    super::words::cells(line, Separator::Tab)
-}
-
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {
     let count = opening.robot.joint_reading_names().len();
     let is_row = |line: &str| {
-        let found = cells(line);
+        let found = cells(line, Separator::Tab);
         found.len() == 1 + POSE + count
             && found.first().is_some_and(|it| number(it).is_none())
             && found.iter().skip(1).all(|it| number(it).is_some())
@@ -28,21 +24,17 @@ fn is_it(text: &str, opening: &Opening<'_>) -> bool {
 }
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let columns: Vec<String> = ["id", "x[mm]", "y[mm]", "z[mm]", "roll[deg]", "pitch[deg]", "yaw[deg]"]
-        .iter()
-        .map(|it| (*it).to_owned())
-        .chain(opening.joint_columns("deg"))
-        .collect();
-    let mut made = Made::new(1, columns.iter().map(String::as_str));
+    let angles = ["roll", "pitch", "yaw"].map(|it| Column::from(it).in_unit("deg"));
+    let pose = std::iter::once(Column::from("id")).chain(place("mm")).chain(angles);
+    let mut made = Made::new(1, pose.chain(opening.joint_columns("deg")));
     for (line, content) in lines(text) {
-        let found = cells(content);
-        if found.len() != columns.len() {
+        let found = cells(content, Separator::Tab);
+        let (count, expected) = (found.len(), made.width());
+        if count != expected {
             return Refused::at(
                 line,
                 format!(
-                    "found {} cells, expected {}: a name, x, y, z, roll, pitch, yaw and the joints",
-                    found.len(),
-                    columns.len()
+                    "found {count} cells, expected {expected}: a name, x, y, z, roll, pitch, yaw and the joints"
                 ),
             );
         }

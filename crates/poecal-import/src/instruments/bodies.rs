@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::Opening;
-use super::maker::{Made, Refused, Value};
+use super::maker::{Column, Made, Refused, Value, place, quaternion};
 use super::rigid::{self, Places, Renamed};
-use super::words::{number, quoted};
+use super::words::{lines, quoted};
 use poecal_numerics::error::{first_few, shown};
 
 /// A body or a marker that moved less than this, metres, stands.
@@ -42,11 +42,24 @@ pub(crate) struct Body {
     pub(crate) quaternion: Option<[usize; 4]>,
 }
 
-/// Frames of a recorder: cells by line.
+impl Body {
+    /// Its columns.
+    fn columns(&self) -> Vec<usize> {
+        self.position.into_iter().chain(self.quaternion.into_iter().flatten()).collect()
+    }
+}
+
+/// What was seen at a time.
+pub(crate) struct Frame<'t> {
+    pub(crate) line: usize,
+    /// Seconds.
+    pub(crate) time: Option<f64>,
+    pub(crate) cells: Vec<Value<'t>>,
+}
+
+/// Frames of a recorder.
 pub(crate) struct Frames<'t> {
-    pub(crate) rows: Vec<(usize, Vec<&'t str>)>,
-    /// Time of each row, seconds.
-    pub(crate) times: Vec<Option<f64>>,
+    pub(crate) all: Vec<Frame<'t>>,
     /// Unit of positions, with its size in metres.
     pub(crate) unit: (&'static str, f64),
     /// The line that names the columns.
@@ -58,150 +71,146 @@ pub(crate) struct Frames<'t> {
 }
 
 impl<'t> Frames<'t> {
-    /// No frames yet.
-    pub(crate) fn of(unit: (&'static str, f64), header: usize) -> Self {
-        Frames { rows: Vec::new(), times: Vec::new(), unit, header, unnamed: Vec::new(), are_unnamed: false }
+    /// The frames in the lines below the header. `time` of the cells of a line, and of the number and the time of the frame before, is that of its frame,
+    /// or what is wrong with the line.
+    pub(crate) fn of(
+        text: &'t str,
+        (header, unit): (usize, (&'static str, f64)),
+        separator: char,
+        mut time: impl FnMut(&[&str], usize, Option<f64>) -> Result<Option<f64>, String>,
+    ) -> Result<Self, Refused> {
+        let mut all: Vec<Frame<'t>> = Vec::new();
+        for (line, content) in lines(text).filter(|it| it.0 > header) {
+            let cells = cells(content, separator);
+            let time = time(&cells, all.len(), all.last().and_then(|it| it.time));
+            let time = time.or_else(|message| Refused::at(line, message))?;
+            all.push(Frame { line, time, cells: cells.into_iter().map(Value::Text).collect() });
+        }
+        Ok(Frames { all, unit, header, unnamed: Vec::new(), are_unnamed: false })
     }
 
     /// The table of the body that moves; of several, of the one that was asked for.
     pub(crate) fn table(&self, bodies: &[Body], what: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-        if self.rows.is_empty() {
+        if self.all.is_empty() {
             return Refused::at(
                 self.header,
                 "found the names of columns and no frame, expected at least one",
             );
         }
-        let (taken, left) = self.taken(bodies, what, opening)?;
-        for it in taken.iter().copied().chain(&self.unnamed) {
-            let columns: Vec<usize> =
-                it.position.iter().chain(it.quaternion.iter().flatten()).copied().collect();
-            self.refuse_words(&it.name, &columns)?;
+        let taken = self.taken(bodies, what, opening)?;
+        let places: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
+        for it in &places {
+            self.refuse_words(&it.name, &it.columns())?;
         }
         let has_several = taken.len() > 1;
         let is_posed = taken.iter().any(|it| it.quaternion.is_some());
-        let unit = self.unit.0;
-        let columns = columns_of_bodies(has_several, is_posed, unit);
-        let mut made = Made::new(self.header, columns.iter().map(String::as_str));
-        let renamed = if is_posed { None } else { self.renamed(&taken) };
-        let places: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
-        let given: Vec<(usize, &Body)> = taken.iter().copied().enumerate().collect();
-        let given = self.named(given, renamed.as_ref())?;
-        for (frame, ((line, cells), time)) in self.rows.iter().zip(&self.times).enumerate() {
+        let renamed = if is_posed { None } else { self.renamed(&taken, &places) };
+        let given = self.named(&taken, renamed.as_ref())?;
+        let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
+        let all_names = first_few(&names);
+        let column = |it: Column| {
+            let source = format!("{} of {all_names}", it.name());
+            it.made_of(source)
+        };
+        let columns = std::iter::once(Column::from("time").in_unit("s"))
+            .chain(has_several.then(|| Column::from("target")))
+            .chain(place(self.unit.0).map(column))
+            .chain(quaternion().map(column).filter(|_| is_posed));
+        let mut made = Made::new(self.header, columns);
+        for (number, frame) in self.all.iter().enumerate() {
             for &(at, named) in &given {
-                let of = |at: usize| Value::Text(cells.get(at).copied().unwrap_or_default());
-                let place = renamed.as_ref().map_or(Some(at), |it| it.place_of(frame, at));
+                let place = renamed.as_ref().map_or(Some(at), |it| it.place_of(number, at));
                 let place = place.and_then(|at| places.get(at).copied());
-                let is_seen = place.is_some_and(|it| self.position(cells, it).is_some());
-                let body = place.unwrap_or(named);
-                let mut row = vec![time.map_or(Value::Empty, Value::Number)];
-                if has_several {
-                    row.push(Value::Text(&named.name));
-                }
-                let parts = body.position.iter().chain(body.quaternion.iter().flatten());
-                row.extend(parts.map(|&at| if is_seen { of(at) } else { Value::Empty }));
-                made.row(*line, row);
+                let is_seen = place.is_some_and(|it| frame.position(it).is_some());
+                let name = has_several.then_some(Value::Text(&named.name));
+                let parts = place.unwrap_or(named).columns().into_iter();
+                let parts = parts.map(|at| if is_seen { frame.cell(at) } else { Value::Empty });
+                let time = frame.time.map_or(Value::Empty, Value::Number);
+                made.row(frame.line, std::iter::once(time).chain(name).chain(parts));
             }
         }
-        let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
-        made.sources = (columns.iter().skip(if has_several { 2 } else { 1 }))
-            .map(|it| {
-                (it.clone(), format!("{} of {}", it.split('[').next().unwrap_or_default(), first_few(&names)))
-            })
-            .collect();
-        let count = self.rows.len();
-        made.said.push(format!("{count} frames of {}, {unit}", names.join(", ")));
+        made.said.push(format!("{} frames of {}, {}", self.all.len(), names.join(", "), self.unit.0));
+        let is_taken = |it: &Body| taken.iter().any(|taken| std::ptr::eq(*taken, it));
+        let left = quoted(bodies.iter().filter(|it| !is_taken(it)).map(|it| it.name.as_str()));
         if !left.is_empty() {
-            made.said.push(format!("left out {}", quoted(left)));
+            made.said.push(format!("left out {left}"));
         }
         if let Some(renamed) = renamed {
-            self.say_renamed(&mut made, &renamed, &taken);
+            let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
+            let lines: Vec<usize> = self.all.iter().map(|it| it.line).collect();
+            let is_seen = |frame: usize, column: usize| {
+                let place = taken.get(column).zip(self.all.get(frame));
+                place.is_some_and(|(body, frame)| frame.position(body).is_some())
+            };
+            let (said, warned) = renamed.words(&names, &lines, is_seen);
+            made.said.extend(said);
+            made.warned.extend(warned);
         }
         Ok(made)
     }
 
-    /// Of markers without names those that make a body.
+    /// The bodies that are taken, with their numbers; of markers without names those that make a body.
     fn named<'b>(
         &self,
-        given: Vec<(usize, &'b Body)>,
+        taken: &[&'b Body],
         renamed: Option<&Renamed>,
     ) -> Result<Vec<(usize, &'b Body)>, Refused> {
-        Ok(match (renamed, self.are_unnamed) {
-            (_, false) => given,
-            (Some(renamed), true) => given.into_iter().filter(|it| renamed.markers.contains(&it.0)).collect(),
-            (None, true) => {
-                return Refused::at(
-                    self.header,
-                    "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
-                );
-            }
-        })
+        let all = taken.iter().copied().enumerate();
+        match renamed {
+            _ if !self.are_unnamed => Ok(all.collect()),
+            Some(renamed) => Ok(all.filter(|it| renamed.markers.contains(&it.0)).collect()),
+            None => Refused::at(
+                self.header,
+                "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
+            ),
+        }
     }
 
-    /// Says which markers changed their names.
-    fn say_renamed(&self, made: &mut Made, renamed: &Renamed, taken: &[&Body]) {
-        let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
-        let lines: Vec<usize> = self.rows.iter().map(|it| it.0).collect();
-        let is_seen = |frame: usize, column: usize| {
-            let place = taken.get(column).zip(self.rows.get(frame));
-            place.is_some_and(|(body, row)| self.position(&row.1, body).is_some())
-        };
-        let (said, warned) = renamed.words(&names, &lines, is_seen);
-        made.said.extend(said);
-        made.warned.extend(warned);
-    }
-
-    /// What the distances between markers show of their names; `None` if they show nothing.
-    fn renamed(&self, taken: &[&Body]) -> Option<Renamed> {
+    /// What the distances between markers show of their names, some of which are at the first of these places; `None` if they show nothing.
+    fn renamed(&self, taken: &[&Body], places: &[&Body]) -> Option<Renamed> {
         if taken.len() < rigid::FEWEST {
             return None;
         }
-        let all: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
-        let places = |(_, cells): &(usize, Vec<&str>)| -> Places {
-            let place = |it: &&Body| self.position(cells, it).map(|it| Vector3::from(it) * self.unit.1);
-            all.iter().map(place).collect()
-        };
-        let frames: Vec<Places> = self.rows.iter().map(places).collect();
+        let place = |frame: &Frame<'_>, body: &Body| Some(Vector3::from(frame.position(body)?) * self.unit.1);
+        let of = |frame: &Frame<'_>| -> Places { places.iter().map(|it| place(frame, it)).collect() };
+        let frames: Vec<Places> = self.all.iter().map(of).collect();
         let columns: Vec<usize> = (0..taken.len()).collect();
-        let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..all.len()).collect();
+        let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..places.len()).collect();
         Renamed::of(&frames, &columns, &others)
     }
 
-    /// The bodies to take, and the names of the others.
+    /// The bodies to take.
     fn taken<'b>(
         &self,
         bodies: &'b [Body],
         what: &str,
         opening: &Opening<'_>,
-    ) -> Result<(Vec<&'b Body>, Vec<&'b str>), Refused> {
+    ) -> Result<Vec<&'b Body>, Refused> {
         let names = |some: &[&Body]| quoted(some.iter().map(|it| it.name.as_str()));
         let all: Vec<&Body> = bodies.iter().collect();
-        let posed: Vec<&Body> = all.iter().filter(|it| it.quaternion.is_some()).copied().collect();
         if let Some(wanted) = &opening.options.body {
-            let found: Vec<&Body> = all.iter().filter(|it| it.name == *wanted).copied().collect();
+            let found: Vec<&Body> = bodies.iter().filter(|it| it.name == *wanted).collect();
             if found.is_empty() {
-                return Refused::whole(format!(
-                    "found no {what} `{wanted}`, expected one of {}",
-                    names(&all)
-                ));
+                let expected = names(&all);
+                return Refused::whole(format!("found no {what} `{wanted}`, expected one of {expected}"));
             }
-            return Ok((found, others(bodies, |it| it.name == *wanted)));
+            return Ok(found);
         }
         let moving = |some: &[&'b Body]| -> Vec<&'b Body> {
             let moved: Vec<f64> = some.iter().map(|it| self.moved_m(it)).collect();
             some.iter().zip(which_move(&moved)).filter(|it| it.1).map(|it| *it.0).collect()
         };
-        let of_poses = moving(&posed);
-        let taken = match of_poses.as_slice() {
-            [one] => vec![*one],
-            [] if posed.len() == 1 => posed,
-            [] if posed.is_empty() => moving(&all),
-            [] => {
+        let posed: Vec<&Body> = bodies.iter().filter(|it| it.quaternion.is_some()).collect();
+        let taken = match (moving(&posed).as_slice(), posed.as_slice()) {
+            ([one], _) | ([], [one]) => vec![*one],
+            ([], []) => moving(&all),
+            ([], _) => {
+                let posed = names(&posed);
                 return Refused::whole(format!(
-                    "found {} that all stand, expected one that moves with the robot: name it by --body",
-                    names(&posed)
+                    "found {posed} that all stand, expected one that moves with the robot: name it by --body"
                 ));
             }
-            several => {
+            (several, _) => {
                 return Refused::whole(format!(
                     "found {} bodies that move, {}, expected one: name the one on the robot by --body",
                     several.len(),
@@ -212,60 +221,58 @@ impl<'t> Frames<'t> {
         if taken.is_empty() {
             return Refused::whole(format!("found no {what} that moves, expected one on the robot"));
         }
-        let is_taken = |it: &Body| taken.iter().any(|taken| std::ptr::eq(*taken, it));
-        let left = others(bodies, is_taken);
-        Ok((taken, left))
+        Ok(taken)
     }
 
     /// How far a body moved, metres.
     fn moved_m(&self, body: &Body) -> f64 {
-        let places: Vec<[f64; 3]> =
-            self.rows.iter().filter_map(|(_, cells)| self.position(cells, body)).collect();
-        moved_m(&places) * self.unit.1
+        moved_m(&self.all.iter().filter_map(|it| it.position(body)).collect::<Vec<_>>()) * self.unit.1
     }
 
     /// Refuses a cell of a body that is neither empty nor a number: it is no lost frame.
     pub(crate) fn refuse_words(&self, body: &str, columns: &[usize]) -> Result<(), Refused> {
-        for (line, cells) in &self.rows {
-            let own = columns.iter().filter_map(|at| cells.get(*at));
-            if let Some(word) = own.copied().find(|it| !it.is_empty() && number(it).is_none()) {
-                return Refused::at(
-                    *line,
-                    format!(
-                        "found `{}` in a column of `{}`, expected a number: leave the cell empty where it was not seen",
-                        shown(word),
-                        shown(body)
-                    ),
-                );
+        for frame in &self.all {
+            for cell in columns.iter().map(|at| frame.cell(*at)) {
+                if let Value::Text(word) = cell
+                    && !word.is_empty()
+                    && cell.number().is_none()
+                {
+                    let (word, body) = (shown(word), shown(body));
+                    return Refused::at(
+                        frame.line,
+                        format!(
+                            "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where it was not seen"
+                        ),
+                    );
+                }
             }
         }
         Ok(())
     }
+}
 
-    /// Where a body is in a frame; `None` where it was not seen: cells that are empty, or all zero.
-    fn position(&self, cells: &[&str], body: &Body) -> Option<[f64; 3]> {
-        let mut found = [0.0; 3];
-        for (found, at) in found.iter_mut().zip(body.position) {
-            *found = cells.get(at).and_then(|it| number(it))?;
+impl<'t> Frame<'t> {
+    /// A cell, empty behind the end of the line.
+    fn cell(&self, at: usize) -> Value<'t> {
+        self.cells.get(at).copied().unwrap_or(Value::Empty)
+    }
+
+    /// Numbers in columns; `None` if one is none.
+    pub(crate) fn numbers<const N: usize>(&self, columns: [usize; N]) -> Option<[f64; N]> {
+        let mut found = [0.0; N];
+        for (found, at) in found.iter_mut().zip(columns) {
+            *found = self.cell(at).number()?;
         }
-        (found != [0.0; 3]).then_some(found)
+        Some(found)
+    }
+
+    /// Where a body is; `None` where it was not seen: cells that are empty, or all zero.
+    fn position(&self, body: &Body) -> Option<[f64; 3]> {
+        self.numbers(body.position).filter(|it| *it != [0.0; 3])
     }
 }
 
-/// Names of the bodies that are not taken.
-fn others(bodies: &[Body], is_taken: impl Fn(&Body) -> bool) -> Vec<&str> {
-    bodies.iter().filter(|it| !is_taken(it)).map(|it| it.name.as_str()).collect()
-}
-
-/// The columns of the table of bodies.
-fn columns_of_bodies(has_several: bool, is_posed: bool, unit: &str) -> Vec<String> {
-    let mut columns = vec!["time[s]".to_owned()];
-    if has_several {
-        columns.push("target".to_owned());
-    }
-    columns.extend(["x", "y", "z"].map(|it| format!("{it}[{unit}]")));
-    if is_posed {
-        columns.extend(["qx", "qy", "qz", "qw"].map(str::to_owned));
-    }
-    columns
+/// Cells of a line without quotes; empty ones at the end count.
+pub(crate) fn cells(line: &str, separator: char) -> Vec<&str> {
+    line.split(separator).map(|it| it.trim().trim_matches('"')).collect()
 }

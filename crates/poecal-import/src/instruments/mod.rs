@@ -1,8 +1,8 @@
 //! Files as instruments, controllers, recorders and spreadsheets write them, as tables in our form. They are recognised by what is in them,
 //! never by their names.
 //!
-//! A module a form, in [`FORMS`]: it makes a `Made` (`maker.rs`), a text in our form with the line or cell of each row (`table/places.rs`), which is
-//! read as any other; so units, lost beams, scales and errors are those of one reader. What holds joint readings and measurements at once
+//! A module a form, in [`FORMS`]: it makes a `Made` (`maker.rs`), columns and rows of typed cells with the line of each row, which becomes a text in our
+//! form that is read as any other; so units, lost beams, scales and errors are those of one reader. What holds joint readings and measurements at once
 //! (`recording.rs`) is two entries of the plan of files. `rigid.rs` tells markers apart by their distances.
 
 mod auto_id;
@@ -33,14 +33,14 @@ mod workbook_cells;
 use std::io::Read as _;
 use std::path::Path;
 
-pub(crate) use self::maker::Called;
-use self::maker::{Made, Refused};
-pub(crate) use self::recording::{OwnTable, Recording};
+pub(crate) use self::maker::{Called, Made};
+use self::maker::{Column, Refused};
+pub(crate) use self::recording::Recording;
 use super::ReadOptions;
 use crate::table::configurations;
 use crate::table::text::Blocks;
 use poecal_model::robot::{ReadingKind, Robot};
-use poecal_numerics::error::ErrorKind;
+use poecal_numerics::error::{ErrorKind, Result};
 #[cfg(feature = "workbooks")]
 use poecal_storage::hashes::Hashing;
 use poecal_storage::limits::Limit;
@@ -68,7 +68,7 @@ pub(crate) enum Opened<'p> {
     /// One in our form.
     Own(Box<Blocks<'p>>),
     /// The table of one in another form.
-    Made(Box<OwnTable>),
+    Made(Box<Made>),
 }
 
 impl<'p> Opened<'p> {
@@ -76,7 +76,7 @@ impl<'p> Opened<'p> {
     pub(crate) fn blocks(self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
         match self {
             Opened::Own(blocks) => *blocks,
-            Opened::Made(table) => table.into_blocks(path, expected),
+            Opened::Made(table) => table.blocks(path, expected),
         }
     }
 }
@@ -89,7 +89,7 @@ pub(crate) struct Form {
     /// Whether a text is of this form, by its beginning.
     is_it: fn(&str, &Opening<'_>) -> bool,
     /// The table of a text.
-    table: fn(&str, &Opening<'_>) -> Result<Made, Refused>,
+    table: fn(&str, &Opening<'_>) -> std::result::Result<Made, Refused>,
 }
 
 /// All forms of texts; the last one is what is left.
@@ -111,7 +111,7 @@ const FORMS: &[Form] = &[
 const WIDE: usize = 16;
 
 /// Refuses a text with a line of far too many cells, before forms are sought in it.
-fn refuse_wide(text: &str, path: &Path) -> poecal_numerics::error::Result<()> {
+fn refuse_wide(text: &str, path: &Path) -> Result<()> {
     let most = Limit::Columns.most_held();
     for (line, number) in text.lines().zip(1..) {
         let count = line.bytes().filter(|it| matches!(it, b',' | b';' | b'\t')).count() + 1;
@@ -125,12 +125,10 @@ fn refuse_wide(text: &str, path: &Path) -> poecal_numerics::error::Result<()> {
 
 impl Opening<'_> {
     /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
-    fn joint_columns(&self, angle: &str) -> Vec<String> {
+    fn joint_columns(&self, angle: &str) -> impl Iterator<Item = Column> {
         let length = if angle == "rad" { "m" } else { "mm" };
-        let names = self.robot.joint_reading_names();
-        let column =
-            |(name, slides): (&String, bool)| format!("{name}[{}]", if slides { length } else { angle });
-        names.iter().zip(self.slides()).map(column).collect()
+        let names = self.robot.joint_reading_names().into_iter().zip(self.slides());
+        names.map(move |(name, slides)| Column::from(name).in_unit(if slides { length } else { angle }))
     }
 
     /// Of each joint reading, whether it is a length.
@@ -140,7 +138,7 @@ impl Opening<'_> {
     }
 
     /// A file that may hold joint readings and measurements, if it is one.
-    pub(crate) fn recording(&self, path: &Path) -> poecal_numerics::error::Result<Option<Recording>> {
+    pub(crate) fn recording(&self, path: &Path) -> Result<Option<Recording>> {
         #[cfg(feature = "bags")]
         if let Some(given) = self.options.bags.iter().find(|it| it.path == path) {
             return bags::read_given(given, self).map(Some);
@@ -154,11 +152,7 @@ impl Opening<'_> {
     }
 
     /// The blocks of joint readings alone.
-    pub(crate) fn joint_blocks<'p>(
-        &self,
-        path: &'p Path,
-        expected: &'p str,
-    ) -> poecal_numerics::error::Result<Blocks<'p>> {
+    pub(crate) fn joint_blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Blocks<'p>> {
         match self.recording(path)? {
             Some(found) => match &found.joints {
                 Ok(table) => Ok(table.blocks(path, expected)),
@@ -169,20 +163,12 @@ impl Opening<'_> {
     }
 
     /// The blocks of a file in our form, or of the table that a file in another one makes.
-    pub(crate) fn blocks<'p>(
-        &self,
-        path: &'p Path,
-        expected: &'p str,
-    ) -> poecal_numerics::error::Result<Blocks<'p>> {
+    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Blocks<'p>> {
         Ok(self.opened(path, expected)?.blocks(path, expected))
     }
 
     /// The same, with the table still to be read.
-    pub(crate) fn opened<'p>(
-        &self,
-        path: &'p Path,
-        expected: &'p str,
-    ) -> poecal_numerics::error::Result<Opened<'p>> {
+    pub(crate) fn opened<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Opened<'p>> {
         if configurations::is_folder(path) {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
         }
@@ -198,12 +184,7 @@ impl Opening<'_> {
 
     /// The table of a workbook.
     #[cfg(feature = "workbooks")]
-    fn workbook<'p>(
-        &self,
-        path: &'p Path,
-        expected: &'p str,
-        input: Input,
-    ) -> poecal_numerics::error::Result<Opened<'p>> {
+    fn workbook<'p>(&self, path: &'p Path, expected: &'p str, input: Input) -> Result<Opened<'p>> {
         let mut bytes = Vec::new();
         let mut input = Hashing::new(input);
         let read = input.by_ref().take(Limit::Workbook.most() + 1).read_to_end(&mut bytes);
@@ -212,15 +193,11 @@ impl Opening<'_> {
             return Err(ErrorKind::File.error(Limit::Workbook.exceeded("a workbook")).in_file(path));
         }
         let made = workbook::table(&bytes, self).map_err(|it| it.error(path))?;
-        Ok(Opened::Made(Box::new(OwnTable { made, sha256: Some(input.sha256()), title: WORKBOOK })))
+        Ok(Opened::Made(Box::new(made.of_file(WORKBOOK, Some(input.sha256())))))
     }
 
     /// A text as it is, or the table that it makes.
-    pub(crate) fn of_text<'p>(
-        &self,
-        path: &'p Path,
-        mut blocks: Blocks<'p>,
-    ) -> poecal_numerics::error::Result<Opened<'p>> {
+    pub(crate) fn of_text<'p>(&self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<Opened<'p>> {
         blocks.begin()?;
         refuse_wide(blocks.text(), path)?;
         if let Some(message) = refused::found(blocks.text()) {
@@ -239,6 +216,6 @@ impl Opening<'_> {
         let text = blocks.rest()?;
         let mut made = (form.table)(&text, self).map_err(|it| it.error(path))?;
         made.said.splice(0..0, blocks.said().notes);
-        Ok(Opened::Made(Box::new(OwnTable { made, sha256: blocks.sha256(), title: form.title })))
+        Ok(Opened::Made(Box::new(made.of_file(form.title, blocks.sha256()))))
     }
 }

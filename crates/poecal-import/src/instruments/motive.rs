@@ -1,8 +1,8 @@
 //! Takes that Motive (OptiTrack) exported as CSV, versions 1.2 to 1.25: by the labels of their head, never by counting lines.
 
-use super::bodies::{Body, Frames};
+use super::bodies::{Body, Frames, cells};
 use super::maker::{Made, Refused};
-use super::words::lines;
+use super::words::{lines, number};
 use super::{Form, Opening};
 
 pub(crate) const FORM: Form = Form { title: "a take of Motive", is_it, table };
@@ -21,11 +21,6 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     })
 }
 
-/// Cells of a line; empty ones at the end count.
-fn cells(line: &str) -> Vec<&str> {
-    line.split(',').map(|it| it.trim().trim_matches('"')).collect()
-}
-
 /// The labels of the columns.
 struct Labels<'t> {
     types: Vec<&'t str>,
@@ -37,7 +32,7 @@ struct Labels<'t> {
 }
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let Some((_, head)) = lines(text).next() else { return Refused::whole("found no line") };
+    let (_, head) = lines(text).next().ok_or("found no line")?;
     if let Some(other) = [';', '\t'].into_iter().find(|it| !head.contains(',') && head.contains(*it)) {
         let what = if other == ';' { "`;`" } else { "tabs" };
         return Refused::at(
@@ -47,7 +42,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             ),
         );
     }
-    let head = cells(head);
+    let head = cells(head, ',');
     let value = |key: &str| {
         let at = head.iter().position(|it| *it == key)?;
         head.get(at + 1).copied()
@@ -64,82 +59,59 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             format!("found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"),
         );
     };
-    let rotation = value("Rotation Type").unwrap_or("Quaternion");
     let labels = Labels::of(text)?;
-    let (bodies, unnamed) = labels.bodies(rotation)?;
-    let time = labels.axes.iter().position(|it| it.starts_with("Time") && !it.starts_with("TimeCode"));
-    let Some(time) = time else {
+    let (bodies, unnamed) = labels.bodies(value("Rotation Type").unwrap_or("Quaternion"))?;
+    let is_time = |it: &&str| it.starts_with("Time") && !it.starts_with("TimeCode");
+    let Some(time) = labels.axes.iter().position(is_time) else {
         return Refused::at(
             labels.line,
             "found no column `Time`, expected the time of each frame in seconds",
         );
     };
-    let (rows, times) = take_frames(text, &labels, time)?;
+    let frames = Frames::of(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
     let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
-    let frames = Frames { rows, times, unnamed, are_unnamed, ..Frames::of(*unit, labels.line) };
+    let frames = Frames { unnamed, are_unnamed, ..frames };
     let mut made = frames.table(&bodies, "body or marker", opening)?;
     let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
-    if let Some(stated) = stated.filter(|it| *it != frames.rows.len()) {
-        made.said.push(format!("its head says {stated} frames, and it has {}", frames.rows.len()));
+    if let Some(stated) = stated.filter(|it| *it != frames.all.len()) {
+        made.said.push(format!("its head says {stated} frames, and it has {}", frames.all.len()));
     }
     Ok(made)
-}
-
-/// Lines with their cells, and the time of each.
-type TimedRows<'t> = (Vec<(usize, Vec<&'t str>)>, Vec<Option<f64>>);
-
-/// Takes the rows of a take, with times of a column.
-fn take_frames<'t>(text: &'t str, labels: &Labels<'_>, time: usize) -> Result<TimedRows<'t>, Refused> {
-    let width = labels.axes.len();
-    let (mut rows, mut times) = (Vec::new(), Vec::new());
-    for (line, content) in lines(text).filter(|it| it.0 > labels.line) {
-        let found = cells(content);
-        let is_longer = found.get(width..).is_some_and(|it| it.iter().any(|it| !it.is_empty()));
-        if is_longer || !labels.may_end(found.len()) {
-            return Refused::at(
-                line,
-                format!("found {} cells, expected {width} as in the head", found.len()),
-            );
-        }
-        let Some(at) = found.get(time).and_then(|it| super::words::number(it)) else {
-            return Refused::at(
-                line,
-                format!(
-                    "found `{}` as the time of a frame, expected seconds",
-                    found.get(time).copied().unwrap_or_default()
-                ),
-            );
-        };
-        times.push(Some(at));
-        rows.push((line, found));
-    }
-    Ok((rows, times))
 }
 
 impl<'t> Labels<'t> {
     fn of(text: &'t str) -> Result<Self, Refused> {
         let mut found: Vec<Vec<&str>> = Vec::new();
         for (line, content) in lines(text).skip(1).take(12) {
-            let cells = cells(content);
-            if cells.first() == Some(&"Frame") {
-                let is = |words: &'static [&'static str]| {
-                    move |row: &&Vec<&'t str>| row.iter().any(|it| words.contains(it))
-                };
-                let of = |words| found.iter().find(is(words)).cloned();
-                let types = of(&["Rigid Body", "Marker", "Rigid Body Marker", "Bone"]);
-                let kinds = of(&["Position", "Rotation"]);
-                let (Some(types), Some(kinds)) = (types, kinds) else { break };
+            let axes = cells(content, ',');
+            if axes.first() == Some(&"Frame") {
+                let with =
+                    |words: &[&str]| found.iter().position(|row| row.iter().any(|it| words.contains(it)));
+                let types = with(&["Rigid Body", "Marker", "Rigid Body Marker", "Bone"]);
+                let (Some(types), Some(kinds)) = (types, with(&["Position", "Rotation"])) else { break };
                 // The names are below the types.
-                let at = found.iter().position(|it| *it == types).unwrap_or_default();
-                let names = found.get(at + 1).cloned().unwrap_or_default();
-                return Ok(Labels { types, names, kinds, axes: cells, line });
+                let [types, names, kinds] =
+                    [types, types + 1, kinds].map(|at| found.get(at).cloned().unwrap_or_default());
+                return Ok(Labels { types, names, kinds, axes, line });
             }
-            found.push(cells);
+            found.push(axes);
         }
         Refused::whole(
             "found the head of a take of Motive without the lines that name bodies, Rotation and Position and begin with `Frame`, expected them: export \
              the take with its header",
         )
+    }
+
+    /// The time of a row, seconds.
+    fn time(&self, cells: &[&str], column: usize) -> Result<Option<f64>, String> {
+        let (found, width) = (cells.len(), self.axes.len());
+        let is_longer = cells.get(width..).is_some_and(|it| it.iter().any(|it| !it.is_empty()));
+        if is_longer || !self.may_end(found) {
+            return Err(format!("found {found} cells, expected {width} as in the head"));
+        }
+        let text = cells.get(column).copied().unwrap_or_default();
+        let none = || format!("found `{text}` as the time of a frame, expected seconds");
+        number(text).map(Some).ok_or_else(none)
     }
 
     /// Whether a row may have so many cells: Motive leaves out those of bodies and markers that it did not see at the end.
@@ -156,60 +128,52 @@ impl<'t> Labels<'t> {
         })
     }
 
+    /// The names of what has a type, each once.
+    fn names(&self, of: &str) -> Vec<&'t str> {
+        let mut names: Vec<&str> = Vec::new();
+        for (kind, name) in self.types.iter().zip(&self.names) {
+            if *kind == of && !names.contains(name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
     /// Bodies with poses, or without them markers that have names, and those that have none.
     fn bodies(&self, rotation: &str) -> Result<(Vec<Body>, Vec<Body>), Refused> {
-        let names = |of: &str| {
-            let mut names: Vec<&str> = Vec::new();
-            for (kind, name) in self.types.iter().zip(&self.names) {
-                if *kind == of && !names.contains(name) {
-                    names.push(name);
-                }
-            }
-            names
+        let body = |name: &str, of: &str| -> Option<Body> {
+            let at = |kind, axis| self.column(name, of, kind, axis);
+            let position = [at("Position", "X")?, at("Position", "Y")?, at("Position", "Z")?];
+            let [x, y, z, w] = ["X", "Y", "Z", "W"].map(|axis| at("Rotation", axis));
+            let quaternion = x.zip(y).zip(z.zip(w)).map(|((x, y), (z, w))| [x, y, z, w]);
+            Some(Body { name: name.to_owned(), position, quaternion })
         };
-        let position = |name: &str, of: &str| -> Option<[usize; 3]> {
-            let of = |axis| self.column(name, of, "Position", axis);
-            Some([of("X")?, of("Y")?, of("Z")?])
+        let of = |of: &str| -> Vec<Body> {
+            self.names(of).into_iter().filter_map(|name| body(name, of)).collect()
         };
-        let mut bodies = Vec::new();
-        for name in names("Rigid Body") {
-            let of = |axis| self.column(name, "Rigid Body", "Rotation", axis);
-            let parts = [of("X"), of("Y"), of("Z"), of("W")];
-            let Some(position) = position(name, "Rigid Body") else { continue };
-            let quaternion = match parts {
-                [Some(x), Some(y), Some(z), Some(w)] => Some([x, y, z, w]),
-                _ if rotation.eq_ignore_ascii_case("quaternion") => None,
-                _ => {
-                    return Refused::at(
-                        1,
-                        format!(
-                            "found the rotation type `{rotation}`, expected Quaternion: export the take with quaternions"
-                        ),
-                    );
-                }
-            };
-            bodies.push(Body { name: name.to_owned(), position, quaternion });
+        let bodies = of("Rigid Body");
+        if bodies.iter().any(|it| it.quaternion.is_none()) && !rotation.eq_ignore_ascii_case("quaternion") {
+            return Refused::at(
+                1,
+                format!(
+                    "found the rotation type `{rotation}`, expected Quaternion: export the take with quaternions"
+                ),
+            );
         }
         if !bodies.is_empty() {
             return Ok((bodies, Vec::new()));
         }
         // Those without a label have another number each time they come back.
-        let mut unnamed = Vec::new();
-        for name in names("Marker") {
-            let Some(position) = position(name, "Marker") else { continue };
-            let list = if name.starts_with(UNNAMED) { &mut unnamed } else { &mut bodies };
-            list.push(Body { name: name.to_owned(), position, quaternion: None });
-        }
-        if bodies.is_empty() {
+        let markers = of("Marker").into_iter().map(|it| Body { quaternion: None, ..it });
+        let (unnamed, named): (Vec<Body>, Vec<Body>) = markers.partition(|it| it.name.starts_with(UNNAMED));
+        match (named.is_empty(), unnamed.is_empty()) {
+            (false, _) => Ok((named, unnamed)),
             // Those that are there from the beginning on, if their distances make a body of them.
-            std::mem::swap(&mut bodies, &mut unnamed);
-        }
-        if bodies.is_empty() {
-            return Refused::at(
+            (true, false) => Ok((unnamed, named)),
+            (true, true) => Refused::at(
                 self.line,
                 "found neither a rigid body nor a marker with a name, expected one on the robot",
-            );
+            ),
         }
-        Ok((bodies, unnamed))
     }
 }

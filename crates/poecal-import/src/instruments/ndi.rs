@@ -3,7 +3,7 @@
 
 use super::bodies::{Body, Frames};
 use super::maker::{Made, Refused};
-use super::words::{cells, lines, number};
+use super::words::{Head, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
 
@@ -13,56 +13,41 @@ const FIRST: usize = 10;
 /// Columns of the time of day, with the seconds of one.
 const TIME: [(&str, f64); 4] = [("Hour", 3600.0), ("Minutes", 60.0), ("Seconds", 1.0), ("ms", 1e-3)];
 
-fn header(text: &str) -> Option<(usize, Vec<&str>)> {
-    let is_header = |names: &[&str]| ["Xa", "Ya", "Za", "qoa"].iter().all(|it| names.contains(it));
-    lines(text)
-        .take(FIRST)
-        .map(|(line, it)| (line, cells(it, Separator::Comma)))
-        .find(|(_, it)| is_header(it))
+fn head(text: &str) -> Option<Head<'_>> {
+    let mut some = lines(text).take(FIRST).map(|it| Head::of(it, Separator::Comma));
+    some.find(|it| it.has(&["Xa", "Ya", "Za", "qoa"]))
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
-    header(text).is_some()
+    head(text).is_some()
 }
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let Some((line, names)) = header(text) else { return Refused::whole("found no header") };
-    let at = |name: &str| names.iter().position(|it| *it == name);
-    let mut bodies = Vec::new();
-    for letter in 'a'..='z' {
-        let of = |stem: &str| at(&format!("{stem}{letter}"));
-        let ([Some(x), Some(y), Some(z)], turned) =
-            (["X", "Y", "Z"].map(of), ["qx", "qy", "qz", "qo"].map(of))
-        else {
-            continue;
-        };
-        let quaternion = match turned {
-            [Some(x), Some(y), Some(z), Some(w)] => Some([x, y, z, w]),
-            _ => None,
-        };
-        bodies.push(Body { name: letter.to_string(), position: [x, y, z], quaternion });
-    }
-    let mut frames = Frames::of(("mm", 1e-3), line);
+    let head = head(text).ok_or("found no header")?;
+    let body = |letter: char| {
+        let of = |stem: &str| head.at(&format!("{stem}{letter}"));
+        let quaternion = || Some([of("qx")?, of("qy")?, of("qz")?, of("qo")?]);
+        let position = [of("X")?, of("Y")?, of("Z")?];
+        Some(Body { name: letter.to_string(), position, quaternion: quaternion() })
+    };
+    let bodies: Vec<Body> = ('a'..='z').filter_map(body).collect();
+    let time = TIME.map(|(name, seconds)| Some((head.at(name)?, seconds)));
+    let expected = head.names.len();
     let mut days = 0.0;
-    for (line, content) in lines(text).filter(|it| it.0 > line) {
-        let found: Vec<&str> = content.split(',').map(str::trim).collect();
-        if found.len() < names.len() {
-            return Refused::at(
-                line,
-                format!("found {} cells, expected {} as in the header", found.len(), names.len()),
-            );
+    let frames = Frames::of(text, (head.line, ("mm", 1e-3)), ',', |cells, _, before| {
+        if cells.len() < expected {
+            return Err(format!("found {} cells, expected {expected} as in the header", cells.len()));
         }
-        let part = |(name, factor): (&str, f64)| Some(factor * number(found.get(at(name)?)?)?);
-        let time: Option<f64> = TIME.into_iter().map(part).sum();
+        let part =
+            |it: Option<(usize, f64)>| it.and_then(|(at, seconds)| Some(seconds * number(cells.get(at)?)?));
+        let time: Option<f64> = time.into_iter().map(part).sum();
         // The time of day begins anew at midnight.
-        let before = frames.times.last().copied().flatten();
         if let (Some(time), Some(before)) = (time, before)
             && time + days + 43_200.0 < before
         {
             days += 86_400.0;
         }
-        frames.times.push(time.map(|it| it + days));
-        frames.rows.push((line, found));
-    }
+        Ok(time.map(|it| it + days))
+    })?;
     frames.table(&bodies, "tool", opening)
 }

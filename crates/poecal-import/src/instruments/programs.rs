@@ -1,6 +1,6 @@
 //! Joint readings of robot programs: RAPID, that of Rokae, KRL, FANUC's and URScript, in the order of their motions.
 
-use super::maker::{Made, Refused, Value};
+use super::maker::{Column, Made, Refused, Value};
 use super::words::{lines, number};
 use super::{Form, Opening};
 use poecal_numerics::error::first_few;
@@ -27,24 +27,19 @@ fn language(text: &str) -> Option<Language> {
     if first.starts_with("/PROG") {
         return Some(Language::Fanuc);
     }
-    let begins = |words: &[&str]| words.iter().any(|it| first.starts_with(it));
+    let begins = |line: &str, words: &[&str]| words.iter().any(|it| line.starts_with(it));
     // URScript has a colon behind the name of a function.
-    if begins(&["&ACCESS", "&REL", "&PARAM", "DEFDAT ", "DEF "]) && !first.ends_with(':') {
+    if begins(&first, &["&ACCESS", "&REL", "&PARAM", "DEFDAT ", "DEF "]) && !first.ends_with(':') {
         return Some(Language::Krl);
     }
-    let mut some = lines(text).take(FIRST).map(|it| it.1.trim());
-    some.find_map(|line| {
-        let small = line.to_ascii_lowercase();
-        let is_declared = ["const ", "var ", "pers ", "local "].iter().any(|it| small.starts_with(it));
-        if small.starts_with("module ")
-            || is_declared && (small.contains("jointtarget") || small.contains("robtarget"))
+    lines(text).take(FIRST).find_map(|(_, line)| {
+        let small = line.trim().to_ascii_lowercase();
+        let is_target = small.contains("jointtarget") || small.contains("robtarget");
+        if begins(&small, &["module "]) || begins(&small, &["const ", "var ", "pers ", "local "]) && is_target
         {
-            Some(Language::Rapid)
-        } else if ["movej(", "movel(", "movep("].iter().any(|it| small.starts_with(it)) {
-            Some(Language::UrScript)
-        } else {
-            None
+            return Some(Language::Rapid);
         }
+        begins(&small, &["movej(", "movel(", "movep("]).then_some(Language::UrScript)
     })
 }
 
@@ -52,22 +47,20 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     if is_rokae(text) {
         return of_rokae(text, opening);
     }
-    let Some(language) = language(text) else { return Refused::whole("found no program") };
+    let language = language(text).ok_or("found no program")?;
     let found = joint_targets(language, text.as_bytes(), opening.robot);
     let found = found.map_err(|error| Refused::of(&error))?;
     let title = language.title();
     if let Some(line) = found.poses.first() {
+        let (targets, are) = match found.poses.len() {
+            1 => ("a target".to_owned(), "is a pose"),
+            count => (format!("{count} targets"), "are poses"),
+        };
         return Refused::at(
             *line,
             format!(
-                "found a program of {title} with {} that {}, which say nothing of the joints, expected joint targets alone: write them from the \
-                 controller's joint readings",
-                if found.poses.len() == 1 {
-                    "a target".to_owned()
-                } else {
-                    format!("{} targets", found.poses.len())
-                },
-                if found.poses.len() == 1 { "is a pose" } else { "are poses" }
+                "found a program of {title} with {targets} that {are}, which say nothing of the joints, expected joint targets alone: write them from the \
+                 controller's joint readings"
             ),
         );
     }
@@ -101,10 +94,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
 
 /// The header: names of targets, and joints in the robot's order in radians and metres.
 fn begun(opening: &Opening<'_>, is_named: bool, line: usize) -> Made {
-    let joints = opening.joint_columns("rad");
-    let id = is_named.then(|| "id".to_owned());
-    let columns: Vec<String> = id.into_iter().chain(joints).collect();
-    Made::new(line, columns.iter().map(String::as_str))
+    let id = is_named.then(|| Column::from("id"));
+    Made::new(line, id.into_iter().chain(opening.joint_columns("rad")))
 }
 
 /// Rokae's dialect: `LOCAL VAR jointtarget j1 = j:{63.68,…,0}{EJ 0,…}`, degrees.
@@ -112,48 +103,34 @@ fn of_rokae(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let names = opening.robot.joint_reading_names();
     let mut made = begun(opening, true, 1);
     for (line, content) in lines(text).filter(|it| it.1.contains("jointtarget")) {
-        let parts = content.split_once(ROKAE).and_then(|(before, rest)| {
-            let name = before.split_whitespace().last()?;
-            Some((name, rest.split_once('}')?.0))
-        });
-        let Some((name, inside)) = parts else {
-            return Refused::at(
-                line,
-                "found a jointtarget without `= j:{…}`, expected one, as in the lines before",
-            );
-        };
-        let texts: Vec<&str> = inside.split(',').map(str::trim).collect();
-        let values: Vec<Option<f64>> = texts.iter().map(|it| number(it)).collect();
-        if let Some(bad) = values.iter().position(Option::is_none) {
-            return Refused::at(
-                line,
-                format!(
-                    "found `{}` in a jointtarget, expected a number",
-                    texts.get(bad).copied().unwrap_or_default()
-                ),
-            );
-        }
-        if values.len() < names.len() {
-            return Refused::at(
-                line,
-                format!(
-                    "found {} numbers of a jointtarget, expected {}: {}",
-                    values.len(),
-                    names.len(),
-                    first_few(&names)
-                ),
-            );
-        }
-        if values.iter().skip(names.len()).flatten().any(|it| *it != 0.0) {
-            return Refused::at(
-                line,
-                "found an axis that the model does not have and that is not at zero, expected the axes of the model",
-            );
-        }
-        let readings = values.iter().flatten().take(names.len()).zip(opening.slides());
+        let (name, values) = rokae_target(content, &names).or_else(|message| Refused::at(line, message))?;
+        let readings = values.into_iter().zip(opening.slides());
         let si = readings.map(|(value, slides)| if slides { value * 1e-3 } else { value.to_radians() });
         made.row(line, std::iter::once(Value::Text(name)).chain(si.map(Value::Number)));
     }
     made.said.push(format!("joint targets of Rokae, {}, in degrees", made.rows()));
     Ok(made)
+}
+
+/// The name of a target, and its numbers, of which those behind the joints are zero.
+fn rokae_target<'t>(line: &'t str, joints: &[String]) -> Result<(&'t str, Vec<f64>), String> {
+    let parts = line
+        .split_once(ROKAE)
+        .and_then(|(before, rest)| Some((before.split_whitespace().last()?, rest.split_once('}')?.0)));
+    let (name, inside) =
+        parts.ok_or("found a jointtarget without `= j:{…}`, expected one, as in the lines before")?;
+    let value = |text: &str| {
+        let bad = || format!("found `{}` in a jointtarget, expected a number", text.trim());
+        number(text).ok_or_else(bad)
+    };
+    let values: Vec<f64> = inside.split(',').map(value).collect::<Result<_, _>>()?;
+    let (found, expected) = (values.len(), joints.len());
+    if found < expected {
+        let names = first_few(joints);
+        return Err(format!("found {found} numbers of a jointtarget, expected {expected}: {names}"));
+    }
+    if values.iter().skip(expected).any(|it| *it != 0.0) {
+        return Err("found an axis that the model does not have and that is not at zero, expected the axes of the model".to_owned());
+    }
+    Ok((name, values))
 }

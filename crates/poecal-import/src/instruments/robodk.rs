@@ -1,64 +1,59 @@
 //! The table of measurements that RoboDK's script for calibration writes: joints in degrees, poses of the target in millimetres with angles about
 //! x, then the new y, then the newest z, in radians, and the tool.
 
-use super::maker::{Made, Refused, Value};
-use super::words::{cells, lines, number};
+use super::maker::{Made, Refused, Value, place, quaternion};
+use super::words::{Head, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
 use nalgebra::Vector3;
-use poecal_arm::lie::{Pose, rotation};
+use poecal_arm::lie::Pose;
+use poecal_arm::lie::angles::Angles;
 
 pub(crate) const FORM: Form = Form { title: "measurements of RoboDK", is_it, table };
 
-fn names(text: &str) -> Option<(usize, Vec<&str>)> {
-    lines(text).next().map(|(line, it)| (line, cells(it, Separator::Comma)))
+/// Columns of a pose.
+const POSE: [&str; 6] = ["X", "Y", "Z", "rX", "rY", "rZ"];
+
+fn head(text: &str) -> Option<Head<'_>> {
+    lines(text).next().map(|line| Head::of(line, Separator::Comma))
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
-    let Some((_, names)) = names(text) else { return false };
-    ["J1", "X", "Y", "Z", "rX", "rY", "rZ"].iter().all(|it| names.contains(it))
+    head(text).is_some_and(|it| it.has(&["J1"]) && it.has(&POSE))
 }
 
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let Some((head, names)) = names(text) else { return Refused::whole("found no header") };
-    let at = |name: &str| names.iter().position(|it| *it == name);
+    let head = head(text).ok_or("found no header")?;
     let count = opening.robot.joint_reading_names().len();
-    let joints: Vec<usize> = (1..).map_while(|number| at(&format!("J{number}"))).collect();
+    let joints: Vec<usize> = (1..).map_while(|number| head.at(&format!("J{number}"))).collect();
     if joints.len() != count {
+        let found = joints.len();
         return Refused::at(
-            head,
-            format!("found {} columns J1, J2, …, expected {count} as the model has joints", joints.len()),
+            head.line,
+            format!("found {found} columns J1, J2, …, expected {count} as the model has joints"),
         );
     }
-    let pose: Vec<usize> = ["X", "Y", "Z", "rX", "rY", "rZ"].into_iter().filter_map(at).collect();
-    let columns: Vec<String> = opening
-        .joint_columns("deg")
-        .into_iter()
-        .chain(["x[mm]", "y[mm]", "z[mm]", "qx", "qy", "qz", "qw"].map(str::to_owned))
-        .collect();
-    let mut made = Made::new(head, columns.iter().map(String::as_str));
-    for (line, content) in lines(text).skip(1) {
-        let found = cells(content, Separator::Comma);
-        let text_of = |at: &usize| found.get(*at).copied().unwrap_or_default();
-        let values: Vec<f64> = pose.iter().map_while(|at| number(text_of(at))).collect();
+    let pose: Vec<usize> = POSE.into_iter().filter_map(|it| head.at(it)).collect();
+    let columns = opening.joint_columns("deg").chain(place("mm")).chain(quaternion());
+    let mut made = Made::new(head.line, columns);
+    for (line, found) in head.rows(text) {
+        let values: Vec<f64> = pose.iter().map_while(|at| number(found.get(*at)?)).collect();
         let [_, _, _, a, b, c] = values[..] else {
             return Refused::at(line, "found a row without X, Y, Z, rX, rY and rZ as numbers, expected them");
         };
-        let turn = |axis: Vector3<f64>, angle: f64| rotation::exp(&(axis * angle));
         if [a, b, c].iter().any(|it| it.abs() > 7.0) {
             return Refused::at(
                 line,
                 "found an angle beyond 7, expected radians, as RoboDK's script writes them",
             );
         }
-        let turned = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);
-        let quaternion = Pose::new(turned, Vector3::zeros()).quaternion_xyzw();
-        let texts = joints.iter().chain(pose.iter().take(3)).map(|at| Value::Text(text_of(at)));
-        made.row(line, texts.chain(quaternion.into_iter().map(Value::Number)));
+        let turned = Pose::new(Angles::XYZ.rotation([a, b, c]), Vector3::zeros()).quaternion_xyzw();
+        let texts = joints.iter().chain(pose.iter().take(3)).map(|at| Value::at(&found, *at));
+        made.row(line, texts.chain(turned.into_iter().map(Value::Number)));
     }
     made.said
         .push(format!("{} poses, joints in deg, positions in mm, angles about x, y, z in rad", made.rows()));
-    if at("TCP X").is_some() {
+    if head.at("TCP X").is_some() {
         made.said.push("the tool (TCP) is found anew".to_owned());
     }
     Ok(made)

@@ -1,11 +1,9 @@
 //! Reports with two sets of coordinates in a row, nominal and measured, as robot makers write them: a table for each set, of which the robot
 //! decides.
 
-use super::maker::{Called, Made, Refused, Value};
-use super::words::{cells, lines, number, quoted};
+use super::maker::{Called, Column, Made, Refused, Value};
+use super::words::{Head, lines, name_and_unit, number};
 use super::{Form, Opening};
-use crate::Separator;
-use crate::table::header::bracketed;
 use crate::table::roles::{Role, plain};
 
 pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinates", is_it, table };
@@ -16,20 +14,21 @@ const FIRST: usize = 20;
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "roll", "pitch", "yaw"];
 
-/// A column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Column {
+/// A column of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
     /// Of no set.
     Other,
-    /// A coordinate of a set: its name with its unit, or an angle.
-    Of { set: usize, name: Option<String> },
+    /// A coordinate of a set.
+    Place(usize, &'static str),
+    /// An angle of a set.
+    Angle,
 }
 
 /// The sets of a table.
-struct Sets {
-    line: usize,
-    by: Separator,
-    columns: Vec<Column>,
+struct Sets<'t> {
+    head: Head<'t>,
+    parts: Vec<Part>,
     called: [Called; 2],
 }
 
@@ -52,112 +51,88 @@ fn coordinate(name: &str) -> Option<(&'static str, Option<Called>)> {
     all().filter_map(of).max_by_key(|it| it.0.len())
 }
 
-/// A cell of a header without its unit, and the unit.
+/// The name and the unit of a column.
 fn parts(cell: &str) -> (&str, Option<&str>) {
-    let found = bracketed(cell, '[', ']').or_else(|| bracketed(cell, '(', ')'));
-    found.map_or((cell.trim(), None), |(name, unit)| (name.trim(), Some(unit)))
+    name_and_unit(cell, &[['[', ']'], ['(', ')']])
 }
 
-impl Sets {
+impl<'t> Sets<'t> {
     /// The sets that a line names, below another one that may name what they are.
-    fn of((line, text): (usize, &str), above: Option<&str>) -> Option<Self> {
-        let by = Separator::recognised(text);
-        let cells = cells(text, by);
-        // A word of the line above stands over all columns up to the next one.
-        let mut words: Vec<Option<Called>> = Vec::with_capacity(cells.len());
-        let over = above.map(|it| super::words::cells(it, by)).unwrap_or_default();
-        for at in 0..cells.len() {
-            let word = over.get(at).map(|it| plain(it)).filter(|it| !it.is_empty());
-            words.push(match word {
-                Some(word) => called(&word),
-                None => words.last().copied().flatten(),
-            });
+    fn of(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
+        let head = Head::recognised(line);
+        if head.names.iter().any(|it| number(it).is_some()) {
+            return None;
         }
-        let found: Vec<Option<(&str, Option<Called>)>> = cells
-            .iter()
-            .zip(&words)
-            .map(|(cell, over)| coordinate(&plain(parts(cell).0)).map(|(name, own)| (name, own.or(*over))))
-            .collect();
-        let named = |it: Called| found.iter().flatten().any(|found| found.1 == Some(it) && found.0 == "x");
+        let over = above.map(|it| Head::of(it, head.by).names).unwrap_or_default();
+        // A word of the line above stands over all columns up to the next one.
+        let mut word = None;
+        let mut found: Vec<Option<(&str, Option<Called>)>> = Vec::with_capacity(head.names.len());
+        for (at, cell) in head.names.iter().enumerate() {
+            let own = over.get(at).map(|it| plain(it)).filter(|it| !it.is_empty());
+            word = own.map_or(word, |it| called(&it));
+            found.push(coordinate(&plain(parts(cell).0)).map(|(name, own)| (name, own.or(word))));
+        }
+        let named = |it: Called| found.contains(&Some(("x", Some(it))));
         let are_named = named(Called::Nominal) && named(Called::Measured);
         let mut seen: [Vec<&str>; 2] = Default::default();
-        let mut columns = Vec::with_capacity(cells.len());
-        for (found, cell) in found.iter().zip(&cells) {
-            let set = found.and_then(|(name, own)| {
-                let set = match (are_named, own) {
-                    (true, Some(Called::Nominal)) => 0,
-                    (true, Some(Called::Measured)) => 1,
-                    (true, _) => return None,
-                    (false, _) => usize::from(seen[0].contains(&name)),
-                };
-                Some((name, set))
+        let mut of_sets = Vec::with_capacity(found.len());
+        for coordinate in found {
+            let set = coordinate.and_then(|(name, own)| match (are_named, own) {
+                (true, Some(Called::Nominal)) => Some((name, 0)),
+                (true, Some(Called::Measured)) => Some((name, 1)),
+                (true, _) => None,
+                (false, _) => Some((name, usize::from(seen[0].contains(&name)))),
             });
-            columns.push(match set {
-                Some((name, set)) => {
-                    if seen[set].contains(&name) {
-                        return None;
-                    }
-                    seen[set].push(name);
-                    let unit = parts(cell).1.map_or_else(String::new, |unit| format!("[{unit}]"));
-                    Column::Of { set, name: PLACE.contains(&name).then(|| format!("{name}{unit}")) }
-                }
-                None => Column::Other,
-            });
+            let Some((name, set)) = set else {
+                of_sets.push(Part::Other);
+                continue;
+            };
+            if seen[set].contains(&name) {
+                return None;
+            }
+            seen[set].push(name);
+            let place = PLACE.into_iter().find(|it| *it == name);
+            of_sets.push(place.map_or(Part::Angle, |it| Part::Place(set, it)));
         }
         let has_all = |seen: &Vec<&str>| PLACE.iter().all(|it| seen.contains(it));
         let called = if are_named { [Called::Nominal, Called::Measured] } else { [Called::Unnamed; 2] };
         (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some(Sets {
-            line,
-            by,
-            columns,
+            head,
+            parts: of_sets,
             called,
         })
     }
 
     /// The sets of a text.
-    fn of_text(text: &str) -> Option<Self> {
+    fn of_text(text: &'t str) -> Option<Self> {
         let some: Vec<(usize, &str)> = lines(text).take(FIRST).collect();
-        (0..some.len()).find_map(|at| {
-            let line = *some.get(at)?;
-            let is_table = cells(line.1, Separator::recognised(line.1)).iter().all(|it| number(it).is_none());
-            let above = at.checked_sub(1).and_then(|at| some.get(at)).map(|it| it.1);
-            if is_table { Sets::of(line, above) } else { None }
-        })
+        let above = std::iter::once(None).chain(some.iter().copied().map(Some));
+        some.iter().zip(above).find_map(|(line, above)| Sets::of(*line, above))
     }
 
     /// The table of a set.
-    fn table(&self, text: &str, set: usize) -> Result<Made, Refused> {
-        let header = lines(text).find(|it| it.0 == self.line).map_or("", |it| it.1);
-        let header = cells(header, self.by);
-        let is_taken = |column: &Column| match column {
-            Column::Other => true,
-            Column::Of { set: own, name } => *own == set && name.is_some(),
-        };
-        let names =
-            header.iter().zip(&self.columns).filter(|it| is_taken(it.1)).map(|(cell, column)| match column {
-                Column::Of { name: Some(name), .. } => name.as_str(),
-                Column::Of { name: None, .. } | Column::Other => cell,
-            });
-        let mut made = Made::new(self.line, names);
-        let width = self.columns.len();
-        for (line, content) in lines(text).filter(|it| it.0 > self.line) {
-            let found = cells(content, self.by);
-            if found.len() > width {
-                return Refused::at(
-                    line,
-                    format!(
-                        "found {} cells, expected {width} as in the header (line {})",
-                        found.len(),
-                        self.line
-                    ),
-                );
+    fn table(&self, text: &'t str, set: usize) -> Result<Made, Refused> {
+        let column = |(at, part): (usize, &Part)| {
+            let cell = *self.head.names.get(at)?;
+            match part {
+                Part::Other => Some((at, Column::from(cell))),
+                Part::Place(own, name) if *own == set => {
+                    let unit = parts(cell).1;
+                    let column = Column::from(*name);
+                    Some((at, unit.map_or(column.clone(), |unit| column.in_unit(unit))))
+                }
+                Part::Place(..) | Part::Angle => None,
             }
-            let cell = |at: usize| found.get(at).map_or(Value::Empty, |it| Value::Text(it));
-            let taken = self.columns.iter().enumerate().filter(|it| is_taken(it.1));
-            made.row(line, taken.map(|it| cell(it.0)));
+        };
+        let (taken, columns): (Vec<usize>, Vec<Column>) =
+            self.parts.iter().enumerate().filter_map(column).unzip();
+        let mut made = Made::new(self.head.line, columns);
+        let header = format!("the header (line {})", self.head.line);
+        for (line, found) in self.head.rows(text) {
+            self.head.refuse_longer(line, &found, &header)?;
+            made.row(line, taken.iter().map(|at| Value::at(&found, *at)));
         }
-        let has_angles = self.columns.iter().any(|it| matches!(it, Column::Of { name: None, .. }));
-        if has_angles {
+        if self.parts.contains(&Part::Angle) {
             made.said.push(
                 "the positions alone, since angles do not say their convention, which a mapping does (--columns)".to_owned(),
             );
@@ -171,13 +146,10 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
-    let Some(sets) = Sets::of_text(text) else { return Refused::whole("found no header") };
+    let sets = Sets::of_text(text).ok_or("found no header")?;
     let (first, second) = (sets.table(text, 0)?, sets.table(text, 1)?);
     if first.rows() == 0 {
-        return Refused::at(
-            sets.line,
-            format!("found a header and no rows, expected rows below {}", quoted(["x"])),
-        );
+        return Refused::at(sets.head.line, "found a header and no rows, expected rows below `x`");
     }
     Ok(first.with_other(sets.called, second))
 }

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::maker::Refused;
 use crate::join::join_words::numbered;
 use crate::table::cells::{Separator, split};
+use crate::table::header::bracketed;
 use poecal_numerics::error::first_few;
 
 /// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
@@ -14,7 +16,8 @@ pub(crate) fn number(text: &str) -> Option<f64> {
         return None;
     }
     let is_comma = text.contains(',') && !text.contains('.');
-    let found = if is_comma { text.replacen(',', ".", 1).parse() } else { text.parse() };
+    let found =
+        if is_comma { fast_float2::parse(text.replacen(',', ".", 1)) } else { fast_float2::parse(text) };
     found.ok().filter(|it: &f64| it.is_finite())
 }
 
@@ -31,6 +34,57 @@ pub(crate) fn cells(line: &str, separator: Separator) -> Vec<&str> {
     }
     let filled = found.iter().rposition(|it| !it.raw.is_empty()).map_or(0, |it| it + 1);
     found.into_iter().take(filled).map(|it| it.raw).collect()
+}
+
+/// A name of a column and its unit, which is in one of these pairs of brackets.
+pub(crate) fn name_and_unit<'c>(cell: &'c str, brackets: &[[char; 2]]) -> (&'c str, Option<&'c str>) {
+    let found = brackets.iter().find_map(|[open, close]| bracketed(cell, *open, *close));
+    found.map_or((cell.trim(), None), |(name, unit)| (name.trim(), Some(unit.trim())))
+}
+
+/// A line that names columns.
+pub(crate) struct Head<'t> {
+    pub(crate) line: usize,
+    pub(crate) by: Separator,
+    pub(crate) names: Vec<&'t str>,
+}
+
+impl<'t> Head<'t> {
+    /// A line with the names in it.
+    pub(crate) fn of((line, text): (usize, &'t str), by: Separator) -> Self {
+        Head { line, by, names: cells(text, by) }
+    }
+
+    /// The same, by the separator that is recognised.
+    pub(crate) fn recognised(line: (usize, &'t str)) -> Self {
+        Head::of(line, Separator::recognised(line.1))
+    }
+
+    /// The column of a name.
+    pub(crate) fn at(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|it| *it == name)
+    }
+
+    /// Whether all these are names of columns.
+    pub(crate) fn has(&self, names: &[&str]) -> bool {
+        names.iter().all(|it| self.names.contains(it))
+    }
+
+    /// The lines below with their cells.
+    pub(crate) fn rows(&self, text: &'t str) -> impl Iterator<Item = (usize, Vec<&'t str>)> {
+        let below = lines(text).filter(|it| it.0 > self.line);
+        below.map(|(line, content)| (line, cells(content, self.by)))
+    }
+
+    /// Refuses a line of more cells.
+    pub(crate) fn refuse_longer(&self, line: usize, found: &[&str], header: &str) -> Result<(), Refused> {
+        match (found.len(), self.names.len()) {
+            (found, expected) if found > expected => {
+                Refused::at(line, format!("found {found} cells, expected {expected} as in {header}"))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Names in backticks, the first few.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::no_file_for::{BODIES, unused};
-use crate::instruments::{MEASURED, Opened, Opening, OwnTable, RECORDINGS, Recording};
+use crate::instruments::{MEASURED, Made, Opened, Opening, RECORDINGS, Recording};
 use crate::messages::are_messages;
 use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
 use crate::table::Table;
@@ -61,17 +61,17 @@ pub(crate) struct Planned<'p> {
     /// How one without readings is read.
     pub(crate) map: ColumnMap,
     /// The table, of a file in another form.
-    table: Option<OwnTable>,
+    table: Option<Made>,
 }
 
 impl<'p> Planned<'p> {
     /// The tables of two sets of coordinates, of a file that has them.
-    pub(crate) fn sets(&self) -> Option<[OwnTable; 2]> {
+    pub(crate) fn sets(&self) -> Option<[Made; 2]> {
         self.table.as_ref()?.sets()
     }
 
     /// The same with another table.
-    pub(crate) fn with_table(&mut self, table: OwnTable) {
+    pub(crate) fn with_table(&mut self, table: Made) {
         self.table = Some(table);
     }
 
@@ -104,8 +104,8 @@ impl<'p> Plan<'p> {
         let joints = files.iter().filter(|it| it.1 == Part::Joints).count();
         if let Some((path, recording)) = first {
             refuse_other_topics(path, &recordings, options)?;
-            let has_bodies = recordings.iter().flatten().any(Recording::names_bodies)
-                || files.iter().any(|it| it.2.as_ref().is_some_and(|it| RECORDINGS.contains(&it.title())));
+            let has_bodies = recordings.iter().flatten().any(|it| it.names_bodies)
+                || files.iter().any(|it| it.2.as_ref().is_some_and(|it| RECORDINGS.contains(&it.title)));
             if options.body.is_some() && !has_bodies {
                 return Err(unused("--body", BODIES));
             }
@@ -126,7 +126,7 @@ impl<'p> Plan<'p> {
         // Files whose frames differ are of several places of the instrument.
         let frames: BTreeSet<&str> = (files.iter())
             .filter(|it| several && matches!(it.1, Part::Measured { .. }))
-            .filter_map(|it| it.2.as_ref()?.frame())
+            .filter_map(|it| it.2.as_ref()?.frame.as_deref())
             .collect();
         let is_by_frames = frames.len() > 1 && options.frames == Frames::Common;
         let planned = |(path, part, table): FilePart<'p>| {
@@ -136,7 +136,7 @@ impl<'p> Plan<'p> {
             if several && is_unnamed && !is_by_frames && options.frames == Frames::Common {
                 map.target_name = path.file_stem().map(|it| it.to_string_lossy().into_owned());
             }
-            let table = if is_by_frames { table.map(OwnTable::by_frame) } else { table };
+            let table = if is_by_frames { table.map(Made::by_frame) } else { table };
             Planned { path, part, map, table }
         };
         Ok(Some(Plan { files: files.into_iter().map(planned).collect() }))
@@ -146,11 +146,12 @@ impl<'p> Plan<'p> {
 /// Refuses a topic that was asked for and that no file has.
 fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
     for (at, name) in options.topics.iter().enumerate() {
-        let found = recordings.iter().flatten().filter_map(|it| it.has_topic(at)).max();
+        let found =
+            recordings.iter().flatten().filter_map(|it| it.has_topic.get(at).copied().flatten()).max();
         if found == Some(true) {
             continue;
         }
-        let contents: Vec<&str> = recordings.iter().flatten().map(Recording::contents).collect();
+        let contents: Vec<&str> = recordings.iter().flatten().map(|it| it.contents.as_str()).collect();
         let contents = contents.join(", ");
         let name = shown(name);
         let message = match found {
@@ -167,7 +168,7 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
 /// What a file has, with its table if it is in another form.
 pub(crate) struct Found {
     pub(crate) part: Part,
-    table: Option<OwnTable>,
+    table: Option<Made>,
     /// Why it has neither joint readings nor measurements.
     why: Option<Neither>,
 }
@@ -250,7 +251,7 @@ fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
 }
 
 /// A file with what it has, and its table if it is in another form.
-type FilePart<'p> = (&'p Path, Part, Option<OwnTable>);
+type FilePart<'p> = (&'p Path, Part, Option<Made>);
 
 /// Sorts files by what they have; with why some have neither joint readings nor measurements.
 fn sort_parts<'p, 'r>(

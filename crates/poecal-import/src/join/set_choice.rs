@@ -5,7 +5,7 @@ use std::path::Path;
 use super::join_pairs::{JointRows, Pairing};
 use super::join_plan::{Part, Plan, Planned};
 use crate::ReadOptions;
-use crate::instruments::{Called, MEASURED, Opened, OwnTable};
+use crate::instruments::{Called, MEASURED, Made, Opened};
 use crate::read::Reader;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
@@ -61,14 +61,9 @@ impl Reader<'_> {
     }
 
     /// The set that was measured, of a file with joint readings of another.
-    fn measured_set(
-        &self,
-        planned: &Planned<'_>,
-        sets: [OwnTable; 2],
-        joints: &JointRows,
-    ) -> Result<OwnTable> {
+    fn measured_set(&self, planned: &Planned<'_>, sets: [Made; 2], joints: &JointRows) -> Result<Made> {
         let path = planned.path;
-        let missed = |table: &OwnTable, joints: &JointRows| -> Result<Option<f64>> {
+        let missed = |table: &Made, joints: &JointRows| -> Result<Option<f64>> {
             let map = &planned.map;
             let mut reader = Reader { map, ..Reader::new(self.robot, self.options, map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
@@ -85,8 +80,8 @@ impl Reader<'_> {
     }
 
     /// The set that was measured, of a file that has its joint readings.
-    fn measured_set_of_whole(&self, path: &Path, sets: [OwnTable; 2]) -> Result<OwnTable> {
-        let missed = |table: &OwnTable| -> Result<Option<f64>> {
+    fn measured_set_of_whole(&self, path: &Path, sets: [Made; 2]) -> Result<Made> {
+        let missed = |table: &Made| -> Result<Option<f64>> {
             let mut reader = Reader { map: self.map, ..Reader::new(self.robot, self.options, self.map) };
             reader.rows_alone(path, table.blocks(path, MEASURED))?;
             Ok(self.fit_m(&reader.found.data))
@@ -97,8 +92,8 @@ impl Reader<'_> {
 }
 
 /// The set that was measured, by the errors of the nominal robot, metres; none of one that it does not fit.
-fn chosen(path: &Path, sets: [OwnTable; 2], errors: [Option<f64>; 2]) -> Result<OwnTable> {
-    let is_named = sets[1].called() == Some(Called::Measured);
+fn chosen(path: &Path, sets: [Made; 2], errors: [Option<f64>; 2]) -> Result<Made> {
+    let is_named = sets[1].called == Some(Called::Measured);
     let names = if is_named { ["nominal", "measured"] } else { ["first", "second"] };
     let words = |at: usize| match errors[at] {
         Some(missed) => format!("the {} by {:.3} mm (median)", names[at], 1e3 * missed),
@@ -128,7 +123,10 @@ fn chosen(path: &Path, sets: [OwnTable; 2], errors: [Option<f64>; 2]) -> Result<
     };
     let [first, second] = sets;
     let (mut table, why) = (if at == 0 { first } else { second }, format!("{}, {}", words(0), words(1)));
-    table.say(format!("took the {} of two sets of coordinates; the nominal robot misses {why}", names[at]));
+    table.said.insert(
+        0,
+        format!("took the {} of two sets of coordinates; the nominal robot misses {why}", names[at]),
+    );
     Ok(table)
 }
 
@@ -138,8 +136,8 @@ mod tests {
 
     #[test]
     fn what_was_computed_is_not_what_was_measured() {
-        let sets = || [OwnTable::default(), OwnTable::default()];
-        let taken = |errors| chosen(Path::new("report.csv"), sets(), errors).map(|it| it.said());
+        let sets = || [Made::default(), Made::default()];
+        let taken = |errors| chosen(Path::new("report.csv"), sets(), errors).map(|it| it.said.join("; "));
         let (fits, computed) = (Some(2e-3), Some(1e-6));
         assert!(taken([fits, computed]).unwrap().contains("took the first"));
         assert!(taken([computed, fits]).unwrap().contains("took the second"));

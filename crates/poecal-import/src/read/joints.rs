@@ -11,7 +11,6 @@ use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
-use crate::table::times::time_of;
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -100,7 +99,7 @@ pub(crate) fn rows_of(table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<
         joints.lines.push(row.line);
         let layout = &cursor.layout;
         if layout.time.is_some() {
-            joints.times.push(time_of(row, layout));
+            joints.times.push(cursor.time_s(row));
         }
         if let SetRule::Words(index) = layout.set {
             joints.sets.push(set_of(row, index)?);

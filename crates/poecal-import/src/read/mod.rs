@@ -22,7 +22,6 @@ use crate::table::mapping::ColumnMap;
 use crate::table::naming::Names;
 use crate::table::socket_distance::Sockets;
 use crate::table::text::{Blocks, Said};
-use crate::table::times::time_of;
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_fit::input_doubts::{lengths, spread};
 use poecal_fit::start::{settle_faces, settle_pictures};
@@ -263,7 +262,7 @@ impl<'a> Reader<'a> {
             cursor.observe(row);
             self.row(row, cursor)?;
             if let Some(times) = &mut self.times {
-                times.resize(self.found.data.len(), time_of(row, &cursor.layout));
+                times.resize(self.found.data.len(), cursor.time_s(row));
             }
             Ok(())
         })?;

@@ -167,6 +167,14 @@ impl<'r> Cursor<'r> {
         header.doubt(doubt, &self.layout.inputs)
     }
 
+    /// The time of a row, seconds; NaN if it has none.
+    pub(crate) fn time_s(&self, row: &Row<'_>) -> f64 {
+        let Some((column, seconds)) = self.layout.time else { return f64::NAN };
+        let text = row.raw(column).trim_start_matches('\'');
+        let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
+        value.map_or(f64::NAN, |it| it * seconds)
+    }
+
     /// The row's standard deviation, if stated.
     pub(crate) fn sigma(&self, row: &Row<'_>, input: Option<usize>) -> Result<Option<f64>> {
         let Some(input) = input else { return Ok(None) };

@@ -1,8 +1,6 @@
 //! Columns with the times of rows.
 
-use super::layout::ColumnLayout;
 use super::roles::{Role, plain};
-use crate::table::Row;
 
 /// Units of times, with their seconds.
 const UNITS: [(&str, f64); 6] =
@@ -18,14 +16,6 @@ pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
         (false, None) => own(["timestamp", "time"].into_iter().find_map(|it| plain.strip_prefix(it))?),
         (false, Some(_)) => None,
     }
-}
-
-/// The time of a row, seconds; NaN if it has none.
-pub(crate) fn time_of(row: &Row<'_>, layout: &ColumnLayout) -> f64 {
-    let Some((column, seconds)) = layout.time else { return f64::NAN };
-    let text = row.raw(column).trim_start_matches('\'');
-    let value = if text.contains('.') { text.parse::<f64>() } else { text.replace(',', ".").parse() };
-    value.map_or(f64::NAN, |it| it * seconds)
 }
 
 #[cfg(test)]

@@ -3,14 +3,13 @@
 use std::collections::HashMap;
 
 use super::super::bodies::moved_m;
-use super::super::maker::{Made, Value};
-use super::clock::{Clock, Stamp, seconds};
+use super::super::maker::{Column, Made, Value, place, quaternion};
+use super::clock::{Stamp, Timed};
 use super::messages::{Kind, Pose};
 
-/// Where a body was at a time.
+/// Where a body was.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
-    stamp: Stamp,
     position: [f64; 3],
     quaternion: [f64; 4],
 }
@@ -19,10 +18,10 @@ struct Seen {
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     /// The frame in which it is.
-    pub(crate) parent: String,
+    parent: String,
     /// Its frame; empty if messages do not name it.
     pub(crate) child: String,
-    seen: Vec<Seen>,
+    seen: Timed<Seen>,
 }
 
 /// All bodies of a topic.
@@ -54,39 +53,35 @@ impl Bodies {
 
     /// Takes a pose.
     pub(crate) fn take(&mut self, pose: &Pose<'_>, log_ns: u64) {
+        let Pose { stamp_ns, position, quaternion, .. } = *pose;
         let frames = (pose.parent.to_owned(), pose.child.to_owned());
         let at = *self.places.entry(frames).or_insert_with_key(|(parent, child)| {
             let (parent, child) = (parent.clone(), child.clone());
-            self.all.push(Body { parent, child, seen: Vec::new() });
+            self.all.push(Body { parent, child, seen: Timed(Vec::new()) });
             self.all.len() - 1
         });
         self.held += 1;
         if let Some(body) = self.all.get_mut(at) {
-            body.take(pose, log_ns);
+            body.seen.0.push((Stamp { own: stamp_ns, log: log_ns }, Seen { position, quaternion }));
         }
     }
 }
 
-impl Body {
-    fn take(&mut self, pose: &Pose<'_>, log_ns: u64) {
-        let Pose { stamp_ns, position, quaternion, .. } = *pose;
-        self.seen.push(Seen { stamp: Stamp { own: stamp_ns, log: log_ns }, position, quaternion });
-    }
+/// Whether these numbers say something: all are finite, and not all zero.
+fn is_stated(numbers: &[f64]) -> bool {
+    numbers.iter().all(|it| it.is_finite()) && numbers.iter().any(|it| *it != 0.0)
+}
 
+impl Body {
     /// How far it moved, metres.
     pub(crate) fn moved_m(&self) -> f64 {
-        moved_m(&self.seen.iter().filter(|it| it.is_place()).map(|it| it.position).collect::<Vec<_>>())
-    }
-
-    /// The clock of its messages.
-    fn clock(&self) -> Clock {
-        Clock::of(self.seen.iter().map(|it| it.stamp))
+        let positions = self.seen.0.iter().map(|it| it.1.position);
+        moved_m(&positions.filter(|it| is_stated(it)).collect::<Vec<_>>())
     }
 
     /// The first time, nanoseconds.
     pub(crate) fn first_ns(&self) -> Option<i64> {
-        let clock = self.clock();
-        self.seen.iter().filter_map(|it| clock.time_ns(it.stamp)).min()
+        self.seen.first_ns()
     }
 
     /// Its name in messages.
@@ -96,46 +91,33 @@ impl Body {
 
     /// Its table, with or without orientations, and with times since a whole second.
     pub(crate) fn table(&self, topic: &str, is_posed: bool, since_s: i64) -> Made {
-        const COLUMNS: [&str; 8] = ["time[s]", "x[m]", "y[m]", "z[m]", "qx", "qy", "qz", "qw"];
-        let clock = self.clock();
-        let mut rows: Vec<(i64, usize, &Seen)> = (1..)
-            .zip(&self.seen)
-            .filter_map(|(number, it)| Some((clock.time_ns(it.stamp)?, number, it)))
-            .collect();
-        rows.sort_by_key(|it| it.0);
-        let mut made = Made::new(1, COLUMNS.into_iter().take(if is_posed { 8 } else { 4 }));
-        for (time_ns, number, seen) in rows {
-            let is_seen = seen.is_place() && (!is_posed || seen.is_turned());
-            let quaternion = seen.quaternion.iter().filter(|_| is_posed);
-            let numbers = seen.position.iter().chain(quaternion);
+        const PARTS: [&str; 7] = [
+            "position.x",
+            "position.y",
+            "position.z",
+            "orientation.x",
+            "orientation.y",
+            "orientation.z",
+            "orientation.w",
+        ];
+        let words = self.words(topic);
+        let made_of = |column: Column, part: &str| column.made_of(format!("{part} of {words}"));
+        let time = made_of(Column::from("time").in_unit("s"), "stamp");
+        let parts = place("m").chain(quaternion()).zip(PARTS).map(|(column, part)| made_of(column, part));
+        let mut made = Made::new(1, std::iter::once(time).chain(parts.take(if is_posed { 7 } else { 3 })));
+        for (time, at, Seen { position, quaternion }) in self.seen.sorted(since_s) {
+            let is_seen = is_stated(position) && (!is_posed || is_stated(quaternion));
+            let numbers = position.iter().chain(quaternion.iter().filter(|_| is_posed));
             let cells = numbers.map(|it| if is_seen { Value::Number(*it) } else { Value::Empty });
-            made.row(number, [Value::Number(seconds(time_ns, since_s))].into_iter().chain(cells));
+            made.row(at + 1, std::iter::once(Value::Number(time)).chain(cells));
         }
-        let parts = ["stamp", "position.x", "position.y", "position.z"].into_iter();
-        let parts = parts.chain(["orientation.x", "orientation.y", "orientation.z", "orientation.w"]);
-        made.sources = (COLUMNS.into_iter().zip(parts))
-            .map(|(column, part)| (column.to_owned(), format!("{part} of {}", self.words(topic))))
-            .collect();
         let what = if is_posed { "poses" } else { "points" };
         made.said.push(format!(
-            "{} {what} of {} in the frame `{}`, m; lines are its messages",
+            "{} {what} of {words} in the frame `{}`, m; lines are its messages",
             made.rows(),
-            self.words(topic),
             self.parent
         ));
-        made.warned.extend(clock.warning(topic));
+        made.warned.extend(self.seen.clock().warning(topic));
         made
-    }
-}
-
-impl Seen {
-    /// Whether it says where something is.
-    fn is_place(&self) -> bool {
-        self.position.iter().all(|it| it.is_finite()) && self.position != [0.0; 3]
-    }
-
-    /// Whether it says how something is turned.
-    fn is_turned(&self) -> bool {
-        self.quaternion.iter().all(|it| it.is_finite()) && self.quaternion != [0.0; 4]
     }
 }

@@ -12,6 +12,38 @@ pub(crate) struct Stamp {
     pub(crate) log: u64,
 }
 
+/// What messages hold, each with when it was made.
+#[derive(Clone, Debug)]
+pub(crate) struct Timed<T>(pub(crate) Vec<(Stamp, T)>);
+
+impl<T> Timed<T> {
+    /// The clock of the messages: that of the log where most of them have no time of their own.
+    pub(crate) fn clock(&self) -> Clock {
+        let unset = self.0.iter().filter(|it| it.0.own == 0).count();
+        Clock { is_log: 2 * unset > self.0.len(), unset }
+    }
+
+    /// The times of those that have one, nanoseconds.
+    fn times(&self) -> impl Iterator<Item = (i64, usize, &T)> {
+        let clock = self.clock();
+        let all = self.0.iter().enumerate();
+        all.filter_map(move |(at, (stamp, it))| Some((clock.time_ns(*stamp)?, at, it)))
+    }
+
+    /// The first time, nanoseconds.
+    pub(crate) fn first_ns(&self) -> Option<i64> {
+        self.times().map(|it| it.0).min()
+    }
+
+    /// In the order of the times, these in seconds since one in whole seconds, each with its place among all.
+    pub(crate) fn sorted(&self, since_s: i64) -> Vec<(f64, usize, &T)> {
+        let mut all: Vec<(i64, usize, &T)> = self.times().collect();
+        all.sort_by_key(|it| it.0);
+        let since_ns = since_s.saturating_mul(SECOND);
+        all.into_iter().map(|(ns, at, it)| (ns.saturating_sub(since_ns) as f64 / 1e9, at, it)).collect()
+    }
+}
+
 /// The clock of some messages.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
@@ -21,35 +53,21 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// The clock of messages: that of the log where most of them have no time of their own.
-    pub(crate) fn of(stamps: impl Iterator<Item = Stamp>) -> Self {
-        let (mut all, mut unset) = (0, 0);
-        for stamp in stamps {
-            all += 1;
-            unset += usize::from(stamp.own == 0);
-        }
-        Clock { is_log: 2 * unset > all, unset }
-    }
-
     /// The time of a message, nanoseconds; `None` if it has none.
-    pub(crate) fn time_ns(self, stamp: Stamp) -> Option<i64> {
+    fn time_ns(self, stamp: Stamp) -> Option<i64> {
         if self.is_log { i64::try_from(stamp.log).ok() } else { Some(stamp.own).filter(|it| *it != 0) }
     }
 
     /// The warning of messages without times of their own.
     pub(crate) fn warning(self, topic: &str) -> Option<String> {
         let Clock { is_log, unset } = self;
-        (unset > 0).then(|| {
-            if is_log {
-                format!("`{topic}`: took the times of the log, since the stamps of {unset} messages are zero: these are later than what they say by an unknown delay")
-            } else {
-                format!("`{topic}`: left out {unset} messages with the stamp zero")
-            }
-        })
+        let words = if is_log {
+            format!(
+                "took the times of the log, since the stamps of {unset} messages are zero: these are later than what they say by an unknown delay"
+            )
+        } else {
+            format!("left out {unset} messages with the stamp zero")
+        };
+        (unset > 0).then(|| format!("`{topic}`: {words}"))
     }
-}
-
-/// Seconds of a time since one in whole seconds.
-pub(crate) fn seconds(time_ns: i64, since_s: i64) -> f64 {
-    time_ns.saturating_sub(since_s.saturating_mul(SECOND)) as f64 / 1e9
 }

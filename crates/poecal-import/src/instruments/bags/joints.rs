@@ -1,9 +1,9 @@
 //! Joint readings of a topic.
 
-use super::super::maker::{Made, Value};
-use super::clock::{Clock, Stamp, seconds};
+use super::super::maker::{Column, Made, Value};
+use super::super::words::quoted;
+use super::clock::{Stamp, Timed};
 use super::messages::JointState;
-use poecal_numerics::error::first_few;
 
 /// Most names that are kept for messages to the user.
 const NAMES_KEPT: usize = 100;
@@ -12,8 +12,8 @@ const NAMES_KEPT: usize = 100;
 #[derive(Clone, Debug)]
 pub(crate) struct Readings {
     joints: Vec<String>,
-    /// Time and number of each message that has all joints.
-    rows: Vec<(Stamp, usize)>,
+    /// The number of each message that has all joints.
+    rows: Timed<usize>,
     /// Their readings, one message after the other.
     values: Vec<f64>,
     messages: usize,
@@ -28,7 +28,7 @@ impl Readings {
     pub(crate) fn new(joints: &[String]) -> Self {
         Readings {
             joints: joints.to_vec(),
-            rows: Vec::new(),
+            rows: Timed(Vec::new()),
             values: Vec::new(),
             messages: 0,
             infinite: 0,
@@ -48,8 +48,8 @@ impl Readings {
         let is_whole = own.len() == self.joints.len();
         let is_finite = own.iter().all(|it| it.is_finite());
         if is_whole && is_finite {
-            self.rows.push((Stamp { own: message.stamp_ns, log: log_ns }, self.messages));
-            if self.rows.len() > 1 {
+            self.rows.0.push((Stamp { own: message.stamp_ns, log: log_ns }, self.messages));
+            if self.held() > 1 {
                 return;
             }
         } else {
@@ -65,59 +65,44 @@ impl Readings {
 
     /// Number of readings that are held.
     pub(crate) fn held(&self) -> usize {
-        self.rows.len()
+        self.rows.0.len()
     }
 
     /// Whether some message has all joints.
     pub(crate) fn is_whole(&self) -> bool {
-        !self.rows.is_empty()
+        self.held() > 0
     }
 
     /// What is missing, in words.
     pub(crate) fn missing(&self) -> String {
-        let missing: Vec<String> =
-            self.joints.iter().filter(|it| !self.names.contains(it)).map(|it| format!("`{it}`")).collect();
-        let names: Vec<String> = self.names.iter().map(|it| format!("`{it}`")).collect();
-        match (missing.is_empty(), names.is_empty()) {
+        let missing = quoted(self.joints.iter().filter(|it| !self.names.contains(it)));
+        match (missing.is_empty(), self.names.is_empty()) {
             (_, true) => "messages without joints".to_owned(),
             (true, _) if self.infinite > 0 => "readings that are no numbers".to_owned(),
             (true, _) => "no message with all joints of the robot at once".to_owned(),
-            (false, false) => {
-                format!("the joints {}, and not {}", first_few(&names), first_few(&missing))
-            }
+            (false, false) => format!("the joints {}, and not {missing}", quoted(&self.names)),
         }
-    }
-
-    /// The clock of the messages.
-    pub(crate) fn clock(&self) -> Clock {
-        Clock::of(self.rows.iter().map(|it| it.0))
     }
 
     /// The first time, nanoseconds.
     pub(crate) fn first_ns(&self) -> Option<i64> {
-        let clock = self.clock();
-        self.rows.iter().filter_map(|it| clock.time_ns(it.0)).min()
+        self.rows.first_ns()
     }
 
     /// The table with these columns, and times since a whole second.
-    pub(crate) fn table(&self, topic: &str, columns: &[String], since_s: i64) -> Made {
-        let clock = self.clock();
-        let width = self.joints.len().max(1);
-        let mut rows: Vec<(i64, usize, &[f64])> = (self.rows.iter().zip(self.values.chunks(width)))
-            .filter_map(|((stamp, number), values)| Some((clock.time_ns(*stamp)?, *number, values)))
-            .collect();
-        rows.sort_by_key(|it| it.0);
-        let mut made = Made::new(1, ["time[s]"].into_iter().chain(columns.iter().map(String::as_str)));
-        for (time_ns, number, values) in rows {
-            let time = Value::Number(seconds(time_ns, since_s));
-            made.row(number, [time].into_iter().chain(values.iter().copied().map(Value::Number)));
+    pub(crate) fn table(&self, topic: &str, columns: impl Iterator<Item = Column>, since_s: i64) -> Made {
+        let columns = columns.zip(&self.joints);
+        let columns =
+            columns.map(|(column, joint)| column.made_of(format!("position of `{joint}` in {topic}")));
+        let mut made = Made::new(1, std::iter::once(Column::from("time").in_unit("s")).chain(columns));
+        let width = self.joints.len();
+        for (time, at, number) in self.rows.sorted(since_s) {
+            let values = self.values.get(at * width..(at + 1) * width).unwrap_or_default();
+            made.row(*number, std::iter::once(&time).chain(values).copied().map(Value::Number));
         }
-        made.sources = (columns.iter().zip(&self.joints))
-            .map(|(column, joint)| (column.clone(), format!("position of `{joint}` in {topic}")))
-            .collect();
         made.said
             .push(format!("{} joint readings of `{topic}`, rad and m; lines are its messages", made.rows()));
-        let others = self.messages - self.rows.len() - self.infinite;
+        let others = self.messages - self.held() - self.infinite;
         if others > 0 {
             made.said.push(format!("left out {others} messages of other joints"));
         }
@@ -126,7 +111,7 @@ impl Readings {
             made.warned
                 .push(format!("`{topic}`: left out {count} messages with readings that are no numbers"));
         }
-        made.warned.extend(clock.warning(topic));
+        made.warned.extend(self.rows.clock().warning(topic));
         made
     }
 }

@@ -14,13 +14,12 @@ mod topics;
 mod unpack;
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use self::clock::SECOND;
 use self::container::Damage;
 use self::topics::{Topic, Topics};
-use super::recording::{OwnTable, Recording};
-use super::{BAG, Opening};
+use super::{BAG, Made, Opening, Recording};
 use crate::GivenBag;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::is_file;
@@ -41,35 +40,24 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let mut hashing = Hashing::new(Box::new(io::empty()) as Box<dyn io::Read>);
     let mut unpacked = 0_u64;
     for part in &parts {
+        let unreadable = |error: io::Error| source::unreadable(part, &error, EXPECTED);
         // What can be read once is held.
         let (mut input, _) = match is_file(part) {
             true => source::open_streamed(part, EXPECTED, Limit::Bag)?,
             false => source::open_any(part, EXPECTED, Limit::Bag)?,
         };
-        let stated = container::stated_size(&mut input);
-        let stated = stated.map_err(|error| source::unreadable(part, &error, EXPECTED))?;
-        unpacked = unpacked.saturating_add(stated);
-        refuse_large(unpacked).map_err(|error| error.in_file(path))?;
+        unpacked = unpacked.saturating_add(container::stated_size(&mut input).map_err(unreadable)?);
+        refuse_large(unpacked, path)?;
         let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
         if !head.starts_with(container::MAGIC) {
             let message = format!("found a file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));
         }
         hashing = hashing.over(Box::new(input));
-        topics.begin_file();
-        let mut through = || {
-            let damage = container::read(&mut hashing, &mut topics)?;
-            if topics.refused.is_some() {
-                return Ok(damage);
-            }
-            // The checksum is of all bytes.
-            io::copy(&mut hashing, &mut io::sink())?;
-            Ok(damage)
-        };
-        let damage = through().map_err(|error| source::unreadable(part, &error, EXPECTED))?;
-        refuse_many(&topics).map_err(|error| error.in_file(part))?;
-        let name = if parts.len() > 1 { part.file_name().map(PathBuf::from) } else { None };
-        warned.extend(warnings(&damage, name.as_deref(), &topics));
+        let name = part.file_name().map(Path::new).filter(|_| parts.len() > 1);
+        warned.extend(take(&mut hashing, &mut topics, part, name)?);
+        // The checksum is of all bytes.
+        io::copy(&mut hashing, &mut io::sink()).map_err(unreadable)?;
     }
     if topics.unknown > 0 {
         warned.push(format!("left out {} messages of topics that it does not describe", topics.unknown));
@@ -81,59 +69,62 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
 pub(crate) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Recording> {
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
-    topics.begin_file();
-    let unreadable = |error: io::Error| source::unreadable(&given.path, &error, EXPECTED);
-    let stated = container::stated_size(&mut given.mcap.as_ref()).map_err(unreadable)?;
-    refuse_large(stated).map_err(|error| error.in_file(&given.path))?;
-    let damage = container::read(&mut given.mcap.as_ref(), &mut topics).map_err(unreadable)?;
-    refuse_many(&topics).map_err(|error| error.in_file(&given.path))?;
-    let warned = warnings(&damage, None, &topics);
+    let stated = container::stated_size(&mut given.mcap.as_ref());
+    refuse_large(stated.map_err(|error| source::unreadable(&given.path, &error, EXPECTED))?, &given.path)?;
+    let warned = take(&mut given.mcap.as_ref(), &mut topics, &given.path, None)?;
     Ok(recording(&topics, opening, &given.sha256, warned))
 }
 
-/// Refuses a bag of more bytes than there may be after it is unpacked.
-fn refuse_large(unpacked: u64) -> Result<()> {
-    let size = amount(unpacked, Limit::Bag.row().unit);
-    Limit::Bag.refuse(unpacked, format_args!("a bag that states {size} unpacked"))
+/// Takes the messages of a file, and says what is wrong with it, as a part of this name; of one with more topics, frames or poses than there may be is told.
+fn take(
+    mut input: impl io::Read,
+    topics: &mut Topics<'_>,
+    path: &Path,
+    name: Option<&Path>,
+) -> Result<Vec<String>> {
+    topics.begin_file();
+    let damage = container::read(&mut input, topics);
+    let damage = damage.map_err(|error| source::unreadable(path, &error, EXPECTED))?;
+    match &topics.refused {
+        Some(sentence) => Err(ErrorKind::Measurement.error(sentence.clone()).in_file(path)),
+        None => Ok(warnings(&damage, name, topics)),
+    }
 }
 
-/// Refuses a bag with more topics, frames or poses than there may be.
-fn refuse_many(topics: &Topics<'_>) -> Result<()> {
-    topics.refused.as_ref().map_or(Ok(()), |sentence| Err(ErrorKind::Measurement.error(sentence.clone())))
+/// Refuses a bag of more bytes than there may be after it is unpacked.
+fn refuse_large(unpacked: u64, path: &Path) -> Result<()> {
+    let size = amount(unpacked, Limit::Bag.row().unit);
+    let found = Limit::Bag.refuse(unpacked, format_args!("a bag that states {size} unpacked"));
+    found.map_err(|error| error.in_file(path))
 }
 
 /// The tables of the topics.
 fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: Vec<String>) -> Recording {
-    let chosen = (choice::joints(topics, opening.options), choice::measured(topics, opening.options));
-    let first = [
-        chosen.0.as_ref().ok().and_then(|it| it.1.first_ns()),
-        chosen.1.as_ref().ok().and_then(|it| it.body.first_ns()),
+    let joints = choice::joints(topics, opening.options);
+    let measured = choice::measured(topics, opening.options);
+    let first_ns = [
+        joints.as_ref().ok().and_then(|it| it.1.first_ns()),
+        measured.as_ref().ok().and_then(|it| it.body.first_ns()),
     ];
     // The same for both, so that the lag of their clocks is kept.
-    let since_s = first.into_iter().flatten().min().unwrap_or_default().div_euclid(SECOND);
-    let own = |made| OwnTable { made, sha256: Some(sha256.to_owned()), title: BAG };
+    let since_s = first_ns.into_iter().flatten().min().unwrap_or_default().div_euclid(SECOND);
+    let own = |made: Made| made.of_file(BAG, Some(sha256.to_owned()));
     let columns = opening.joint_columns("rad");
-    let joints = chosen.0.map(|(topic, readings)| own(readings.table(&topic.name, &columns, since_s)));
-    let measured = chosen.1.map(|it| own(it.table(since_s)));
     let asked = opening.options.topics.iter();
     let mut found = Recording {
-        joints,
-        measured,
+        joints: joints.map(|(topic, readings)| own(readings.table(&topic.name, columns, since_s))),
+        measured: measured.map(|it| own(it.table(since_s))),
         contents: topics.words(),
         has_topic: asked
             .map(|name| topics.all.iter().filter(|it| it.is_called(name)).map(Topic::is_read).max())
             .collect(),
         names_bodies: topics.all.iter().any(Topic::names_bodies),
     };
-    let first = if found.joints.is_ok() { &mut found.joints } else { &mut found.measured };
-    if let Ok(table) = first {
-        table.made.said.insert(0, topics.words());
-        table.made.warned.splice(0..0, warned);
+    if let Some(made) = found.joints.as_mut().ok().or(found.measured.as_mut().ok()) {
+        made.said.insert(0, topics.words());
+        made.warned.splice(0..0, warned);
     } else {
-        for it in warned {
-            found.contents.push_str("; ");
-            found.contents.push_str(&it);
-        }
+        found.contents.extend(warned.iter().map(|it| format!("; {it}")));
     }
     found
 }

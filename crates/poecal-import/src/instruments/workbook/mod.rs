@@ -236,7 +236,8 @@ fn made(book: &mut Workbook<'_>, range: &Range<Data>, table: &Found, name: &str)
             first_few(&stored)
         ));
     }
-    Ok(made.in_sheet(sheet))
+    made.sheet = Some(sheet);
+    Ok(made)
 }
 
 /// The cells of a row, as texts or numbers; numbers that are stored as text in a column of numbers are told.
