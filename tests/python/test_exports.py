@@ -193,15 +193,21 @@ def test_usd_in_usd_core(calibrated, truth, moves, tmp_path):
     run = subprocess.run([program(), "export", calibrated, "--format", "usd", "--out", path], capture_output=True, text=True)
     assert run.returncode == 0 and "single precision" in run.stderr
     stage = Usd.Stage.Open(str(path))
-    frames = []
+    frames, to_world = [], 0
     for prim in stage.GetDefaultPrim().GetChildren():
         joint = UsdPhysics.Joint(prim)
         if not joint:
+            continue
+        if not joint.GetBody0Rel().GetTargets():
+            # The base is not free.
+            assert (prim.GetTypeName(), joint.GetBody1Rel().GetTargets()) == ("PhysicsFixedJoint", ["/robot/base"])
+            to_world += 1
             continue
         turn = joint.GetLocalRot0Attr().Get()
         frames.append(of_quaternion(joint.GetLocalPos0Attr().Get(), [*turn.GetImaginary(), turn.GetReal()]))
         kind = {"PhysicsRevoluteJoint": UsdPhysics.RevoluteJoint, "PhysicsPrismaticJoint": UsdPhysics.PrismaticJoint}.get(prim.GetTypeName())
         assert prim.GetTypeName() == "PhysicsFixedJoint" or kind(prim).GetAxisAttr().Get() == "Z"
+    assert to_world == 1
     place = chain(frames, moves)
     assert_same("usd", place, truth, 1e-6)
     stated = float(run.stderr.replace("\n", " ").split("up to ")[1].split()[0])

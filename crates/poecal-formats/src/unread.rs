@@ -181,12 +181,12 @@ mod tests {
         for sound in
             [urdf("", ""), urdf("", "<dynamics damping='1'/>"), mjcf("armature='1'"), sdf("<physics/>")]
         {
-            assert_eq!(sound.unwrap().unread(), None);
+            assert_eq!(sound.unwrap().remarks(), [""; 0]);
         }
         let found = urdf("colour='red'", "<wire length='1'/><wire length='2'/><hint/>").unwrap();
-        assert_eq!(found.unread(), Some("did not read `colour`, `wire`, `hint`"));
-        assert_eq!(mjcf("colour='red'").unwrap().unread(), Some("did not read `colour`"));
-        assert_eq!(sdf("<colour>red</colour>").unwrap().unread(), Some("did not read `colour`"));
+        assert_eq!(found.remarks(), ["did not read `colour`, `wire`, `hint`"]);
+        assert_eq!(mjcf("colour='red'").unwrap().remarks(), ["did not read `colour`"]);
+        assert_eq!(sdf("<colour>red</colour>").unwrap().remarks(), ["did not read `colour`"]);
     }
 
     #[test]
@@ -205,6 +205,6 @@ mod tests {
             );
             assert!(error.message().contains(&expected), "{error}");
         }
-        assert_eq!(urdf("scale='1'", "<offset value='0.0'/>").unwrap().unread(), None);
+        assert_eq!(urdf("scale='1'", "<offset value='0.0'/>").unwrap().remarks(), [""; 0]);
     }
 }

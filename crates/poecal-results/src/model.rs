@@ -207,12 +207,12 @@ impl Model {
         self.controller().filter(|it| !it.is_plain())
     }
 
-    /// What its file states of links and joints that is not read, a sentence.
+    /// What its file states of links and joints that is not read, or that others understand differently, a sentence each.
     #[must_use]
-    pub fn unread(&self) -> Option<&str> {
+    pub fn remarks(&self) -> &[String] {
         match &self.source {
-            ModelSource::Urdf(document) => document.unread(),
-            ModelSource::Toml | ModelSource::Calibration(_) => None,
+            ModelSource::Urdf(document) => document.remarks(),
+            ModelSource::Toml | ModelSource::Calibration(_) => &[],
         }
     }
 

@@ -8,11 +8,11 @@ use poecal_results::model::Model;
 
 use crate::console::Console;
 
-/// Reads a model, and warns of what its file states of links and joints that is not read.
+/// Reads a model, and warns of what its file states of links and joints that is not read, or that others understand differently.
 pub(super) fn read_model(path: &Path, selection: &ChainSelection, console: &Console) -> Result<Model> {
     let model = Model::read(path, selection)?;
-    if let Some(unread) = model.unread() {
-        console.warning(format!("{}: {unread}", path.display()));
+    for remark in model.remarks() {
+        console.warning(format!("{}: {remark}", path.display()));
     }
     Ok(model)
 }

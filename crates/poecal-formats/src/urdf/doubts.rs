@@ -30,7 +30,7 @@ pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
             ));
         }
     }
-    found.extend(document.unread().map(str::to_owned));
+    found.extend_from_slice(document.remarks());
     found.extend(turned(document.text()));
     let origins = robot.joints.iter().map(|it| it.frame.translation);
     let before = std::iter::once(Vector3::zeros()).chain(origins.clone());

@@ -50,7 +50,7 @@ pub struct UrdfDocument {
     base_from_top: Pose,
     beyond: Vec<(String, String)>,
     made_from: Option<&'static str>,
-    unread: Option<String>,
+    remarks: Vec<String>,
 }
 
 impl UrdfDocument {
@@ -96,6 +96,7 @@ impl UrdfDocument {
         let chain = chain::select(&tree, selection)?;
         let name = robot_element.attribute("name").filter(|name| !name.trim().is_empty()).unwrap_or("robot");
         let (parts, ends, robot, base_from_top) = parts::read(&tree, &chain, name)?;
+        let remarks = unread.into_iter().chain(parts::remarks(&parts)).collect();
         Ok(UrdfDocument {
             text: text.to_owned(),
             path: path.to_path_buf(),
@@ -105,7 +106,7 @@ impl UrdfDocument {
             base_from_top,
             beyond: ends::beyond(&tree, chain.tip),
             made_from: None,
-            unread,
+            remarks,
         })
     }
 
@@ -130,13 +131,14 @@ impl UrdfDocument {
 
     /// The same, made from a file of another form.
     pub(crate) fn made_from(self, form: &'static str, unread: Option<String>) -> Self {
-        UrdfDocument { made_from: Some(form), unread, ..self }
+        UrdfDocument { made_from: Some(form), remarks: unread.into_iter().collect(), ..self }
     }
 
-    /// What the file states of links and joints that is not read, a sentence; what scales or shifts is refused.
+    /// What the file states of links and joints that is not read, or that others understand differently, a sentence each; what scales or shifts is
+    /// refused.
     #[must_use]
-    pub fn unread(&self) -> Option<&str> {
-        self.unread.as_deref()
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     /// The form of the file that was read: `URDF`, or the one that this text was made from.

@@ -11,7 +11,7 @@ use super::tree::{JointType, Tree, TreeJoint};
 use crate::mimic;
 use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, check_name};
-use poecal_numerics::error::{Result, nearest_or_all};
+use poecal_numerics::error::{Result, first_few, nearest_or_all};
 use poecal_storage::xml::{XmlSource, value_range};
 
 /// A fixed or moving joint, with the places for writing it back.
@@ -25,7 +25,57 @@ pub(crate) struct Part {
     pub(crate) parent_from_joint: Pose,
     /// Unit `<axis>` in the joint's frame; `None` for a fixed joint.
     pub(crate) axis: Option<Vector3<f64>>,
+    /// Length of the axis in the text.
+    pub(crate) axis_length: f64,
+    /// Whether it is a revolute or prismatic joint without a range, which other readers refuse or hold at 0.
+    pub(crate) is_without_range: bool,
+    /// Whether its origin has a quaternion that does not count in this version of URDF.
+    pub(crate) has_idle_quaternion: bool,
     pub(crate) place: Place,
+}
+
+/// Longer or shorter axes are not rounded unit vectors.
+const ROUNDED_AXIS: f64 = 1e-6;
+/// Differences of lengths that are mistakes.
+const WRONG_AXIS: f64 = 1e-3;
+
+impl Part {
+    /// Whether the axis in the text is a unit vector.
+    pub(crate) fn has_unit_axis(&self) -> bool {
+        (self.axis_length - 1.0).abs() < ROUNDED_AXIS
+    }
+}
+
+/// What other readers understand differently in these joints, a sentence each.
+pub(crate) fn remarks(parts: &[Part]) -> Vec<String> {
+    let list = |is: &dyn Fn(&Part) -> bool, words: &dyn Fn(&Part) -> String| {
+        let found: Vec<String> = parts.iter().filter(|it| is(it)).map(words).collect();
+        (!found.is_empty()).then(|| first_few(&found))
+    };
+    let name = |it: &Part| format!("`{}`", it.name);
+    let lengths = list(&|it| (it.axis_length - 1.0).abs() > WRONG_AXIS, &|it| {
+        format!("`{}` (length {})", it.name, (1e4 * it.axis_length).round() / 1e4)
+    });
+    let ranges = list(&|it| it.is_without_range, &name);
+    let quaternions = list(&|it| it.has_idle_quaternion, &name);
+    [
+        lengths.map(|it| {
+            format!("took only the direction of axes that are no unit vectors, by which others scale the motion: {it}")
+        }),
+        ranges.map(|it| {
+            format!(
+                "joints without `lower` and `upper`, which others refuse or hold at 0: {it}; state them, or type=\"continuous\" if the joint turns without end"
+            )
+        }),
+        quaternions.map(|it| {
+            format!(
+                "ignored `quat_xyzw` in the origins of {it}, which counts from version 1.1 of URDF on: state <robot version=\"1.1\"> if it is meant"
+            )
+        }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// Byte offsets in the text of a joint.
@@ -38,7 +88,11 @@ pub(crate) struct Place {
     /// The byte after `<origin`.
     pub(crate) origin: Option<usize>,
     pub(crate) xyz: Option<Range<usize>>,
+    /// The rotation's numbers: roll, pitch and yaw, or a quaternion.
     pub(crate) rpy: Option<Range<usize>>,
+    pub(crate) is_quaternion: bool,
+    /// The joint's `type`.
+    pub(crate) kind: Option<Range<usize>>,
     /// The byte after `<axis`.
     pub(crate) axis: Option<usize>,
     pub(crate) axis_xyz: Option<Range<usize>>,
@@ -175,22 +229,19 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> 
     let child = |name| source.only_child(joint.node, name, &format!("joint `{}`", joint.name), true);
     let (origin, axis) = (child("origin")?, child("axis")?);
     let of = format!("<origin> of joint `{}`", joint.name);
-    let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
-    if let Some(origin) = origin {
-        if origin.has_attribute("quat_xyzw") {
-            let message = format!("{of} has a quaternion, expected roll, pitch and yaw in `rpy`");
-            return Err(source.error(origin, message));
-        }
-        xyz = source.numbers(origin, "xyz", &of)?.unwrap_or(xyz);
-        rpy = source.numbers(origin, "rpy", &of)?.unwrap_or(rpy);
-    }
+    let parent_from_joint = origin.map_or(Ok(Pose::identity()), |origin| read_origin(source, origin, &of))?;
+    let has_quaternion = origin.is_some_and(|it| it.has_attribute("quat_xyzw"));
+    let is_quaternion = has_quaternion && has_quaternions(source);
     let unit_axis = if joint.kind.moves() { Some(read_axis(source, joint, axis)?) } else { None };
     let attribute = |node: Option<Node>, name| node.and_then(|node| value_range(node, name));
     Ok(Part {
         name: joint.name.to_owned(),
         parent: None,
-        parent_from_joint: Pose::from_xyz_rpy(xyz, rpy),
-        axis: unit_axis,
+        parent_from_joint,
+        axis: unit_axis.map(|(axis, _)| axis),
+        axis_length: unit_axis.map_or(1.0, |(_, length)| length),
+        is_without_range: is_without_range(source, joint)?,
+        has_idle_quaternion: has_quaternion && !is_quaternion,
         place: Place {
             element: joint.node.range(),
             first_child: joint
@@ -199,27 +250,65 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> 
                 .map_or(joint.node.range().end, |child| child.range().start),
             origin: origin.map(|node| source.after_name(node)),
             xyz: attribute(origin, "xyz"),
-            rpy: attribute(origin, "rpy"),
+            rpy: attribute(origin, if is_quaternion { "quat_xyzw" } else { "rpy" }),
+            is_quaternion,
+            kind: value_range(joint.node, "type"),
             axis: axis.map(|node| source.after_name(node)),
             axis_xyz: attribute(axis, "xyz"),
         },
     })
 }
 
-/// The unit axis in the joint's frame; without an `<axis>` it is x.
+/// Whether the version of the text has quaternions: 1.1 and later ones.
+fn has_quaternions(source: &XmlSource<'_>) -> bool {
+    let version = source.document.root_element().attribute("version");
+    version.and_then(|it| it.trim().parse::<f64>().ok()).is_some_and(|it| it >= 1.1)
+}
+
+/// The pose of an `<origin>`.
+pub(crate) fn read_origin<'a>(source: &XmlSource<'a>, origin: Node<'a, 'a>, of: &str) -> Result<Pose> {
+    let xyz = source.numbers(origin, "xyz", of)?.unwrap_or([0.0; 3]);
+    let quaternion = match has_quaternions(source) {
+        true => source.numbers(origin, "quat_xyzw", of)?,
+        false => None,
+    };
+    let Some(quaternion) = quaternion else {
+        return Ok(Pose::from_xyz_rpy(xyz, source.numbers(origin, "rpy", of)?.unwrap_or([0.0; 3])));
+    };
+    if origin.has_attribute("rpy") {
+        return Err(source.error(origin, format!("{of} has `rpy` and `quat_xyzw`, expected one of them")));
+    }
+    let norm = quaternion.iter().map(|it| it * it).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > WRONG_AXIS {
+        return Err(source.error(origin, format!("{of} has a quaternion of length {norm}, expected 1")));
+    }
+    Ok(Pose::from_position_quaternion(xyz, quaternion))
+}
+
+/// Whether a joint needs a range and states none: without a `<limit>`, or with one that states neither end.
+fn is_without_range<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<bool> {
+    if !matches!(joint.kind, JointType::Revolute | JointType::Prismatic) {
+        return Ok(false);
+    }
+    let node = source.only_child(joint.node, "limit", &format!("joint `{}`", joint.name), false)?;
+    let states = |name: &str| node.is_some_and(|it| it.has_attribute(name));
+    Ok(!states("lower") && !states("upper"))
+}
+
+/// The unit axis in the joint's frame, with the length that the text has; without an `<axis>` it is x.
 fn read_axis<'a>(
     source: &XmlSource<'a>,
     joint: &TreeJoint<'a>,
     axis: Option<Node<'a, 'a>>,
-) -> Result<Vector3<f64>> {
+) -> Result<(Vector3<f64>, f64)> {
     let of = format!("<axis> of joint `{}`", joint.name);
-    let Some(node) = axis else { return Ok(Vector3::x()) };
+    let Some(node) = axis else { return Ok((Vector3::x(), 1.0)) };
     let axis = Vector3::from(source.numbers(node, "xyz", &of)?.unwrap_or([1.0, 0.0, 0.0]));
     if axis == Vector3::zeros() {
         return Err(source.error(node, format!("{of} is 0 0 0, expected a direction, such as 0 0 1")));
     }
     // Scaled first, so that tiny numbers do not vanish when squared.
-    Ok((axis / axis.amax()).normalize())
+    Ok(((axis / axis.amax()).normalize(), axis.norm()))
 }
 
 /// Limits, unless the joint is continuous or its range is empty (as exporters write unknown limits).

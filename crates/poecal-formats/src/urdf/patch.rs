@@ -8,9 +8,9 @@ use super::parts::Part;
 use super::splice::{Splice, escaped, triple};
 use super::{ChainSelection, UrdfDocument};
 use poecal_arm::lie::{Pose, Screw, rotation};
-use poecal_model::robot::{Joint, Mount, Robot};
+use poecal_model::robot::{Joint, JointKind, Mount, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::numbers::tidy;
+use poecal_storage::numbers::{shortest, tidy};
 
 /// Smaller differences (metres, or of rotation matrices) are rounding: the text stays.
 const UNCHANGED: f64 = 1e-15;
@@ -58,6 +58,14 @@ impl UrdfDocument {
         }
         let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
         let (mut links, mut notes) = (Vec::new(), Vec::new());
+        let moving = self.parts.iter().filter(|it| it.axis.is_some()).zip(&calibrated.joints);
+        let endless = moving.filter(|(part, joint)| is_made_continuous(part, joint));
+        notes.extend(endless.map(|(part, _)| {
+            format!("joint `{}` has no `lower` and `upper`, and was written as continuous", part.name)
+        }));
+        let scaled = self.parts.iter().filter(|it| !it.has_unit_axis());
+        notes
+            .extend(scaled.map(|it| format!("the axis of joint `{}` was written as a unit vector", it.name)));
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
             // What is on the base itself, and not on a link that it is joined to, is where it is.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
@@ -203,10 +211,18 @@ fn write_joint(
     let frame = frame_on_axis(&joint.frame, &joint.screw);
     let written = write_origin(splice, part, base_from_link, &frame);
     let direction = written.rotation.transpose() * joint.screw.direction();
-    if (direction - axis).norm() > AXIS_TOLERANCE {
+    if (direction - axis).norm() > AXIS_TOLERANCE || !part.has_unit_axis() {
         splice.set_axis(&part.place, triple(tidy(direction.into())));
     }
+    if is_made_continuous(part, joint) {
+        splice.set_kind(&part.place, "continuous");
+    }
     written
+}
+
+/// Whether a joint without a range is written as one that turns without end.
+fn is_made_continuous(part: &Part, joint: &Joint) -> bool {
+    part.is_without_range && joint.kind == JointKind::Revolute && joint.limits.is_none()
 }
 
 /// The frame with its origin shifted onto the axis, if it is off it.
@@ -234,9 +250,16 @@ fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: 
         written.translation = Vector3::from(xyz);
     }
     if turned {
-        written.rotation = rotation::from_rpy(rpy[0], rpy[1], rpy[2]);
+        written.rotation = match part.place.is_quaternion {
+            true => wanted.rotation,
+            false => rotation::from_rpy(rpy[0], rpy[1], rpy[2]),
+        };
     }
-    splice.set_origin(&part.place, moved.then(|| triple(xyz)), turned.then(|| triple(rpy)));
+    let turn = |()| match part.place.is_quaternion {
+        true => wanted.quaternion_xyzw().map(shortest).join(" "),
+        false => triple(rpy),
+    };
+    splice.set_origin(&part.place, moved.then(|| triple(xyz)), turned.then_some(()).map(turn));
     base_from_link * written
 }
 

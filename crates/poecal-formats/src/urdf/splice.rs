@@ -47,6 +47,11 @@ impl<'a> Splice<'a> {
         self.insert(place.first_child, format!("<origin{attributes}/>{space}"));
     }
 
+    /// Sets the joint's type.
+    pub(crate) fn set_kind(&mut self, place: &Place, kind: &str) {
+        self.edits.extend(place.kind.clone().map(|range| (range, kind.to_owned())));
+    }
+
     /// Sets `<axis xyz>`, and the element itself if there is none.
     pub(crate) fn set_axis(&mut self, place: &Place, xyz: String) {
         match place.axis {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use roxmltree::Node;
 
-use super::parts::fixed_pose;
+use super::parts::{fixed_pose, read_origin};
 use super::tree::Tree;
 use super::{EXPECTED, UrdfDocument};
 use poecal_arm::lie::Pose;
@@ -118,10 +118,9 @@ fn visual<'a>(
     (body, base_from_link): (Body, Pose),
 ) -> Option<Visual> {
     let of = "a shape";
-    let (mut xyz, mut rpy) = ([0.0; 3], [0.0; 3]);
+    let mut link_from_shape = Pose::identity();
     if let Some(origin) = source.child(shape, "origin") {
-        xyz = source.numbers(origin, "xyz", of).ok()?.unwrap_or(xyz);
-        rpy = source.numbers(origin, "rpy", of).ok()?.unwrap_or(rpy);
+        link_from_shape = read_origin(&source, origin, of).ok()?;
     }
     let geometry = source.child(shape, "geometry")?;
     let form = geometry.children().find(Node::is_element)?;
@@ -139,7 +138,7 @@ fn visual<'a>(
     Some(Visual {
         link: link.attribute("name").unwrap_or_default().to_owned(),
         body,
-        base_from_shape: base_from_link * Pose::from_xyz_rpy(xyz, rpy),
+        base_from_shape: base_from_link * link_from_shape,
         geometry,
     })
 }

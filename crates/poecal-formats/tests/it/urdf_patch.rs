@@ -42,8 +42,8 @@ fn words(v: Vector3<f64>) -> String {
     format!("{} {} {}", v.x, v.y, v.z)
 }
 
-/// A chain of random joints, origins, axes, quotes and gaps, with a leader beside it.
-fn random_urdf(random: &mut Random) -> String {
+/// A chain of random joints, origins, axes of a length, quotes and gaps, with a leader beside it.
+fn random_urdf(random: &mut Random, length: f64) -> String {
     let (end, quote) = (random.choice(&["\n", "\r\n", ""]), random.choice(&["\"", "'"]));
     let count = 2 + random.0.next_u64() % 9;
     let mut text = format!("<?xml version='1.0'?>{end}<!-- kept: µ & <joint> -->{end}<robot name='r'>{end}");
@@ -77,7 +77,7 @@ fn random_urdf(random: &mut Random) -> String {
             0 => String::new(),
             1 => "<axis xyz='0 0 -1'/>".to_owned(),
             2 => "<axis/>".to_owned(),
-            _ => format!("<axis xyz='{}'/>", words(random.vector(3.0))),
+            _ => format!("<axis xyz='{}'/>", words(random.vector(3.0).normalize() * length)),
         };
         let _ = write!(text, "    {origin}{axis}{end}");
         if i > 0 && random.one_in(4) {
@@ -118,7 +118,7 @@ fn random_robots_read_back_as_they_were_calibrated() {
     let robots = trials(3000);
     for seed in robots.seeds() {
         let mut random = Random::new(seed);
-        let text = random_urdf(&mut random);
+        let text = random_urdf(&mut random, 2.5);
         let tip = format!("l{}", text.matches("<visual>").count() - 1);
         let urdf = parse(&text, &tip);
         let calibrated = disturbed(urdf.robot(), &mut random);
@@ -137,7 +137,8 @@ fn random_robots_read_back_as_they_were_calibrated() {
 #[test]
 fn an_unchanged_robot_leaves_every_byte() {
     for seed in trials(200).seeds() {
-        let text = random_urdf(&mut Random::new(seed));
+        // A turn without a range is written as continuous.
+        let text = random_urdf(&mut Random::new(seed), 1.0).replace("'revolute'", "'continuous'");
         let tip = format!("l{}", text.matches("<visual>").count() - 1);
         let urdf = parse(&text, &tip);
         let patched = urdf.patched(urdf.robot()).unwrap();
@@ -148,7 +149,7 @@ fn an_unchanged_robot_leaves_every_byte() {
 const TEXT: &str = "\u{feff}<?xml version=\"1.0\"?>\r\n<!-- shop floor, cell 4 -->\r\n<robot name='arm'>\r\n\
 \t<link name=\"base\"/><link name=\"arm\"/><link name=\"hand\"/>\r\n\
 \t<joint name=\"j1\" type=\"revolute\">\r\n\t\t<parent link=\"base\"/>\r\n\t\t<child link='arm'/>\r\n\
-\t\t<origin   xyz='0 0 0.3'/> <!-- measured -->\r\n\t\t<axis xyz=\"0 0 2\"/>\r\n\t\t<limit lower=\"-1\" upper=\"1\"/>\r\n\t</joint>\r\n\
+\t\t<origin   xyz='0 0 0.3'/> <!-- measured -->\r\n\t\t<axis xyz=\"0 0 1\"/>\r\n\t\t<limit lower=\"-1\" upper=\"1\"/>\r\n\t</joint>\r\n\
 \t<joint name=\"j2\" type=\"continuous\">\r\n\t\t<parent link=\"arm\"/>\r\n\t\t<child link=\"hand\"/>\r\n\t</joint>\r\n</robot>\r\n";
 
 #[test]
@@ -208,4 +209,68 @@ fn another_robot_is_refused() {
         urdf.patched(&other).unwrap_err().to_string(),
         "the home pose is not at a finite place, expected the robot that was read from test.urdf"
     );
+}
+
+/// What other readers understand differently: an axis of length 2 by which they scale a slide, and a turn without a range.
+#[test]
+fn axes_are_written_as_unit_vectors_and_endless_joints_as_continuous() {
+    let text = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n\
+        <joint name=\"turn\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0.4\"/><axis xyz=\"0 0 1\"/><limit effort=\"1\" velocity=\"1\"/></joint>\n\
+        <joint name=\"slide\" type=\"prismatic\"><parent link=\"b\"/><child link=\"c\"/><origin xyz=\"0.1 0 0\"/><axis xyz=\"0 2 0\"/><limit lower=\"0\" upper=\"1\"/></joint></robot>";
+    let urdf = parse(text, "c");
+    assert_eq!(
+        urdf.remarks(),
+        [
+            "took only the direction of axes that are no unit vectors, by which others scale the motion: `slide` (length 2)",
+            "joints without `lower` and `upper`, which others refuse or hold at 0: `turn`; state them, or type=\"continuous\" if the joint turns without end"
+        ]
+    );
+    let patched = urdf.patched(urdf.robot()).unwrap();
+    assert_eq!(
+        patched.text,
+        text.replace("\"0 2 0\"", "\"0 1 0\"").replace("type=\"revolute\"", "type=\"continuous\"")
+    );
+    assert_eq!(patched.notes.len(), 2);
+    let again = parse(&patched.text, "c");
+    assert_eq!((again.robot(), again.remarks()), (urdf.robot(), &[][..]));
+}
+
+/// A quaternion counts from version 1.1 on, as in urdfdom, and stays one when it is written.
+#[test]
+fn quaternions_count_by_the_version_of_the_text() {
+    let text = |version: &str, origin: &str| {
+        format!(
+            "<robot name=\"r\"{version}><link name=\"a\"/><link name=\"b\"/>\n\
+             <joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0.4\" {origin}/><axis xyz=\"0 0 1\"/></joint></robot>"
+        )
+    };
+    let quaternion = "quat_xyzw=\"0.7071067811865476 0 0 0.7071067811865476\"";
+    let turned = parse(&text("", "rpy=\"1.5707963267948966 0 0\""), "b");
+    for version in [" version=\"1.1\"", " version=\"1.2\""] {
+        let own = text(version, quaternion);
+        let urdf = parse(&own, "b");
+        assert!((urdf.robot().home.rotation - turned.robot().home.rotation).amax() < 1e-15);
+        assert!(urdf.remarks().is_empty());
+        assert_eq!(urdf.patched(urdf.robot()).unwrap().text, own);
+        let calibrated = disturbed(urdf.robot(), &mut Random::new(1));
+        let again = parse(&urdf.patched(&calibrated).unwrap().text, "b_calibrated");
+        assert!(largest_difference(&calibrated, again.robot(), &mut Random::new(2)) < TOLERANCE);
+    }
+    for version in ["", " version=\"1.0\""] {
+        let urdf = parse(&text(version, quaternion), "b");
+        assert_eq!(urdf.robot().home.rotation, parse(&text("", ""), "b").robot().home.rotation);
+        assert!(
+            urdf.remarks()[0].starts_with("ignored `quat_xyzw` in the origins of `j`"),
+            "{:?}",
+            urdf.remarks()
+        );
+    }
+    let error = |origin: &str| {
+        let text = text(" version=\"1.2\"", origin);
+        UrdfDocument::parse(&text, "r.urdf", &ChainSelection::default()).unwrap_err().to_string()
+    };
+    assert!(
+        error(&format!("rpy=\"0 0 0\" {quaternion}")).contains("has `rpy` and `quat_xyzw`, expected one")
+    );
+    assert!(error("quat_xyzw=\"1 1 0 0\"").contains("has a quaternion of length 1.41"));
 }

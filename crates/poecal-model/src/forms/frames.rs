@@ -28,6 +28,17 @@ impl AxisFrames {
     /// # Errors
     /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own.
     pub fn of(robot: &Robot) -> Result<Self> {
+        if let Some(joint) = robot.joints.iter().find(|it| robot.leader(it).is_some()) {
+            return refuse(&format!("found joint `{}`, which follows `{}`", joint.name, joint.reading.name));
+        }
+        Self::with_followers(robot)
+    }
+
+    /// The same of a robot whose joints may follow others of the chain: the offsets of these stay in their readings.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own or that of another joint.
+    pub fn with_followers(robot: &Robot) -> Result<Self> {
         refuse_coupled(robot)?;
         let mut before = Pose::identity();
         let mut joints = Vec::with_capacity(robot.joints.len());
@@ -41,7 +52,8 @@ impl AxisFrames {
                 frame.translation = nearest;
             }
             // At a reading of zero the joint is at the offset.
-            joints.push(before.inverse() * frame * motion(joint.kind, joint.reading.offset));
+            let offset = if robot.leader(joint).is_some() { 0.0 } else { joint.reading.offset };
+            joints.push(before.inverse() * frame * motion(joint.kind, offset));
             before = frame;
         }
         Ok(AxisFrames { joints, last_from_tip: before.inverse() * robot.home })
@@ -72,10 +84,14 @@ impl AxisFrames {
             let screw = joint.kind.screw(&z, &base_from.translation);
             let mut own = Joint::with_screw(&joint.name, joint.kind, screw);
             own.frame = base_from;
-            // The new zero is the old reading's.
-            let by = joint.reading.offset;
-            own.limits = joint.limits.map(|it| Limits { lower: it.lower - by, upper: it.upper - by });
-            own.reading.name.clone_from(&joint.reading.name);
+            if of.leader(joint).is_some() {
+                (own.limits, own.reading) = (joint.limits, joint.reading.clone());
+            } else {
+                // The new zero is the old reading's.
+                let by = joint.reading.offset;
+                own.limits = joint.limits.map(|it| Limits { lower: it.lower - by, upper: it.upper - by });
+                own.reading.name.clone_from(&joint.reading.name);
+            }
             joints.push(own);
         }
         let mut robot = Robot::new(&of.name, joints, base_from * self.last_from_tip)?;
@@ -105,23 +121,25 @@ pub(crate) fn along_axis(joint: &Joint) -> Pose {
     Pose::new(least, origin)
 }
 
+fn refuse<T>(found: &str) -> Result<T> {
+    ErrorKind::Export.refuse(format!(
+        "{found}, expected a chain of joints, each with a reading of its own: URDF, MJCF, SDF, TOML and calibration.json hold others"
+    ))
+}
+
 /// Refuses what frames alone cannot say.
 fn refuse_coupled(robot: &Robot) -> Result<()> {
-    let refuse = |found: String| {
-        ErrorKind::Export.refuse(format!(
-            "{found}, expected a chain of joints, each with a reading of its own: URDF, TOML and calibration.json hold others"
-        ))
-    };
     if !robot.is_serial() {
-        return refuse("found a robot with branches".to_owned());
+        return refuse("found a robot with branches");
     }
-    if let Some(joint) = robot.joints.iter().find(|it| it.reading.multiplier != 1.0) {
-        return refuse(format!("found joint `{}`, which moves by a multiple of its reading", joint.name));
+    let own = || robot.joints.iter().filter(|it| robot.leader(it).is_none());
+    if let Some(joint) = own().find(|it| it.reading.multiplier != 1.0) {
+        return refuse(&format!("found joint `{}`, which moves by a multiple of its reading", joint.name));
     }
-    let mut names: Vec<&str> = robot.joints.iter().map(|it| it.reading.name.as_str()).collect();
+    let mut names: Vec<&str> = own().map(|it| it.reading.name.as_str()).collect();
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => refuse(format!("found two joints that are read by `{}`", pair[0])),
+        Some(pair) => refuse(&format!("found two joints that are read by `{}`", pair[0])),
         None => Ok(()),
     }
 }

@@ -160,6 +160,13 @@ impl Robot {
         self.joints.iter().filter(follows).map(|other| other.name.as_str()).collect()
     }
 
+    /// The number of the joint that a mimic joint follows; `None` of a joint with a reading of its own.
+    #[must_use]
+    pub fn leader(&self, joint: &Joint) -> Option<usize> {
+        let is_leader = |other: &Joint| other.name == joint.reading.name;
+        self.joints.iter().position(|other| is_leader(other) && other.name != joint.name)
+    }
+
     /// The same robot with further factors.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use poecal_numerics::error::Result;
 use poecal_storage::numbers::{shortest, tidy};
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
-    let frames = AxisFrames::of(robot)?;
+    let frames = AxisFrames::with_followers(robot)?;
     let (names, plain) = (Names::of(robot), frames.robot(robot)?);
     let mut text = format!("<mujoco model=\"{}\">\n", escaped(&robot.name));
     text.push_str("  <compiler angle=\"radian\" autolimits=\"true\"/>\n  <worldbody>\n");
@@ -49,7 +49,20 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
         indent -= 2;
         let _ = writeln!(text, "{}</body>", " ".repeat(indent));
     }
-    text.push_str("    </body>\n  </worldbody>\n</mujoco>\n");
+    text.push_str("    </body>\n  </worldbody>\n");
+    let followers = plain.joints.iter().zip(&names.joints).filter_map(|(it, own)| Some((it, own, plain.leader(it)?)));
+    let equalities: String = followers.map(|(joint, own, leader)| {
+        let (offset, multiplier) = (shortest(joint.reading.offset), shortest(joint.reading.multiplier));
+        format!(
+            "    <joint joint1=\"{}\" joint2=\"{}\" polycoef=\"{offset} {multiplier} 0 0 0\"/>\n",
+            escaped(own),
+            escaped(&names.joints[leader])
+        )
+    }).collect();
+    if !equalities.is_empty() {
+        let _ = write!(text, "  <equality>\n{equalities}  </equality>\n");
+    }
+    text.push_str("</mujoco>\n");
     let again = read_back(&text, "robot.xml", Some((&names.base, &names.tip)))?;
     let masses = "the masses in the file are placeholders (1 kg a link), since a calibration has none; meshes are those of another file";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();

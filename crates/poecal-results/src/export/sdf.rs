@@ -8,7 +8,7 @@ use super::{Proof, Written, read_back};
 use poecal_arm::lie::Pose;
 use poecal_formats::urdf::{escaped, origin_values};
 use poecal_model::forms::AxisFrames;
-use poecal_model::robot::{JointKind, Limits, Robot};
+use poecal_model::robot::{Joint, JointKind, Limits, Robot};
 use poecal_numerics::error::Result;
 use poecal_storage::numbers::shortest;
 
@@ -16,10 +16,12 @@ use poecal_storage::numbers::shortest;
 const UNLIMITED: f64 = 1e16;
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
-    let frames = AxisFrames::of(robot)?;
+    let frames = AxisFrames::with_followers(robot)?;
     let (names, plain) = (Names::of(robot), frames.robot(robot)?);
     let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\">\n  <model name=\"{}\">\n",
+        "<?xml version=\"1.0\"?>\n<sdf version=\"{}\">\n  <model name=\"{}\">\n",
+        // Joints that follow others came later.
+        if plain.joints.iter().any(|it| plain.leader(it).is_some()) { "1.11" } else { "1.9" },
         escaped(&robot.name)
     );
     let _ = writeln!(text, "    <link name=\"{}\"/>", escaped(&names.base));
@@ -35,12 +37,13 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
         let _ = writeln!(
             text,
             "    <joint name=\"{}\" type=\"{kind}\">\n      <parent>{}</parent>\n      <child>{}</child>\n      <axis>\n        <xyz>0 0 1</xyz>\n        \
-             <limit>\n          <lower>{}</lower>\n          <upper>{}</upper>\n        </limit>\n      </axis>\n    </joint>",
+             <limit>\n          <lower>{}</lower>\n          <upper>{}</upper>\n        </limit>\n{}      </axis>\n    </joint>",
             escaped(&names.joints[at]),
             escaped(&before),
             escaped(&link),
             shortest(lower),
-            shortest(upper)
+            shortest(upper),
+            plain.leader(joint).map_or_else(String::new, |leader| mimic(joint, &names.joints[leader]))
         );
         before = link;
     }
@@ -56,6 +59,16 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
     let masses = "the file has no masses and meshes, since a calibration has none: Gazebo takes 1 kg a link";
     let notes = names.note(robot).into_iter().chain([masses.to_owned()]).collect();
     Ok(Written { text, notes, proof: Proof::Again(again.into()) })
+}
+
+/// The element of a joint that follows another one.
+fn mimic(joint: &Joint, leader: &str) -> String {
+    format!(
+        "        <mimic joint=\"{}\">\n          <multiplier>{}</multiplier>\n          <offset>{}</offset>\n          <reference>0</reference>\n        </mimic>\n",
+        escaped(leader),
+        shortest(joint.reading.multiplier),
+        shortest(joint.reading.offset)
+    )
 }
 
 fn push_link(text: &mut String, name: &str, before: &str, pose: &Pose) {

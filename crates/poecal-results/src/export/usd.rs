@@ -2,10 +2,12 @@
 
 use std::fmt::Write as _;
 
+use nalgebra::Vector3;
+
 use super::{Proof, Written, remaining, unread};
 use poecal_arm::lie::Pose;
 use poecal_model::forms::AxisFrames;
-use poecal_model::robot::{JointKind, Robot};
+use poecal_model::robot::{Body, JointKind, Robot};
 use poecal_numerics::error::Result;
 use poecal_storage::numbers::shortest;
 
@@ -14,13 +16,17 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
     let plain = frames.robot(robot)?;
     let mut text = String::new();
     text.push_str("def Xform \"robot\" (\n    prepend apiSchemas = [\"PhysicsArticulationRootAPI\"]\n)\n{\n");
-    push_body(&mut text, "base", &Pose::identity());
+    push_body(&mut text, "base", &Pose::identity(), None);
     let mut base_from = Pose::identity();
     for (at, frame) in frames.joints.iter().enumerate() {
         base_from = base_from * *frame;
-        push_body(&mut text, &format!("link{}", at + 1), &base_from);
+        push_body(&mut text, &format!("link{}", at + 1), &base_from, mass_of(robot, Body::Link(at)));
     }
-    push_body(&mut text, "tip", &(base_from * frames.last_from_tip));
+    push_body(&mut text, "tip", &(base_from * frames.last_from_tip), None);
+    // Without it the base would be free.
+    text.push_str(
+        "    def PhysicsFixedJoint \"base_to_world\"\n    {\n        rel physics:body1 = </robot/base>\n    }\n",
+    );
     let mut before = "base".to_owned();
     for (at, (joint, frame)) in plain.joints.iter().zip(&frames.joints).enumerate() {
         let link = format!("link{}", at + 1);
@@ -54,15 +60,35 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
         "#usda 1.0\n(\n    defaultPrim = \"robot\"\n    doc = {}\n    kilogramsPerUnit = 1\n    metersPerUnit = 1\n    upAxis = \"Z\"\n)\n\n",
         serde_json::Value::from(format!("Joints of a calibrated robot; {words}."))
     );
-    Ok(Written { text: head + &text, notes: vec![words], proof: Proof::Remains(remains) })
+    let masses = if robot.masses.is_empty() {
+        "the model states no masses, so that those of the bodies are left to the simulator"
+    } else {
+        "masses of links are those of the model, moments of inertia are left to the simulator"
+    };
+    Ok(Written { text: head + &text, notes: vec![words, masses.to_owned()], proof: Proof::Remains(remains) })
 }
 
-fn push_body(text: &mut String, name: &str, pose: &Pose) {
+/// The mass of a link, kg, and its centre in the base at zero; `None` if the model states none.
+fn mass_of(robot: &Robot, body: Body) -> Option<(f64, Vector3<f64>)> {
+    let own = || robot.masses.iter().filter(|it| it.body == body);
+    let kg: f64 = own().map(|it| it.kg).sum();
+    (kg > 0.0).then(|| (kg, own().map(|it| it.place * it.kg).sum::<Vector3<f64>>() / kg))
+}
+
+fn push_body(text: &mut String, name: &str, pose: &Pose, mass: Option<(f64, Vector3<f64>)>) {
     let [x, y, z]: [f64; 3] = pose.translation.into();
     let [qx, qy, qz, qw] = pose.quaternion_xyzw();
+    let (schema, mass) = mass.map_or_else(Default::default, |(kg, centre)| {
+        let [x, y, z] = <[f64; 3]>::from(pose.inverse().act(&centre)).map(|it| it as f32);
+        let words = format!(
+            "        point3f physics:centerOfMass = ({x:?}, {y:?}, {z:?})\n        float physics:mass = {}\n",
+            shortest(kg)
+        );
+        (", \"PhysicsMassAPI\"", words)
+    });
     let _ = writeln!(
         text,
-        "    def Xform \"{name}\" (\n        prepend apiSchemas = [\"PhysicsRigidBodyAPI\"]\n    )\n    {{\n        \
+        "    def Xform \"{name}\" (\n        prepend apiSchemas = [\"PhysicsRigidBodyAPI\"{schema}]\n    )\n    {{\n{mass}        \
          quatd xformOp:orient = ({qw:?}, {qx:?}, {qy:?}, {qz:?})\n        double3 xformOp:translate = ({x:?}, {y:?}, {z:?})\n        \
          uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:orient\"]\n    }}"
     );

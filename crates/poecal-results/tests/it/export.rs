@@ -212,6 +212,25 @@ fn forms_of_fifty_robots_say_what_the_robot_does() {
     assert!(written > 450);
 }
 
+/// A joint that follows another one of the chain goes out as one, in the forms that have such joints; others refuse it.
+#[test]
+fn followers_stay_followers() {
+    let mut robot = off(&ur_like(), 5);
+    let leader = robot.joints[1].name.clone();
+    robot.joints[2].reading = Reading { name: leader, multiplier: -0.5, offset: 0.3 };
+    let model = model(&robot);
+    for format in [ExportFormat::Mjcf, ExportFormat::Sdf] {
+        let found = export(&model, format, &ExportOptions::default()).unwrap();
+        let again = Model::parse(&found.text, "m.xml", &ChainSelection::default()).unwrap().robot;
+        assert_eq!(again.joints[2].reading, robot.joints[2].reading);
+        assert_eq!(again.reading_names().len(), 5);
+        println!("{format:?}: {:e} m, {:e} rad", found.remains.position_m, found.remains.rotation_rad);
+        assert!(found.remains.position_m.max(found.remains.rotation_rad) < 1e-12);
+    }
+    let error = export(&model, ExportFormat::Usd, &ExportOptions::default()).unwrap_err();
+    assert!(error.message().starts_with("found joint `joint3`, which follows `joint2`, expected"), "{error}");
+}
+
 /// A nominal arm with parallel axes has tables of every kind, with no long offset.
 #[test]
 fn parallel_axes_have_tables() {

@@ -145,8 +145,6 @@ fn bad_urdfs_get_one_sentence_each() {
          "r.urdf:4:1: found a second <parent> in joint `j`, expected one: the first is in line 3, leave one out"),
         (urdf("<mimic joint='k'/><mimic joint='k' offset='1'/>", &joint("k", "revolute", "b", "c")),
          "r.urdf:4:19: found a second <mimic> in joint `j`, expected one: the first is in line 4, leave one out"),
-        (urdf("<origin quat_xyzw='0 0 0 1'/>", ""),
-         "r.urdf:4:1: <origin> of joint `j` has a quaternion, expected roll, pitch and yaw in `rpy`"),
         (urdf("<axis xyz='0 0 0'/>", ""),
          "r.urdf:4:1: <axis> of joint `j` is 0 0 0, expected a direction, such as 0 0 1"),
         (urdf("<limit lower='1' upper='-1'/>", ""),
