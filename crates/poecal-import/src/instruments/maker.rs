@@ -188,7 +188,7 @@ impl Made {
     }
 
     /// The columns and rows as a text in our form.
-    fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let instrument = self.frame.as_deref().filter(|_| self.is_by_frame).map(cell);
         let titles: Vec<String> = self.columns.iter().map(|it| cell(&it.title()).into_owned()).collect();
         let mut text = titles.join(",");

@@ -21,9 +21,8 @@ const LONGEST_LINE: usize = 16 << 20;
 const FIRST_LINES: usize = 64;
 
 /// Source of a text.
-enum TextSource<'a> {
+enum TextSource {
     File(Hashing<Input>),
-    Text(&'a [u8]),
     /// Made of other files, with the checksum of their bytes.
     Made(Cursor<Vec<u8>>, Option<String>),
 }
@@ -33,7 +32,7 @@ pub(crate) struct Blocks<'a> {
     path: &'a Path,
     /// Description of the file in messages.
     expected: &'a str,
-    source: TextSource<'a>,
+    source: TextSource,
     /// Bytes per read.
     size: usize,
     /// The current block.
@@ -111,17 +110,13 @@ impl<'a> Blocks<'a> {
         std::mem::take(&mut self.said)
     }
 
-    /// The blocks of a text; messages call it `path`.
-    pub(crate) fn new(path: &'a Path, text: &'a [u8]) -> Self {
-        Blocks::sized(path, text, BLOCK)
+    /// The blocks of a text that messages call `path`, of so many bytes per read.
+    #[cfg(test)]
+    pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
+        Blocks::of(path, "a table (CSV)", TextSource::Made(Cursor::new(text.to_vec()), None), size)
     }
 
-    /// The same with another number of bytes per read.
-    pub(crate) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
-        Blocks::of(path, "a table (CSV)", TextSource::Text(text), size)
-    }
-
-    fn of(path: &'a Path, expected: &'a str, source: TextSource<'a>, size: usize) -> Self {
+    fn of(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
         let (text, rest) = (String::new(), Vec::new());
         Blocks {
             path,
@@ -155,7 +150,6 @@ impl<'a> Blocks<'a> {
             let size = self.size as u64;
             let more = match &mut self.source {
                 TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
-                TextSource::Text(text) => text.take(size).read_to_end(&mut bytes),
                 TextSource::Made(text, _) => text.take(size).read_to_end(&mut bytes),
             };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
@@ -230,7 +224,6 @@ impl<'a> Blocks<'a> {
         let most = Limit::Text.most();
         let more = match &mut self.source {
             TextSource::File(file) => file.take(most).read_to_end(&mut bytes),
-            TextSource::Text(text) => text.take(most).read_to_end(&mut bytes),
             TextSource::Made(text, _) => text.take(most).read_to_end(&mut bytes),
         };
         more.map_err(|error| unreadable(self.path, &error, self.expected))?;
@@ -272,7 +265,6 @@ impl<'a> Blocks<'a> {
     pub(crate) fn sha256(&self) -> Option<String> {
         match &self.source {
             TextSource::File(file) => Some(file.sha256()),
-            TextSource::Text(_) => None,
             TextSource::Made(_, sha256) => sha256.clone(),
         }
     }

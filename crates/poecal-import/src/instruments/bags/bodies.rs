@@ -8,7 +8,7 @@ use super::clock::{Stamp, Timed};
 use super::messages::{Kind, Pose};
 
 /// Where a body was.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     position: [f64; 3],
     quaternion: [f64; 4],
@@ -27,7 +27,7 @@ pub(crate) struct Body {
 /// All bodies of a topic.
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies {
-    kind: Kind,
+    pub(crate) kind: Kind,
     pub(crate) all: Vec<Body>,
     /// Places of bodies by their frames.
     places: HashMap<(String, String), usize>,
@@ -57,7 +57,7 @@ impl Bodies {
         let frames = (pose.parent.to_owned(), pose.child.to_owned());
         let at = *self.places.entry(frames).or_insert_with_key(|(parent, child)| {
             let (parent, child) = (parent.clone(), child.clone());
-            self.all.push(Body { parent, child, seen: Timed(Vec::new()) });
+            self.all.push(Body { parent, child, seen: Timed::default() });
             self.all.len() - 1
         });
         self.held += 1;

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufReader, Read};
 
+use super::super::fields::Fields;
 use super::cdr::LONGEST_NAME;
 use super::topics::Topics;
 use super::unpack::unpack;
@@ -170,7 +171,7 @@ fn chunk(data: &[u8], unpacked: &mut Vec<u8>, topics: &mut Topics<'_>) -> Result
     let Some((times, size, crc)) = head(&mut fields) else { return Err((SHORT.to_owned(), (0, 0))) };
     let with_times = |why: String| (why, times);
     let short = || with_times(SHORT.to_owned());
-    let how = fields.text().ok_or_else(short)?;
+    let how = text(&mut fields).ok_or_else(short)?;
     let packed = fields.u64().and_then(|size| fields.bytes(usize::try_from(size).ok()?)).ok_or_else(short)?;
     let mut records = packed;
     if !how.is_empty() {
@@ -200,10 +201,10 @@ fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String
     let mut fields = Fields(data);
     let mut take = || -> Option<()> {
         match opcode {
-            op::SCHEMA => topics.schema(fields.u16()?, fields.name()?),
+            op::SCHEMA => topics.schema(fields.u16()?, name(&mut fields)?),
             op::CHANNEL => {
                 let (id, schema) = (fields.u16()?, fields.u16()?);
-                topics.channel(id, schema, fields.name()?, fields.name()?);
+                topics.channel(id, schema, name(&mut fields)?, name(&mut fields)?);
             }
             op::MESSAGE => {
                 let (channel, _, log_ns, _) = (fields.u16()?, fields.u32()?, fields.u64()?, fields.u64()?);
@@ -219,43 +220,13 @@ fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String
 /// What is found in place of a record that ends too soon.
 const SHORT: &str = "a record that is shorter than what it holds";
 
-/// Fields of a record.
-struct Fields<'b>(&'b [u8]);
+/// A text.
+fn text<'b>(fields: &mut Fields<'b>) -> Option<&'b str> {
+    let size = fields.index()?;
+    std::str::from_utf8(fields.bytes(size)?).ok()
+}
 
-impl<'b> Fields<'b> {
-    fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
-        let (found, rest) = self.0.split_at_checked(count)?;
-        self.0 = rest;
-        Some(found)
-    }
-
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.bytes(N)?.try_into().ok()
-    }
-
-    fn u8(&mut self) -> Option<u8> {
-        self.take().map(u8::from_le_bytes)
-    }
-
-    fn u16(&mut self) -> Option<u16> {
-        self.take().map(u16::from_le_bytes)
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.take().map(u32::from_le_bytes)
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    /// A text that is held.
-    fn name(&mut self) -> Option<&'b str> {
-        self.text().filter(|it| it.len() <= LONGEST_NAME)
-    }
-
-    fn text(&mut self) -> Option<&'b str> {
-        let size = self.u32()? as usize;
-        std::str::from_utf8(self.bytes(size)?).ok()
-    }
+/// A text that is held.
+fn name<'b>(fields: &mut Fields<'b>) -> Option<&'b str> {
+    text(fields).filter(|it| it.len() <= LONGEST_NAME)
 }

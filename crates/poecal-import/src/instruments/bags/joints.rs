@@ -9,7 +9,7 @@ use super::messages::JointState;
 const NAMES_KEPT: usize = 100;
 
 /// The readings of a robot's joints in the messages of a topic.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Readings {
     joints: Vec<String>,
     /// The number of each message that has all joints.
@@ -26,14 +26,7 @@ pub(crate) struct Readings {
 impl Readings {
     /// None, of these joints.
     pub(crate) fn new(joints: &[String]) -> Self {
-        Readings {
-            joints: joints.to_vec(),
-            rows: Timed(Vec::new()),
-            values: Vec::new(),
-            messages: 0,
-            infinite: 0,
-            names: Vec::new(),
-        }
+        Readings { joints: joints.to_vec(), ..Readings::default() }
     }
 
     /// Takes a message; one that lacks a joint has readings of others alone.
@@ -66,11 +59,6 @@ impl Readings {
     /// Number of readings that are held.
     pub(crate) fn held(&self) -> usize {
         self.rows.0.len()
-    }
-
-    /// Whether some message has all joints.
-    pub(crate) fn is_whole(&self) -> bool {
-        self.held() > 0
     }
 
     /// What is missing, in words.
