@@ -23,8 +23,11 @@ const COLUMNS: [(&str, &str); 10] = [
     ("U(95) Z", "sigma_z"),
 ];
 
-/// The header, and the names of its columns with their units.
-fn head(text: &str) -> Option<(Head<'_>, Vec<(String, Option<&str>)>)> {
+/// Names of columns with their units.
+type Names<'t> = Vec<(String, Option<&'t str>)>;
+
+/// The header, and what it names.
+fn head(text: &str) -> Option<(Head<'_>, Names<'_>)> {
     let head = Head::recognised(lines(text).next()?);
     let parts = head.names.iter().map(|it| name_and_unit(it, &[['[', ']']]));
     let one_blank = |name: &str| name.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -42,7 +45,7 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 type Used = (usize, bool, Column);
 
 /// Finds the columns with a meaning.
-fn find_columns(head: &Head<'_>, names: &[(String, Option<&str>)]) -> Result<Vec<Used>, Refused> {
+fn find_columns(head: &Head<'_>, names: &Names<'_>) -> Result<Vec<Used>, Refused> {
     let (mut used, mut turns) = (Vec::new(), 0);
     for (theirs, ours) in COLUMNS {
         let mut found = names.iter().enumerate().filter(|(_, it)| it.0 == theirs);

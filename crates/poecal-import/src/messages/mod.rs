@@ -179,9 +179,10 @@ impl Reader<'_> {
         for body in &bodies.0 {
             let Board { name, points, .. } = &body.board;
             let is_mounted = self.robot.mounted.iter().any(|mount| mount.name == *name);
-            let link = (!is_mounted)
-                .then(|| format!(": --target {name}=LINK says on which link of a URDF it is"))
-                .unwrap_or_default();
+            let link = match is_mounted {
+                true => String::new(),
+                false => format!(": --target {name}=LINK says on which link of a URDF it is"),
+            };
             names.push(format!("`{name}` ({} points of the sensor {}){link}", points.len(), body.sensor));
             match self.boards.iter().find(|own| own.name == *name) {
                 Some(own) if own.points != *points => {
