@@ -9,6 +9,8 @@ mod auto_id;
 #[cfg(feature = "bags")]
 mod bags;
 mod bodies;
+#[cfg(any(feature = "bags", feature = "workbooks"))]
+mod fields;
 mod figaroh;
 pub(crate) mod headerless;
 mod leica;
@@ -33,8 +35,8 @@ mod workbook_cells;
 use std::io::Read as _;
 use std::path::Path;
 
-pub(crate) use self::maker::{Called, Made};
-use self::maker::{Column, Refused};
+use self::maker::Refused;
+pub(crate) use self::maker::{Called, Column, Made, Value};
 pub(crate) use self::recording::Recording;
 use super::ReadOptions;
 use crate::table::configurations;

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::maker::{Made, Refused, Value};
+use super::maker::{At, Column, Made, Refused, Value, place};
 use super::words::{are_targets, cells, is_no_number, lines, number, repeats};
 use super::{Form, Opening};
 use crate::Separator;
@@ -16,15 +16,8 @@ const FIRST: usize = 20;
 /// What the comments say.
 struct Comments<'t> {
     frame: Option<&'t str>,
-    axes: Axes,
+    is_cylindrical: bool,
     unit: &'t str,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Axes {
-    Cartesian,
-    Cylindrical,
-    Spherical,
 }
 
 /// A line as it is written.
@@ -36,141 +29,107 @@ struct Point<'t> {
     has_time: bool,
 }
 
+/// What the numbers of a line are.
+struct Layout {
+    /// Numbers before the coordinates: a name that is one, and the index of a point in its group.
+    first: usize,
+    /// Whether the first of these is the name.
+    is_named_by_number: bool,
+    has_offsets: bool,
+    has_uncertainties: bool,
+}
+
+/// What is in a comment.
+fn comment(line: &str) -> Option<&str> {
+    line.trim().strip_prefix("//")
+}
+
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
-    lines(text).take(FIRST).any(|(_, line)| {
-        line.trim_start().starts_with("//")
-            && ["SpatialAnalyzer", "Relative to Coordinate Frame", "AXES ="]
-                .iter()
-                .any(|it| line.contains(it))
-    })
+    let marks = ["SpatialAnalyzer", "Relative to Coordinate Frame", "AXES ="];
+    let mut comments = lines(text).take(FIRST).filter_map(|it| comment(it.1));
+    comments.any(|line| marks.iter().any(|it| line.contains(it)))
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
-    let comments = Comments::of(text)?;
-    let mut points = Vec::new();
-    for (line, content) in lines(text).filter(|it| !it.1.trim_start().starts_with("//")) {
-        points.push(Point::of(line, content)?);
-    }
-    let Some(first) = points.first() else {
-        return Refused::whole("found comments of SpatialAnalyzer and no point, expected at least one");
-    };
+    let Comments { frame, is_cylindrical, unit } = Comments::of(text)?;
+    let points = lines(text).filter(|it| comment(it.1).is_none());
+    let point = |(line, content): (usize, _)| Point::of(line, content).or_else(|why| At(line).refuse(why));
+    let points: Vec<Point<'_>> = points.map(point).collect::<Result<_, _>>()?;
+    let first =
+        points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
     refuse_unlike(first, &points)?;
-    let layout = Layout::of(&points)?;
+    let layout = Layout::of(first, &points).or_else(|why| At(first.line).refuse(why))?;
     let (names, have_targets) = layout.names(&points);
-    let sigmas: &[&str] = if layout.uncertainties { &["sigma_x", "sigma_y", "sigma_z"] } else { &[] };
-    let unit = comments.unit;
-    let columns: Vec<String> = [if have_targets { "target" } else { "id" }.to_owned()]
-        .into_iter()
-        .chain(["x", "y", "z"].iter().chain(sigmas).map(|it| format!("{it}[{unit}]")))
-        .collect();
-    let mut made = Made::new(first.line, columns.iter().map(String::as_str));
+    let sigmas = ["sigma_x", "sigma_y", "sigma_z"].map(|it| Column::from(it).in_unit(unit));
+    let columns = std::iter::once(Column::from(if have_targets { "target" } else { "id" }))
+        .chain(place(unit))
+        .chain(sigmas.into_iter().filter(|_| layout.has_uncertainties));
+    let mut made = Made::new(first.line, columns);
     for (point, name) in points.iter().zip(&names) {
         let numbers = point.numbers.get(layout.first..).unwrap_or_default();
-        let mut row = vec![Value::Text(name)];
-        match (comments.axes, numbers) {
-            (Axes::Cylindrical, [radius, angle, height, ..]) => {
-                let turned = number(angle).unwrap_or_default().to_radians();
-                let radius = number(radius).unwrap_or_default();
-                row.extend([
-                    Value::Number(radius * turned.cos()),
-                    Value::Number(radius * turned.sin()),
-                    Value::Text(height),
-                ]);
-            }
-            _ => row.extend(numbers.iter().take(3).map(|it| Value::Text(it))),
+        let mut row: Vec<Value<'_>> = numbers.iter().map(|it| Value::Text(it)).collect();
+        if let ([radius, angle, ..], true) = (numbers, is_cylindrical) {
+            let (radius, angle) = (number(radius).unwrap_or_default(), number(angle).unwrap_or_default());
+            let (sine, cosine) = angle.to_radians().sin_cos();
+            row.splice(..2, [radius * cosine, radius * sine].map(Value::Number));
         }
-        if layout.uncertainties {
-            row.extend(numbers.iter().skip(layout.uncertainty_at()).take(3).map(|it| Value::Text(it)));
+        if layout.has_offsets {
+            row.drain(3..5);
         }
-        made.row(point.line, row);
+        made.row(point.line, std::iter::once(Value::Text(name)).chain(row));
     }
-    say_points(&mut made, &comments, &layout, (&points, &names), have_targets);
+    let count = points.len();
+    made.say(match frame {
+        Some(frame) => format!("{count} points in frame `{frame}`, {unit}"),
+        None => format!("{count} points, {unit}"),
+    });
+    made.frame = frame.map(str::to_owned);
+    if is_cylindrical {
+        made.say("cylindrical coordinates became x, y, z");
+    }
+    if layout.has_offsets {
+        made.say("two offsets of each point are left out");
+    }
+    if layout.has_uncertainties {
+        made.say("three uncertainties of each point are taken as standard deviations of x, y, z");
+    }
+    if have_targets {
+        made.say(format!("names come again, and are those of {} targets", different(&names)));
+    } else {
+        let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
+        made.warned.extend(repeats(&names, &lines));
+    }
     Ok(made)
+}
+
+/// Number of different names.
+fn different(names: &[String]) -> usize {
+    names.iter().collect::<BTreeSet<_>>().len()
 }
 
 /// Refuses points whose lines are not alike.
 fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused> {
-    let (words, count) = (first.names.len(), first.numbers.len());
-    if let Some(other) = points.iter().find(|it| it.names.len() != words || it.numbers.len() != count) {
-        return Refused::at(
-            other.line,
-            format!(
-                "found {} names and {} numbers, expected {words} and {count} as in line {}",
-                other.names.len(),
-                other.numbers.len(),
-                first.line
-            ),
-        );
+    let counts = |it: &Point<'_>| (it.names.len(), it.numbers.len());
+    let (words, count) = counts(first);
+    if let Some(other) = points.iter().find(|it| counts(it) != (words, count)) {
+        let (own_words, own_count) = counts(other);
+        return At(other.line).refuse(format!(
+            "found {own_words} names and {own_count} numbers, expected {words} and {count} as in line {}",
+            first.line
+        ));
     }
     // A line that was cut has no time, and its last number may have been cut.
     let timed = points.iter().filter(|it| it.has_time).count();
-    if let Some(other) = points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
-        return Refused::at(
-            other.line,
-            "found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out",
-        );
-    }
-    Ok(())
-}
-
-/// Says what was understood of points.
-fn say_points(
-    made: &mut Made,
-    comments: &Comments<'_>,
-    layout: &Layout,
-    (points, names): (&[Point<'_>], &[String]),
-    have_targets: bool,
-) {
-    let unit = comments.unit;
-    made.frame = comments.frame.map(str::to_owned);
-    made.said.push(match comments.frame {
-        Some(frame) => format!("{} points in frame `{frame}`, {unit}", points.len()),
-        None => format!("{} points, {unit}", points.len()),
-    });
-    if comments.axes == Axes::Cylindrical {
-        made.said.push("cylindrical coordinates became x, y, z".to_owned());
-    }
-    if layout.offsets {
-        made.said.push("two offsets of each point are left out".to_owned());
-    }
-    if layout.uncertainties {
-        made.said
-            .push("three uncertainties of each point are taken as standard deviations of x, y, z".to_owned());
-    }
-    if have_targets {
-        let all: BTreeSet<&str> = names.iter().map(String::as_str).collect();
-        made.said.push(format!("names come again, and are those of {} targets", all.len()));
-    } else {
-        let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
-        made.warned.extend(repeats(names, &lines));
+    match points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
+        Some(other) => At(other.line).refuse("found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out"),
+        None => Ok(()),
     }
 }
 
 impl<'t> Comments<'t> {
     fn of(text: &'t str) -> Result<Self, Refused> {
-        let comment = |(at, line): (usize, &'t str)| Some((at, line.trim().strip_prefix("//")?.trim()));
-        let all: Vec<(usize, &str)> = lines(text).filter_map(comment).collect();
-        let behind = |key: &'static str| {
-            all.iter().filter_map(move |(at, it)| {
-                Some((*at, it.split_once(key)?.1.trim_matches([' ', '=', '\'', '"'])))
-            })
-        };
-        // Points of several frames or units in one file are not told apart by a table.
-        let only = |key: &'static str, what: &str| {
-            let first = behind(key).next();
-            match first.and_then(|first| behind(key).find(|it| it.1 != first.1)) {
-                Some((line, other)) => Refused::at(
-                    line,
-                    format!(
-                        "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
-                        first.map_or("", |it| it.1)
-                    ),
-                ),
-                None => Ok(first),
-            }
-        };
-        let frame = only("Coordinate Frame", "the frame")?.map(|it| it.1);
-        let Some((line, axes)) = only("AXES", "axes and unit")? else {
+        let frame = stated(text, "Coordinate Frame", "the frame")?.map(|it| it.1);
+        let Some((line, axes)) = stated(text, "AXES", "axes and unit")? else {
             return Refused::whole(
                 "found points of SpatialAnalyzer without the line `// AXES = …` that states their unit, expected it: export them with comments, or \
                  name the columns by number in a mapping (--columns)",
@@ -180,39 +139,48 @@ impl<'t> Comments<'t> {
         let units = axes.rsplit_once('(').map_or("", |it| it.1).trim_end_matches([')', ' ']);
         let mut units = units.split(',').map(str::trim);
         let (unit, angle) = (units.next().unwrap_or_default(), units.next());
-        let axes = match kind.split([':', ' ']).next().unwrap_or_default() {
-            "CARTESIAN" => Axes::Cartesian,
-            "CYLINDRICAL" => Axes::Cylindrical,
-            _ => Axes::Spherical,
-        };
-        if axes == Axes::Spherical {
-            return Refused::at(
-                line,
-                "found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian",
-            );
-        }
-        if unit.is_empty() {
-            return Refused::at(line, "found no unit in brackets, as `(mm)`, expected one");
-        }
         let is_degrees = angle.is_none_or(|it| it.to_ascii_lowercase().starts_with("deg"));
-        if axes == Axes::Cylindrical && !is_degrees {
-            return Refused::at(
-                line,
+        let is_cylindrical = match kind.split([':', ' ']).next() {
+            Some("CARTESIAN") => false,
+            Some("CYLINDRICAL") => true,
+            _ => {
+                return At(line).refuse("found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian");
+            }
+        };
+        if unit.is_empty() {
+            return At(line).refuse("found no unit in brackets, as `(mm)`, expected one");
+        }
+        if is_cylindrical && !is_degrees {
+            return At(line).refuse(
                 "found angles in another unit than degrees, expected deg: export the points as Cartesian",
             );
         }
-        Ok(Comments { frame, axes, unit })
+        Ok(Comments { frame, is_cylindrical, unit })
+    }
+}
+
+/// What the comments state behind a word, with its line. Points of several frames or units in one file are not told apart by a table.
+fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t str)>, Refused> {
+    let mut all = lines(text).filter_map(|(line, content)| {
+        let behind = comment(content)?.split_once(key)?.1.trim_matches([' ', '=', '\'', '"']);
+        Some((line, behind))
+    });
+    let Some(first) = all.next() else { return Ok(None) };
+    match all.find(|it| it.1 != first.1) {
+        Some((line, other)) => At(line).refuse(format!(
+                "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
+                first.1
+            )),
+        None => Ok(Some(first)),
     }
 }
 
 impl<'t> Point<'t> {
-    fn of(line: usize, content: &'t str) -> Result<Self, Refused> {
+    /// The point of a line, or what is wrong with it.
+    fn of(line: usize, content: &'t str) -> Result<Self, String> {
         let content = content.trim();
         if content.contains(';') {
-            return Refused::at(
-                line,
-                "found `;` between the cells of a point, expected commas or blanks: export the points again, or replace it",
-            );
+            return Err("found `;` between the cells of a point, expected commas or blanks: export the points again, or replace it".to_owned());
         }
         let is_by_commas = content.contains(',');
         let mut parts: Vec<&str> = if is_by_commas {
@@ -220,128 +188,79 @@ impl<'t> Point<'t> {
         } else {
             content.split_whitespace().collect()
         };
-        let mut has_time = false;
         // The time, `02/12/25 16:52:45`, which is one cell or two.
-        while parts.last().is_some_and(|it| {
+        let is_time = |it: &&str| {
             it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM")
-        }) {
-            parts.pop();
-            has_time = true;
-        }
+        };
+        let end = parts.iter().rposition(|it| !is_time(it)).map_or(0, |it| it + 1);
+        let has_time = end < parts.len();
+        parts.truncate(end);
         if let Some(word) = parts.iter().skip(1).find(|it| is_no_number(it)) {
-            return Refused::at(
-                line,
-                format!(
-                    "found `{word}` in place of a number, expected a coordinate: leave out the line of a point that was not measured"
-                ),
-            );
+            return Err(format!(
+                "found `{word}` in place of a number, expected a coordinate: leave out the line of a point that was not measured"
+            ));
         }
-        let numbers = parts.iter().rev().take_while(|it| number(it).is_some()).count();
-        let at = parts.len() - numbers;
-        let mut names: Vec<&str> = parts.drain(..at).collect();
-        if numbers < 3 {
-            return Refused::at(
-                line,
-                format!(
-                    "found {numbers} numbers behind the name of a point, expected its coordinates, at least three"
-                ),
-            );
+        let count = parts.iter().rev().take_while(|it| number(it).is_some()).count();
+        if count < 3 {
+            return Err(format!(
+                "found {count} numbers behind the name of a point, expected its coordinates, at least three"
+            ));
         }
+        let numbers = parts.split_off(parts.len() - count);
         // A name may have blanks in it.
-        if !is_by_commas && names.len() > 1 {
+        if let ([first, .., last], false) = (parts.as_slice(), is_by_commas) {
             let of = |part: &str| part.as_ptr() as usize - content.as_ptr() as usize;
-            let end = parts.first().map_or(content.len(), |it| of(it));
-            names = content.get(..end).map(str::trim_end).into_iter().collect();
+            parts = content.get(of(first)..of(last) + last.len()).into_iter().collect();
         }
-        Ok(Point { line, names, numbers: parts, has_time })
+        Ok(Point { line, names: parts, numbers, has_time })
     }
 }
 
-/// What the numbers of a line are.
-struct Layout {
-    /// Numbers before the coordinates: a name that is one, and the index of a point in its group.
-    first: usize,
-    /// Whether the first of these is the name.
-    is_named_by_number: bool,
-    offsets: bool,
-    uncertainties: bool,
-}
-
 impl Layout {
-    fn of(points: &[Point<'_>]) -> Result<Self, Refused> {
-        let Some(first) = points.first() else { return Refused::whole("found no point") };
-        let is_whole = |at: usize| {
-            points
-                .iter()
-                .all(|it| it.numbers.get(at).is_some_and(|it| it.bytes().all(|it| it.is_ascii_digit())))
-        };
+    /// What the numbers of points are, of which this is the first one.
+    fn of(first: &Point<'_>, points: &[Point<'_>]) -> Result<Self, String> {
+        let is_digits = |it: &str| it.bytes().all(|it| it.is_ascii_digit());
+        let is_whole = |at: usize| points.iter().all(|it| it.numbers.get(at).is_some_and(|it| is_digits(it)));
         // A point has a name in any case: it may be a number.
         let is_named_by_number = first.names.is_empty() && is_whole(0);
         let named = usize::from(is_named_by_number);
         let count = first.numbers.len() - named;
         let has_index = matches!(count, 4 | 6 | 7 | 9) && is_whole(named);
         let rest = count - usize::from(has_index);
-        let is_whole_number =
-            |it: &&str| it.trim_start_matches(['+', '-']).bytes().all(|it| it.is_ascii_digit());
-        let all_whole =
-            points.iter().flat_map(|it| it.numbers.get(named..).unwrap_or_default()).all(is_whole_number);
+        let mut all = points.iter().flat_map(|it| it.numbers.iter().skip(named));
+        let all_whole = all.all(|it| is_digits(it.trim_start_matches(['+', '-'])));
         if all_whole && rest >= 6 {
-            return Refused::at(
-                first.line,
-                format!(
-                    "found {rest} whole numbers of a point and no decimal point, expected three coordinates: decimal commas are cells of their own, export \
-                     the points with decimal points"
-                ),
-            );
+            return Err(format!(
+                "found {rest} whole numbers of a point and no decimal point, expected three coordinates: decimal commas are cells of their own, export \
+                 the points with decimal points"
+            ));
         }
         // The index of a point in its group, and two coordinates.
         if count == 3 && points.len() > 2 && is_whole(named) && !all_whole {
-            return Refused::at(
-                first.line,
-                "found whole numbers alone as the first of three coordinates, as of the index of a point, expected x, y and z: a column was lost",
-            );
+            return Err("found whole numbers alone as the first of three coordinates, as of the index of a point, expected x, y and z: a column was lost".to_owned());
         }
-        let (offsets, uncertainties) = match rest {
-            3 => (false, false),
-            5 => (true, false),
-            6 => (false, true),
-            8 => (true, true),
-            _ => {
-                return Refused::at(
-                    first.line,
-                    format!(
-                        "found {rest} numbers of a point, expected three coordinates, and with them two offsets, three uncertainties, or both"
-                    ),
-                );
-            }
-        };
-        Ok(Layout { first: named + usize::from(has_index), is_named_by_number, offsets, uncertainties })
-    }
-
-    fn uncertainty_at(&self) -> usize {
-        if self.offsets { 5 } else { 3 }
+        if !matches!(rest, 3 | 5 | 6 | 8) {
+            return Err(format!(
+                "found {rest} numbers of a point, expected three coordinates, and with them two offsets, three uncertainties, or both"
+            ));
+        }
+        let first = named + usize::from(has_index);
+        let (has_offsets, has_uncertainties) = (matches!(rest, 5 | 8), rest >= 6);
+        Ok(Layout { first, is_named_by_number, has_offsets, has_uncertainties })
     }
 
     /// The points' names, and whether they are those of targets, since they come again and again.
     fn names(&self, points: &[Point<'_>]) -> (Vec<String>, bool) {
-        let own = |point: &Point<'_>| -> Vec<String> {
-            let mut parts: Vec<String> =
-                point.names.iter().flat_map(|it| it.split("::")).map(|it| it.trim().to_owned()).collect();
-            if self.is_named_by_number {
-                parts.extend(point.numbers.first().map(|it| (*it).to_owned()));
-            }
-            parts
+        let parts = |point: &Point<'_>| -> Vec<String> {
+            let words = point.names.iter().flat_map(|it| it.split("::")).map(str::trim);
+            let number = point.numbers.first().filter(|_| self.is_named_by_number);
+            words.chain(number.copied()).map(str::to_owned).collect()
         };
-        let parts: Vec<Vec<String>> = points.iter().map(own).collect();
+        let parts: Vec<Vec<String>> = points.iter().map(parts).collect();
         let last: Vec<String> = parts.iter().filter_map(|it| it.last().cloned()).collect();
         let whole: Vec<String> = parts.iter().map(|it| it.join("::")).collect();
-        let count = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len();
-        if are_targets(&whole) {
-            (last, true)
-        } else if count(&whole) > count(&last) {
-            (whole, false)
-        } else {
-            (last, false)
-        }
+        let are_targets = are_targets(&whole);
+        let is_whole = !are_targets && different(&whole) > different(&last);
+        (if is_whole { whole } else { last }, are_targets)
     }
 }

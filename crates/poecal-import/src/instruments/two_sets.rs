@@ -1,7 +1,7 @@
 //! Reports with two sets of coordinates in a row, nominal and measured, as robot makers write them: a table for each set, of which the robot
 //! decides.
 
-use super::maker::{Called, Column, Made, Refused, Value};
+use super::maker::{At, Called, Column, Made, Refused, Value};
 use super::words::{Head, lines, name_and_unit, number};
 use super::{Form, Opening};
 use crate::table::roles::{Role, plain};
@@ -133,8 +133,8 @@ impl<'t> Sets<'t> {
             made.row(line, taken.iter().map(|at| Value::at(&found, *at)));
         }
         if self.parts.contains(&Part::Angle) {
-            made.said.push(
-                "the positions alone, since angles do not say their convention, which a mapping does (--columns)".to_owned(),
+            made.say(
+                "the positions alone, since angles do not say their convention, which a mapping does (--columns)",
             );
         }
         Ok(made)
@@ -149,7 +149,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let sets = Sets::of_text(text).ok_or("found no header")?;
     let (first, second) = (sets.table(text, 0)?, sets.table(text, 1)?);
     if first.rows() == 0 {
-        return Refused::at(sets.head.line, "found a header and no rows, expected rows below `x`");
+        return At(sets.head.line).refuse("found a header and no rows, expected rows below `x`");
     }
     Ok(first.with_other(sets.called, second))
 }

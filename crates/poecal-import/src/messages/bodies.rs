@@ -1,61 +1,57 @@
 //! Which observations of messages are pixels, and which are the points of a board on the robot.
 
-use std::path::Path;
-
 use nalgebra::Vector3;
 
-use super::parsed::{Message, Observation};
+use super::parsed::{Message, Observation, Refuse as _};
 use crate::pictures::boards::FARTHEST_M;
 use poecal_model::camera::Board;
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 
 /// Distance up to which two places are one point of a board, metres.
 const SAME_M: f64 = 1e-6;
 /// How many times as many places as points in a message are those of something that moves.
 const MOVES: f64 = 1.5;
 
-/// What the features of an observation are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Seen {
-    Nothing,
-    Pixels,
-    /// Points in the frame of a link, metres.
-    Points,
+/// A message, sorted.
+pub(crate) struct Picture<'a> {
+    pub(crate) message: &'a Message<'a>,
+    /// Observations in pixels.
+    pub(crate) pixels: Vec<&'a Observation<'a>>,
+    /// Of observations of points in the frame of a link, the body and which of its points they are.
+    points: Vec<(usize, Vec<usize>)>,
 }
 
-/// What an observation is; one of a camera that sees points in space is refused by name.
-pub(crate) fn seen(observation: &Observation<'_>, path: &Path) -> Result<Seen> {
-    let features = &observation.features;
-    let Some(first) = features.first() else { return Ok(Seen::Nothing) };
-    let deep = features.iter().find(|it| it.at[2] != 0.0);
-    let is_wide = features.iter().any(|it| it.at[0].abs().max(it.at[1].abs()) > FARTHEST_M);
-    match (observation.camera.is_some() || is_wide, deep) {
-        (true, None) => Ok(Seen::Pixels),
-        (true, Some(deep)) => {
-            let message = format!(
-                "found the feature ({}, {}, {}) of the sensor `{}`, as a 3-D camera sees it, expected pixels: x and y, with z = 0",
-                deep.at[0], deep.at[1], deep.at[2], observation.sensor
-            );
-            Err(deep.node.error(path, message))
-        }
-        (false, _) if observation.frame.is_empty() => {
-            let message = format!(
-                "found points of the sensor `{}` without `frame_id`, expected the link that they are on",
-                observation.sensor
-            );
-            Err(first.node.error(path, message))
-        }
-        (false, _) => Ok(Seen::Points),
-    }
-}
-
-/// Points on a link that a sensor states.
+/// Points on a link that a sensor states, metres.
 pub(crate) struct Body {
     pub(crate) sensor: String,
     /// By the frame of the points.
     pub(crate) board: Board,
     /// Most points in a message.
     most: usize,
+}
+
+/// The bodies of all messages.
+#[derive(Default)]
+pub(crate) struct Bodies(pub(crate) Vec<Body>);
+
+/// Whether an observation is one of pixels; one of a camera that sees points in space is refused by name.
+fn are_pixels(observation: &Observation<'_>) -> Result<bool> {
+    let Observation { node, sensor, features, .. } = observation;
+    let deep = features.iter().find(|it| it.at[2] != 0.0);
+    let is_wide = features.iter().any(|it| it.at[0].abs().max(it.at[1].abs()) > FARTHEST_M);
+    let is_camera = observation.camera.is_some() || is_wide;
+    if let (true, Some(deep)) = (is_camera, deep) {
+        let [x, y, z] = deep.at;
+        return deep.node.refuse(format!(
+            "found the feature ({x}, {y}, {z}) of the sensor `{sensor}`, as a 3-D camera sees it, expected pixels: x and y, with z = 0"
+        ));
+    }
+    if !is_camera && observation.frame.is_empty() {
+        return features.first().map_or(*node, |it| it.node).refuse(format!(
+            "found points of the sensor `{sensor}` without `frame_id`, expected the link that they are on"
+        ));
+    }
+    Ok(is_camera)
 }
 
 impl Body {
@@ -71,62 +67,55 @@ impl Body {
     }
 }
 
-/// The bodies of all messages.
-#[derive(Default)]
-pub(crate) struct Bodies(pub(crate) Vec<Body>);
-
 impl Bodies {
-    /// Takes an observation of points: the body, and which of its points they are.
-    pub(crate) fn take(&mut self, observation: &Observation<'_>) -> (usize, Vec<usize>) {
-        let Observation { sensor, frame, features, .. } = observation;
-        let is_it = |body: &Body| body.sensor == *sensor && body.board.name == *frame;
-        let at = self.0.iter().position(is_it).unwrap_or_else(|| {
-            let board = Board { name: (*frame).to_owned(), ..Board::default() };
-            self.0.push(Body { sensor: (*sensor).to_owned(), board, most: 0 });
-            self.0.len() - 1
-        });
-        let Some(body) = self.0.get_mut(at) else { return (at, Vec::new()) };
-        body.most = body.most.max(features.len());
-        (at, features.iter().map(|feature| body.index(feature.at)).collect())
+    /// Takes the points of a message.
+    pub(crate) fn take<'a>(&mut self, message: &'a Message<'a>) -> Result<Picture<'a>> {
+        let (mut pixels, mut points) = (Vec::new(), Vec::new());
+        for observation in message.observations.iter().filter(|it| !it.features.is_empty()) {
+            if are_pixels(observation)? {
+                pixels.push(observation);
+                continue;
+            }
+            let Observation { sensor, frame, features, .. } = observation;
+            let is_it = |body: &Body| body.sensor == *sensor && body.board.name == *frame;
+            let at = self.0.iter().position(is_it).unwrap_or_else(|| {
+                let board = Board { name: (*frame).to_owned(), ..Board::default() };
+                self.0.push(Body { sensor: (*sensor).to_owned(), board, most: 0 });
+                self.0.len() - 1
+            });
+            if let Some(body) = self.0.get_mut(at) {
+                body.most = body.most.max(features.len());
+                points.push((at, features.iter().map(|it| body.index(it.at)).collect()));
+            }
+        }
+        Ok(Picture { message, pixels, points })
     }
 
     /// Refuses points that are at other places in each message: those are what a camera saw in space.
-    pub(crate) fn refuse_moving(&self, path: &Path) -> Result<()> {
+    pub(crate) fn refuse_moving(&self) -> Result<()> {
         let moves = |body: &&Body| body.board.points.len() as f64 > MOVES * body.most as f64;
-        let Some(body) = self.0.iter().find(moves) else { return Ok(()) };
-        let message = format!(
-            "found features of the sensor `{}` in metres that move in its frame `{}` from message to message, as a 3-D camera sees them, expected \
+        let Some(Body { sensor, board, .. }) = self.0.iter().find(moves) else { return Ok(()) };
+        ErrorKind::Measurement.refuse(format!(
+            "found features of the sensor `{sensor}` in metres that move in its frame `{}` from message to message, as a 3-D camera sees them, expected \
              pixels (x and y, with z = 0), or points that stay in the frame of a link",
-            body.sensor, body.board.name
-        );
-        Err(Error::new(ErrorKind::Measurement, message).in_file(path))
+            board.name
+        ))
     }
 }
 
-/// The points of a message that an observation of pixels sees: those of as many features.
-pub(crate) fn partner<'a>(
-    message: &Message<'_>,
-    observation: &Observation<'_>,
-    points: &'a [(usize, Vec<usize>)],
-    path: &Path,
-) -> Result<&'a (usize, Vec<usize>)> {
-    let count = observation.features.len();
-    let mut alike = points.iter().filter(|(_, own)| own.len() == count);
-    match (alike.next(), alike.next()) {
-        (Some(one), None) => Ok(one),
-        (Some(_), Some(_)) => {
-            let text = format!(
-                "found two sensors with the {count} points that `{}` sees in pixels, expected one",
-                observation.sensor
-            );
-            Err(observation.node.error(path, text))
-        }
-        (None, _) => {
-            let text = format!(
-                "found {count} features of `{}` in pixels and no other sensor with as many points in metres, expected the board: state it with --markers",
-                observation.sensor
-            );
-            Err(message.node.error(path, text))
+impl Picture<'_> {
+    /// The points of the message that an observation of pixels sees: those of as many features.
+    pub(crate) fn partner(&self, observation: &Observation<'_>) -> Result<&(usize, Vec<usize>)> {
+        let (count, sensor) = (observation.features.len(), observation.sensor);
+        let alike: Vec<_> = self.points.iter().filter(|it| it.1.len() == count).collect();
+        match alike[..] {
+            [one] => Ok(one),
+            [] => self.message.node.refuse(format!(
+                "found {count} features of `{sensor}` in pixels and no other sensor with as many points in metres, expected the board: state it with --markers"
+            )),
+            _ => observation.node.refuse(format!(
+                "found two sensors with the {count} points that `{sensor}` sees in pixels, expected one"
+            )),
         }
     }
 }

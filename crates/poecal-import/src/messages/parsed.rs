@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::pictures::region::{KEYS, Region};
-use poecal_numerics::error::{ErrorKind, Result, first_few};
+use poecal_numerics::error::{Result, first_few};
 use poecal_storage::numbers::LARGEST_NUMBER;
 use poecal_storage::yaml_tree::{Node, NodeKind, documents};
 
@@ -47,10 +47,25 @@ pub(crate) struct CameraInfo {
     pub(crate) region: Region,
 }
 
+/// In place of the path in errors, which who reads the file puts there.
+pub(crate) const NO_PATH: &str = "";
+
+/// Refuses a part of a file.
+pub(crate) trait Refuse {
+    /// The error at its place.
+    fn refuse<T>(&self, message: impl Into<String>) -> Result<T>;
+}
+
+impl Refuse for Node {
+    fn refuse<T>(&self, message: impl Into<String>) -> Result<T> {
+        Err(self.error(Path::new(NO_PATH), message))
+    }
+}
+
 /// The messages of a file: each a document, or in a list.
-pub(crate) fn nodes(text: &str, path: &Path) -> Result<Vec<Node>> {
+pub(crate) fn nodes(text: &str) -> Result<Vec<Node>> {
     let mut found = Vec::new();
-    for document in documents(text, path, EXPECTED)? {
+    for document in documents(text, Path::new(NO_PATH), EXPECTED)? {
         match document.kind {
             NodeKind::List(entries) => found.extend(entries),
             // Behind the last `---`.
@@ -62,127 +77,130 @@ pub(crate) fn nodes(text: &str, path: &Path) -> Result<Vec<Node>> {
 }
 
 /// A message with its parts.
-pub(crate) fn message<'a>(node: &'a Node, path: &Path) -> Result<Message<'a>> {
-    let states = required(node, "joint_states", path)?;
-    let names = list(required(states, "name", path)?, "names of joints", path)?;
-    let positions = list(required(states, "position", path)?, "positions of joints", path)?;
-    if names.len() != positions.len() {
-        let message = format!(
+pub(crate) fn message(node: &Node) -> Result<Message<'_>> {
+    let states = required(node, "joint_states")?;
+    let names = list(required(states, "name")?, "names of joints")?;
+    let positions = list(required(states, "position")?, "positions of joints")?;
+    let counts = (names.len(), positions.len());
+    if counts.0 != counts.1 {
+        return states.refuse(format!(
             "found {} names and {} positions in `joint_states`, expected as many",
-            names.len(),
-            positions.len()
-        );
-        return Err(states.error(path, message));
+            counts.0, counts.1
+        ));
     }
     let mut joints = Vec::with_capacity(names.len());
     for (name, position) in names.iter().zip(positions) {
-        let own = name.text().filter(|name| !name.is_empty() && !name.chars().any(char::is_control));
-        let own = own.ok_or_else(|| name.error(path, "found no name of a joint, expected one"))?;
+        let own = word(name, "a joint")?;
         if joints.iter().any(|(other, _)| *other == own) {
-            return Err(
-                name.error(path, format!("found the joint `{own}` twice in `name`, expected it once"))
-            );
+            return name.refuse(format!("found the joint `{own}` twice in `name`, expected it once"));
         }
-        joints.push((own, number(position, own, path)?));
+        joints.push((own, number(position, own)?));
     }
-    let observations = list(required(node, "observations", path)?, "observations", path)?;
-    let observations = observations.iter().map(|node| observation(node, path)).collect::<Result<_>>()?;
-    Ok(Message { node, joints, observations })
+    let observations = list(required(node, "observations")?, "observations")?;
+    Ok(Message { node, joints, observations: observations.iter().map(observation).collect::<Result<_>>()? })
 }
 
-fn observation<'a>(node: &'a Node, path: &Path) -> Result<Observation<'a>> {
-    let sensor = required(node, "sensor_name", path)?;
-    let sensor = word(sensor).ok_or_else(|| sensor.error(path, "found no name of a sensor, expected one"))?;
+fn observation(node: &Node) -> Result<Observation<'_>> {
+    let sensor = word(required(node, "sensor_name")?, "a sensor")?;
     let mut features = Vec::new();
     let mut frame = "";
-    for node in list(required(node, "features", path)?, "features", path)? {
-        let point = required(node, "point", path)?;
+    for node in list(required(node, "features")?, "features")? {
+        let point = required(node, "point")?;
         let mut at = [0.0; 3];
         for (value, axis) in at.iter_mut().zip(["x", "y", "z"]) {
-            *value = number(required(point, axis, path)?, axis, path)?;
+            *value = number(required(point, axis)?, axis)?;
         }
-        let own = node.get("header").and_then(|it| it.get("frame_id")).and_then(word).unwrap_or_default();
+        let own = node.get("header").and_then(|it| it.get("frame_id")).and_then(name).unwrap_or_default();
         if !features.is_empty() && own != frame {
-            let message = format!(
+            return node.refuse(format!(
                 "found a feature of `{sensor}` in the frame `{own}` beside `{frame}`, expected one frame"
-            );
-            return Err(node.error(path, message));
+            ));
         }
         frame = own;
         features.push(Feature { node: point, at });
     }
     let info = node.get("ext_camera_info").and_then(|it| it.get("camera_info"));
-    let camera = info.map(|info| camera_info(info, path)).transpose()?.flatten();
+    let camera = info.map(camera_info).transpose()?.flatten();
     Ok(Observation { node, sensor, frame, features, camera })
 }
 
-/// A name on one line.
-fn word(node: &Node) -> Option<&str> {
+/// A name on one line, if it is one.
+fn name(node: &Node) -> Option<&str> {
     node.text().filter(|text| !text.is_empty() && !text.chars().any(char::is_control))
 }
 
+/// The name of something.
+fn word<'a>(node: &'a Node, of: &str) -> Result<&'a str> {
+    name(node).map_or_else(|| node.refuse(format!("found no name of {of}, expected one")), Ok)
+}
+
 /// The lens; `None` of an empty message.
-fn camera_info(node: &Node, path: &Path) -> Result<Option<CameraInfo>> {
+fn camera_info(node: &Node) -> Result<Option<CameraInfo>> {
     let either = |small: &str, large: &str| node.get(small).or_else(|| node.get(large));
-    let Some(k) = either("k", "K") else { return Ok(None) };
     let numbers = |node: &Node, name: &str| -> Result<Vec<f64>> {
-        list(node, name, path)?.iter().map(|node| number(node, name, path)).collect()
+        list(node, name)?.iter().map(|node| number(node, name)).collect()
     };
-    let matrix = numbers(k, "K")?;
-    let count = matrix.len();
-    let matrix: [f64; 9] = matrix.try_into().map_err(|_| {
-        k.error(path, format!("found {count} numbers of the camera's matrix `K`, expected 9"))
-    })?;
-    if matrix.iter().all(|it| *it == 0.0) {
+    let stated = |keys: &[&str]| {
+        let found = keys.iter().try_fold(node, |node, key| node.get(key));
+        found.map_or(Ok(0.0), |node| number(node, &keys.join(".")))
+    };
+    let Some(matrix) = either("k", "K") else { return Ok(None) };
+    let k = numbers(matrix, "K")?;
+    let Ok(k) = <[f64; 9]>::try_from(k.as_slice()) else {
+        return matrix.refuse(format!("found {} numbers of the camera's matrix `K`, expected 9", k.len()));
+    };
+    if k == [0.0; 9] {
         return Ok(None);
     }
-    let d = either("d", "D").map(|node| numbers(node, "D")).transpose()?.unwrap_or_default();
-    let size = |key: &str| node.get(key).map(|node| number(node, key, path)).transpose();
-    let size_px = [size("width")?.unwrap_or(0.0), size("height")?.unwrap_or(0.0)];
+    let d = either("d", "D").map_or(Ok(Vec::new()), |it| numbers(it, "D"))?;
+    let size_px = [stated(&["width"])?, stated(&["height"])?];
     let model = node.get("distortion_model").and_then(Node::text).unwrap_or_default().to_owned();
     let mut part = [0.0; KEYS.len()];
     for (value, keys) in part.iter_mut().zip(KEYS) {
-        let found = keys.split('.').try_fold(node, |node, key| node.get(key));
-        *value = found.map_or(Ok(0.0), |node| number(node, keys, path))?;
+        *value = stated(keys)?;
     }
-    let region = Region::new(part).map_err(|found| node.error(path, found))?;
-    Ok(Some(CameraInfo { size_px, k: matrix, d, model, region }))
+    let region = Region::new(part).or_else(|found| node.refuse(found))?;
+    Ok(Some(CameraInfo { size_px, k, d, model, region }))
 }
 
-fn required<'a>(node: &'a Node, key: &str, path: &Path) -> Result<&'a Node> {
-    node.get(key).ok_or_else(|| {
-        let has = match &node.kind {
-            NodeKind::Map(entries) => {
-                let keys: Vec<&str> = entries.iter().map(|(key, _)| key.as_str()).collect();
-                format!("{} without `{key}`", first_few(&keys))
-            }
-            NodeKind::Text(text) if text == "..." => return cut(node, path),
-            NodeKind::Text(text) => format!("`{text}`"),
-            NodeKind::List(_) => "a list".to_owned(),
-        };
-        node.error(path, format!("found {has}, expected {EXPECTED}"))
-    })
+fn required<'a>(node: &'a Node, key: &str) -> Result<&'a Node> {
+    if let Some(found) = node.get(key) {
+        return Ok(found);
+    }
+    let has = match &node.kind {
+        NodeKind::Map(entries) => {
+            let keys: Vec<&str> = entries.iter().map(|(key, _)| key.as_str()).collect();
+            format!("{} without `{key}`", first_few(&keys))
+        }
+        NodeKind::Text(text) if text == CUT => return refuse_cut(node),
+        NodeKind::Text(text) => format!("`{text}`"),
+        NodeKind::List(_) => "a list".to_owned(),
+    };
+    node.refuse(format!("found {has}, expected {EXPECTED}"))
 }
 
-fn list<'a>(node: &'a Node, what: &str, path: &Path) -> Result<&'a [Node]> {
-    node.list().ok_or_else(|| node.error(path, format!("found no list of {what}, expected {EXPECTED}")))
+fn list<'a>(node: &'a Node, what: &str) -> Result<&'a [Node]> {
+    node.list().map_or_else(|| node.refuse(format!("found no list of {what}, expected {EXPECTED}")), Ok)
 }
 
-/// The error of a list that was printed in part.
-fn cut(node: &Node, path: &Path) -> poecal_numerics::error::Error {
-    let message = "found `...` in place of the rest of a list, expected all of it: record with `ros2 topic echo --full-length`";
-    node.error(path, message)
+/// What stands for the rest of a list that was printed in part.
+const CUT: &str = "...";
+
+fn refuse_cut<T>(node: &Node) -> Result<T> {
+    node.refuse(
+        "found `...` in place of the rest of a list, expected all of it: record with `ros2 topic echo --full-length`",
+    )
 }
 
-fn number(node: &Node, name: &str, path: &Path) -> Result<f64> {
+fn number(node: &Node, name: &str) -> Result<f64> {
     let text = node.text().unwrap_or("a list");
-    if text == "..." {
-        return Err(cut(node, path));
+    if text == CUT {
+        return refuse_cut(node);
     }
-    let found = text.parse::<f64>().ok().filter(|it| it.is_finite() && it.abs() <= LARGEST_NUMBER);
-    found.ok_or_else(|| {
-        let message =
-            format!("found `{text}` for `{name}`, expected a finite number of at most {LARGEST_NUMBER:e}");
-        ErrorKind::Measurement.error(message).at(path, node.line, node.column)
-    })
+    match text.parse::<f64>() {
+        Ok(number) if number.abs() <= LARGEST_NUMBER => Ok(number),
+        _ => node.refuse(format!(
+            "found `{text}` for `{name}`, expected a finite number of at most {LARGEST_NUMBER:e}"
+        )),
+    }
 }

@@ -136,11 +136,6 @@ impl<'a> Table<'a> {
         Ok(Table { header, separator, separator_line, blocks, places, header_end, unread: true })
     }
 
-    /// The same with rows that were made of the lines of another file.
-    pub(crate) fn with_lines(self, lines: Vec<usize>) -> Self {
-        Table { places: Some(Places { lines, form: "messages", ..Places::default() }), ..self }
-    }
-
     /// The text before the first block of rows, of blocks that hold what they pass.
     pub(crate) fn passed(&mut self) -> String {
         self.blocks.passed()

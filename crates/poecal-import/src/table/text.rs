@@ -1,6 +1,6 @@
 //! Text of a file and its lines.
 
-use std::io::{Cursor, Read};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::configurations::{self, Configurations};
@@ -21,11 +21,10 @@ const LONGEST_LINE: usize = 16 << 20;
 const FIRST_LINES: usize = 64;
 
 /// Source of a text.
-enum TextSource<'a> {
+enum TextSource {
     File(Hashing<Input>),
-    Text(&'a [u8]),
     /// Made of other files, with the checksum of their bytes.
-    Made(Cursor<Vec<u8>>, Option<String>),
+    Made(Box<dyn Read>, Option<String>),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
@@ -33,7 +32,7 @@ pub(crate) struct Blocks<'a> {
     path: &'a Path,
     /// Description of the file in messages.
     expected: &'a str,
-    source: TextSource<'a>,
+    source: TextSource,
     /// Bytes per read.
     size: usize,
     /// The current block.
@@ -76,14 +75,19 @@ impl<'a> Blocks<'a> {
             return Blocks::open(path, expected);
         }
         let Configurations { text, sha256, left } = configurations::read(path)?;
-        let mut blocks = Blocks::made(path, expected, text, Some(sha256));
+        let mut blocks = Blocks::made(path, expected, Box::new(Cursor::new(text)), Some(sha256));
         blocks.said.warnings.extend(left.iter().map(ToString::to_string));
         Ok(blocks)
     }
 
     /// The blocks of a text that was made of a file or a folder, with the checksum of its bytes.
-    pub(crate) fn made(path: &'a Path, expected: &'a str, text: String, sha256: Option<String>) -> Self {
-        Blocks::of(path, expected, TextSource::Made(Cursor::new(text.into_bytes()), sha256), BLOCK)
+    pub(crate) fn made(
+        path: &'a Path,
+        expected: &'a str,
+        text: Box<dyn Read>,
+        sha256: Option<String>,
+    ) -> Self {
+        Blocks::of(path, expected, TextSource::Made(text, sha256), BLOCK)
     }
 
     /// The same with the places of its lines, and what was understood.
@@ -111,17 +115,13 @@ impl<'a> Blocks<'a> {
         std::mem::take(&mut self.said)
     }
 
-    /// The blocks of a text; messages call it `path`.
-    pub(crate) fn new(path: &'a Path, text: &'a [u8]) -> Self {
-        Blocks::sized(path, text, BLOCK)
+    /// The blocks of a text that messages call `path`, of so many bytes per read.
+    #[cfg(test)]
+    pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
+        Blocks::of(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
     }
 
-    /// The same with another number of bytes per read.
-    pub(crate) fn sized(path: &'a Path, text: &'a [u8], size: usize) -> Self {
-        Blocks::of(path, "a table (CSV)", TextSource::Text(text), size)
-    }
-
-    fn of(path: &'a Path, expected: &'a str, source: TextSource<'a>, size: usize) -> Self {
+    fn of(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
         let (text, rest) = (String::new(), Vec::new());
         Blocks {
             path,
@@ -155,7 +155,6 @@ impl<'a> Blocks<'a> {
             let size = self.size as u64;
             let more = match &mut self.source {
                 TextSource::File(file) => file.take(size).read_to_end(&mut bytes),
-                TextSource::Text(text) => text.take(size).read_to_end(&mut bytes),
                 TextSource::Made(text, _) => text.take(size).read_to_end(&mut bytes),
             };
             let more = more.map_err(|error| unreadable(self.path, &error, self.expected))?;
@@ -230,7 +229,6 @@ impl<'a> Blocks<'a> {
         let most = Limit::Text.most();
         let more = match &mut self.source {
             TextSource::File(file) => file.take(most).read_to_end(&mut bytes),
-            TextSource::Text(text) => text.take(most).read_to_end(&mut bytes),
             TextSource::Made(text, _) => text.take(most).read_to_end(&mut bytes),
         };
         more.map_err(|error| unreadable(self.path, &error, self.expected))?;
@@ -243,7 +241,7 @@ impl<'a> Blocks<'a> {
         })?;
         let sha256 = self.sha256();
         self.said.notes.push("the text is UTF-16".to_owned());
-        self.source = TextSource::Made(Cursor::default(), sha256);
+        self.source = TextSource::Made(Box::new(io::empty()), sha256);
         Ok(text.into_bytes())
     }
 
@@ -272,7 +270,6 @@ impl<'a> Blocks<'a> {
     pub(crate) fn sha256(&self) -> Option<String> {
         match &self.source {
             TextSource::File(file) => Some(file.sha256()),
-            TextSource::Text(_) => None,
             TextSource::Made(_, sha256) => sha256.clone(),
         }
     }

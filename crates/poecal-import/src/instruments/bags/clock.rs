@@ -13,7 +13,7 @@ pub(crate) struct Stamp {
 }
 
 /// What messages hold, each with when it was made.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Timed<T>(pub(crate) Vec<(Stamp, T)>);
 
 impl<T> Timed<T> {

@@ -12,37 +12,36 @@ use poecal_storage::limits::Limit;
 const LISTED: usize = 30;
 
 /// What the messages of a topic hold, as far as it is read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) enum Content {
     Joints(Readings),
     Bodies(Bodies),
     /// Messages of another type.
+    #[default]
     Other,
 }
 
 impl Content {
-    /// Number of readings or poses that are held.
-    fn held(&self) -> usize {
-        match self {
-            Content::Joints(readings) => readings.held(),
-            Content::Bodies(bodies) => bodies.held,
-            Content::Other => 0,
-        }
+    pub(crate) fn readings(&self) -> Option<&Readings> {
+        if let Content::Joints(readings) = self { Some(readings) } else { None }
     }
 
-    /// Number of bodies.
-    fn frames(&self) -> usize {
-        if let Content::Bodies(bodies) = self { bodies.all.len() } else { 0 }
+    pub(crate) fn bodies(&self) -> Option<&Bodies> {
+        if let Content::Bodies(bodies) = self { Some(bodies) } else { None }
+    }
+
+    /// Number of readings or poses that are held.
+    fn held(&self) -> usize {
+        self.readings().map_or(0, Readings::held) + self.bodies().map_or(0, |it| it.held)
     }
 }
 
 /// A topic.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Topic {
     pub(crate) name: String,
     /// Name of the type of its messages, with their encoding if that is not CDR.
     pub(crate) title: String,
-    kind: Option<Kind>,
     pub(crate) count: u64,
     /// Times of its first and last message in the log, nanoseconds.
     span_ns: (u64, u64),
@@ -77,7 +76,7 @@ impl Topic {
 
     /// Whether its messages name the bodies that they are about.
     pub(crate) fn names_bodies(&self) -> bool {
-        matches!(&self.content, Content::Bodies(bodies) if bodies.all.iter().any(|it| !it.child.is_empty()))
+        self.content.bodies().is_some_and(|it| it.all.iter().any(|it| !it.child.is_empty()))
     }
 
     /// Takes a message.
@@ -87,11 +86,11 @@ impl Topic {
             _ => (self.span_ns.0.min(log_ns), self.span_ns.1.max(log_ns)),
         };
         self.count += 1;
-        let Some(kind) = self.kind.filter(|_| self.broken.is_none()) else { return };
         let taken = match &mut self.content {
+            _ if self.broken.is_some() => return,
             Content::Joints(readings) => joint_state(message).map(|it| readings.take(&it, log_ns)),
             Content::Bodies(bodies) => {
-                poses(kind, message).map(|all| all.iter().for_each(|it| bodies.take(it, log_ns)))
+                poses(bodies.kind, message).map(|all| all.iter().for_each(|it| bodies.take(it, log_ns)))
             }
             Content::Other => Ok(()),
         };
@@ -102,7 +101,7 @@ impl Topic {
 }
 
 /// All topics of a bag.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Topics<'a> {
     /// Names of the robot's joints.
     joints: &'a [String],
@@ -126,17 +125,7 @@ pub(crate) struct Topics<'a> {
 impl<'a> Topics<'a> {
     /// None, of a robot with these joints.
     pub(crate) fn new(joints: &'a [String]) -> Self {
-        Topics {
-            joints,
-            schemas: HashMap::new(),
-            channels: HashMap::new(),
-            all: Vec::new(),
-            places: HashMap::new(),
-            refused: None,
-            span_ns: None,
-            held: 0,
-            unknown: 0,
-        }
+        Topics { joints, ..Topics::default() }
     }
 
     /// Begins another file, which has numbers of its own.
@@ -163,21 +152,12 @@ impl<'a> Topics<'a> {
         }
         let at = known.unwrap_or_else(|| {
             self.places.insert(key, self.all.len());
-            let kind = Kind::of(of).filter(|_| is_cdr);
-            let content = match kind {
+            let content = match Kind::of(of).filter(|_| is_cdr) {
                 Some(Kind::Joints) => Content::Joints(Readings::new(self.joints)),
                 Some(kind) => Content::Bodies(Bodies::new(kind)),
                 None => Content::Other,
             };
-            self.all.push(Topic {
-                name: name.to_owned(),
-                title,
-                kind,
-                count: 0,
-                span_ns: (0, 0),
-                content,
-                broken: None,
-            });
+            self.all.push(Topic { name: name.to_owned(), title, content, ..Topic::default() });
             self.all.len() - 1
         });
         self.channels.insert(id, at);
@@ -192,7 +172,7 @@ impl<'a> Topics<'a> {
                 let before = topic.content.held();
                 topic.take(log_ns, message);
                 self.held += topic.content.held() - before;
-                if topic.content.frames() > Limit::Topics.most_held() {
+                if topic.content.bodies().map_or(0, |it| it.all.len()) > Limit::Topics.most_held() {
                     self.refused = Some(Limit::Topics.exceeded("one topic"));
                 } else if self.held > Limit::Poses.most_held() {
                     self.refused = Some(Limit::Poses.exceeded("the messages of a bag"));

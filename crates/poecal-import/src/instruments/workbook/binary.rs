@@ -12,10 +12,10 @@ use zip::ZipArchive;
 
 use poecal_storage::limits::Limit;
 
+use super::super::fields::Fields;
 use super::archive::Parts;
 use super::cells::{Found, Left, ReadSheet, broken};
-use super::container::{u16_at, u32_at};
-use super::numbers::{Styles, f64_at, short};
+use super::numbers::{Styles, long, short, wide};
 
 /// Kinds of records.
 mod kind {
@@ -42,8 +42,8 @@ mod kind {
 
 /// The part that names the sheets; a workbook with it is a binary one.
 const WORKBOOK: &str = "xl/workbook.bin";
-/// Bytes before what a cell holds: its column and its style.
-const HEAD: usize = 8;
+/// Bytes before the link of a sheet.
+const BEFORE_LINK: usize = 8;
 /// Most rows of a sheet.
 const MOST_ROWS: u32 = 1 << 20;
 /// What is said of a record whose parts lie beyond its end.
@@ -65,35 +65,32 @@ impl Archive<'_> {
 }
 
 /// A record of a part: its kind and its bytes.
-type Record<'b> = (u16, &'b [u8]);
+type Record<'b> = (u16, Fields<'b>);
 
 /// The records of a part; the last one is an error if it is cut.
-struct Records<'b>(&'b [u8]);
+struct Records<'b>(Fields<'b>);
 
 impl<'b> Records<'b> {
-    fn byte(&mut self) -> Option<u8> {
-        let (first, rest) = self.0.split_first()?;
-        self.0 = rest;
-        Some(*first)
+    fn of(part: &'b [u8]) -> Self {
+        Records(Fields(part))
     }
 
     fn one(&mut self) -> Option<Record<'b>> {
-        let first = self.byte()?;
+        let rest = &mut self.0;
+        let first = rest.u8()?;
         let kind = match first & 0x80 {
             0 => u16::from(first),
-            _ => u16::from(first & 0x7F) | u16::from(self.byte()? & 0x7F) << 7,
+            _ => u16::from(first & 0x7F) | u16::from(rest.u8()? & 0x7F) << 7,
         };
         let mut size = 0;
         for shift in [0, 7, 14, 21] {
-            let next = self.byte()?;
+            let next = rest.u8()?;
             size |= usize::from(next & 0x7F) << shift;
             if next & 0x80 == 0 {
                 break;
             }
         }
-        let (own, rest) = self.0.split_at_checked(size)?;
-        self.0 = rest;
-        Some((kind, own))
+        Some((kind, Fields(rest.bytes(size)?)))
     }
 }
 
@@ -101,12 +98,12 @@ impl<'b> Iterator for Records<'b> {
     type Item = Result<Record<'b>, String>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.0.is_empty() {
+        if self.0.0.is_empty() {
             return None;
         }
         let found = self.one();
         if found.is_none() {
-            self.0 = &[];
+            self.0 = Fields(&[]);
         }
         Some(found.ok_or_else(|| "a record goes beyond the end".to_owned()))
     }
@@ -152,9 +149,9 @@ impl Shared {
         let mut shared = Shared::default();
         let paths = paths(&archive.part("xl/_rels/workbook.bin.rels")?.unwrap_or_default());
         let mut is_1904 = false;
-        for record in Records(workbook) {
+        for record in Records::of(workbook) {
             match record? {
-                (kind::DATES, data) => is_1904 = data.first().is_some_and(|it| it & 1 != 0),
+                (kind::DATES, mut data) => is_1904 = data.u8().is_some_and(|it| it & 1 != 0),
                 (kind::SHEET, data) => {
                     let (link, name) = link_and_name(data).ok_or(SHORT_RECORD)?;
                     let path = paths.get(&link).filter(|it| it.contains("worksheets/"));
@@ -163,9 +160,10 @@ impl Shared {
                 _ => {}
             }
         }
-        for record in Records(&archive.part("xl/sharedStrings.bin")?.unwrap_or_default()) {
-            if let (kind::SHARED_TEXT, data) = record? {
-                shared.texts.push(text(data, 1).ok_or(SHORT_RECORD)?.0);
+        for record in Records::of(&archive.part("xl/sharedStrings.bin")?.unwrap_or_default()) {
+            if let (kind::SHARED_TEXT, mut data) = record? {
+                let text = data.u8().and_then(|_| text(&mut data));
+                shared.texts.push(text.ok_or(SHORT_RECORD)?);
             }
         }
         shared.styles = styles(&archive.part("xl/styles.bin")?.unwrap_or_default(), is_1904)?;
@@ -175,14 +173,14 @@ impl Shared {
     /// The cells of a sheet.
     fn range(&self, sheet: &[u8], name: &str, left: &mut Left) -> Result<Range<Data>, String> {
         let (mut found, mut row) = (Found::default(), 0);
-        for record in Records(sheet) {
-            let (kind, data) = record.map_err(|error| broken(name, &error))?;
+        for record in Records::of(sheet) {
+            let (kind, mut data) = record.map_err(|error| broken(name, &error))?;
             let short = || broken(name, &SHORT_RECORD);
             match kind {
                 kind::END_OF_CELLS => break,
-                kind::ROW => row = u32_at(data, 0).filter(|it| *it < MOST_ROWS).ok_or_else(short)?,
+                kind::ROW => row = data.u32().filter(|it| *it < MOST_ROWS).ok_or_else(short)?,
                 kind::SHORT..=kind::FORMULA_ERROR => {
-                    let column = u32_at(data, 0).filter(|it| *it <= u32::from(u16::MAX)).ok_or_else(short)?;
+                    let column = data.u32().filter(|it| *it <= u32::from(u16::MAX)).ok_or_else(short)?;
                     let value = self.value(kind, data).ok_or_else(short)?;
                     found.add((row, column), value, left)?;
                 }
@@ -192,21 +190,18 @@ impl Shared {
         Ok(found.range(left))
     }
 
-    /// What a cell holds; `None` of a record that is too short.
-    fn value(&self, kind: u16, data: &[u8]) -> Option<Data> {
-        // Its upper byte is none of the style.
-        let style = u16_at(data, 4)?;
+    /// What a cell holds, from its style on; `None` of a record that is too short.
+    fn value(&self, kind: u16, mut data: Fields<'_>) -> Option<Data> {
+        // The upper byte is none of the style.
+        let (style, _) = (data.u16()?, data.u16()?);
         let number = |value| self.styles.number(value, style).unwrap_or(Data::Empty);
         Some(match kind {
-            kind::SHORT => number(short(u32_at(data, HEAD)?)),
-            kind::NUMBER | kind::FORMULA => number(f64_at(data, HEAD)?),
-            kind::TEXT | kind::FORMULA_TEXT => Data::String(text(data, HEAD)?.0),
-            kind::OF_TEXTS => {
-                let at = usize::try_from(u32_at(data, HEAD)?).ok()?;
-                Data::String(self.texts.get(at)?.clone())
-            }
-            kind::FLAG | kind::FORMULA_FLAG => Data::Bool(*data.get(HEAD)? != 0),
-            kind::ERROR | kind::FORMULA_ERROR => Data::Error(error(*data.get(HEAD)?)),
+            kind::SHORT => number(short(&mut data)?),
+            kind::NUMBER | kind::FORMULA => number(long(&mut data)?),
+            kind::TEXT | kind::FORMULA_TEXT => Data::String(text(&mut data)?),
+            kind::OF_TEXTS => Data::String(self.texts.get(data.index()?)?.clone()),
+            kind::FLAG | kind::FORMULA_FLAG => Data::Bool(data.u8()? != 0),
+            kind::ERROR | kind::FORMULA_ERROR => Data::Error(error(data.u8()?)),
             _ => Data::Empty,
         })
     }
@@ -228,38 +223,33 @@ fn error(code: u8) -> CellErrorType {
 /// Which styles are dates: formats, and the list of the styles of cells, which names them.
 fn styles(part: &[u8], is_1904: bool) -> Result<Styles, String> {
     let (mut formats, mut styles, mut is_of_cells) = (Vec::new(), Vec::new(), false);
-    for record in Records(part) {
+    for record in Records::of(part) {
         match record? {
-            (kind::FORMAT, data) => {
-                let own = u16_at(data, 0).zip(text(data, 2));
-                formats.extend(own.map(|(number, format)| (number, format.0)));
-            }
+            (kind::FORMAT, mut data) => formats.extend(data.u16().zip(text(&mut data))),
             (kind::STYLES, _) => is_of_cells = true,
             (kind::END_OF_STYLES, _) => is_of_cells = false,
-            (kind::STYLE, data) if is_of_cells => styles.push(u16_at(data, 2).unwrap_or_default()),
+            (kind::STYLE, mut data) if is_of_cells => {
+                styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default());
+            }
             _ => {}
         }
     }
     Ok(Styles::of(&formats, &styles, is_1904))
 }
 
-/// A text from a place on, with its number of letters before it, and the place behind it.
-fn text(data: &[u8], at: usize) -> Option<(String, usize)> {
-    let count = usize::try_from(u32_at(data, at)?).ok()?;
-    let begin = at.checked_add(4)?;
-    let end = begin.checked_add(count.checked_mul(2)?)?;
-    let units: Vec<u16> = data.get(begin..end)?.chunks_exact(2).filter_map(|it| u16_at(it, 0)).collect();
-    Some((String::from_utf16_lossy(&units), end))
+/// A text with its number of letters before it.
+fn text(data: &mut Fields<'_>) -> Option<String> {
+    let count = data.index()?;
+    wide(data, count)
 }
 
 /// The link of a sheet to its part, and its name.
-fn link_and_name(data: &[u8]) -> Option<(String, String)> {
+fn link_and_name(mut data: Fields<'_>) -> Option<(String, String)> {
+    data.bytes(BEFORE_LINK)?;
     // A sheet without a part, such as one of macros.
-    if u32_at(data, HEAD)? == u32::MAX {
-        return Some((String::new(), text(data, HEAD + 4)?.0));
-    }
-    let (link, end) = text(data, HEAD)?;
-    Some((link, text(data, end)?.0))
+    let has_part = Fields(data.0).u32()? != u32::MAX;
+    let link = if has_part { text(&mut data) } else { data.u32().map(|_| String::new()) };
+    Some((link?, text(&mut data)?))
 }
 
 /// The parts that links lead to.

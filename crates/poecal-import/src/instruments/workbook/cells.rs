@@ -1,11 +1,11 @@
 //! The cells of a sheet as a range, once it is known that the range can be held.
 
-use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io::Cursor;
 
-use calamine::{Cell, Data, DataRef, Range, Reader as _, Sheets};
+use calamine::{Cell, Data, Range, Reader as _, Sheets};
 
+use super::Formulas;
 use poecal_storage::limits::Limit;
 
 /// A workbook of bytes.
@@ -103,7 +103,7 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
                 Err(error) => return Err(broken(&error)),
             };
             while let Some(cell) = reader.next_cell().map_err(|error| broken(&error))? {
-                found.add(cell.get_position(), owned(cell.get_value()), left)?;
+                found.add(cell.get_position(), Data::from(cell.get_value().clone()), left)?;
             }
         }
         // The cells of .ods were counted before it was opened; the others are read elsewhere.
@@ -115,43 +115,33 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
 }
 
 /// Formulas of a sheet within a range, by row and column; none of a form of workbook whose formulas cannot be read.
-pub(crate) fn formulas(
-    book: &mut Book<'_>,
-    name: &str,
-    within: &Range<Data>,
-) -> BTreeMap<(u32, u32), String> {
-    let mut found = BTreeMap::new();
+pub(crate) fn formulas(book: &mut Book<'_>, name: &str, within: &Range<Data>) -> Formulas {
+    let mut found = Formulas::new();
     let (Some(start), Some(end)) = (within.start(), within.end()) else { return found };
-    let mut take = |cell: Cell<String>| {
-        let (row, column) = cell.get_position();
+    let mut take = |(row, column): (u32, u32), text: &String| {
         let is_within = (start.0..=end.0).contains(&row) && (start.1..=end.1).contains(&column);
-        if is_within && !cell.get_value().is_empty() {
-            found.insert((row, column), cell.get_value().clone());
+        if is_within && !text.is_empty() {
+            found.insert((row, column), text.clone());
         }
     };
     match book {
         Sheets::Xlsx(book) => {
             if let Ok(mut reader) = book.worksheet_cells_reader(name) {
                 while let Ok(Some(cell)) = reader.next_formula() {
-                    take(cell);
+                    take(cell.get_position(), cell.get_value());
                 }
             }
         }
         Sheets::Ods(_) | Sheets::Xls(_) | Sheets::Xlsb(_) => {
             if let Ok(all) = book.worksheet_formula(name) {
                 let first = all.start().unwrap_or_default();
-                let cells = all.used_cells();
-                cells.for_each(|(row, column, text)| {
-                    take(Cell::new((first.0 + row as u32, first.1 + column as u32), text.clone()));
-                });
+                for (row, column, text) in all.used_cells() {
+                    take((first.0 + row as u32, first.1 + column as u32), text);
+                }
             }
         }
     }
     found
-}
-
-fn owned(value: &DataRef<'_>) -> Data {
-    Data::from(value.clone())
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The container of old workbooks (.xls), MS-CFB: streams in chains of sectors.
 
+use super::super::fields::Fields;
+
 /// How a container begins.
 pub(crate) const MAGIC: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 /// Names of the stream that is a workbook.
@@ -23,7 +25,7 @@ struct Container<'b> {
 
 /// The stream of the workbook; `None` of a container that is damaged or has none.
 pub(crate) fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
-    let shift = u16_at(bytes, 30)?;
+    let shift = Fields(bytes.get(30..)?).u16()?;
     if !bytes.starts_with(MAGIC) || !matches!(shift, 9 | 12) {
         return None;
     }
@@ -39,7 +41,7 @@ pub(crate) fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
     let root = entries.first()?;
     let small = container.chain(u32_at(root, 116)?, u64::from(u32_at(root, 120)?))?;
     let table = container.chain(u32_at(bytes, 60)?, u64::MAX)?;
-    let next: Vec<u32> = table.chunks_exact(4).filter_map(|it| u32_at(it, 0)).collect();
+    let next: Vec<u32> = numbers(&table).collect();
     followed(&next, start, size, |sector| {
         let at = usize::try_from(sector).ok()?.checked_mul(SMALL_SECTOR)?;
         small.get(at..at.checked_add(SMALL_SECTOR)?.min(small.len()))
@@ -47,16 +49,17 @@ pub(crate) fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 fn is_named(entry: &[u8], name: &str) -> bool {
-    let mut letters = entry.chunks_exact(2).map_while(|it| u16_at(it, 0)).take_while(|it| *it != 0);
+    let mut letters = entry.chunks_exact(2).map_while(|it| Fields(it).u16()).take_while(|it| *it != 0);
     name.encode_utf16().all(|it| letters.next() == Some(it)) && letters.next().is_none()
 }
 
-pub(crate) fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
-    bytes.get(at..at.checked_add(2)?)?.try_into().ok().map(u16::from_le_bytes)
+fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    Fields(bytes.get(at..)?).u32()
 }
 
-pub(crate) fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
-    bytes.get(at..at.checked_add(4)?)?.try_into().ok().map(u32::from_le_bytes)
+/// The numbers of sectors that bytes are.
+fn numbers(bytes: &[u8]) -> impl Iterator<Item = u32> {
+    bytes.chunks_exact(4).filter_map(|it| Fields(it).u32())
 }
 
 impl<'b> Container<'b> {
@@ -71,22 +74,21 @@ impl<'b> Container<'b> {
     /// The next sectors of all sectors.
     fn table(&self) -> Option<Vec<u32>> {
         let most = self.bytes.len() / self.sector;
-        let mut listed: Vec<u32> = (0..LISTED).filter_map(|at| u32_at(self.bytes, 76 + 4 * at)).collect();
+        let head = self.bytes.get(76..).unwrap_or_default();
+        let mut listed: Vec<u32> = numbers(head).take(LISTED).collect();
         let mut more = u32_at(self.bytes, 68)?;
         for _ in 0..=most {
             if more >= MARKS {
                 break;
             }
-            let sector = self.sector(more)?;
-            let numbers: Vec<u32> = sector.chunks_exact(4).filter_map(|it| u32_at(it, 0)).collect();
-            let (last, own) = numbers.split_last()?;
+            let own: Vec<u32> = numbers(self.sector(more)?).collect();
+            let (last, own) = own.split_last()?;
             listed.extend(own);
             more = *last;
         }
         let mut next = Vec::new();
         for number in listed.into_iter().filter(|it| *it < MARKS).take(most) {
-            let sector = self.sector(number)?;
-            next.extend(sector.chunks_exact(4).filter_map(|it| u32_at(it, 0)));
+            next.extend(numbers(self.sector(number)?));
         }
         Some(next)
     }

@@ -36,13 +36,8 @@ pub(crate) fn is_one(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04") || head.starts_with(b"\xd0\xcf\x11\xe0")
 }
 
-/// Header and rows of a sheet, by their numbers in the range.
-struct Found {
-    header: usize,
-    units: Option<usize>,
-    rows: Vec<usize>,
-    columns: usize,
-}
+/// Formulas of a sheet by row and column.
+type Formulas = BTreeMap<(u32, u32), String>;
 
 /// A workbook whose sheets are read one by one.
 enum Workbook<'b> {
@@ -87,55 +82,44 @@ impl<'b> Workbook<'b> {
     }
 
     /// Formulas of a sheet within a range; of those that are read here none.
-    fn formulas(&mut self, name: &str, within: &Range<Data>) -> BTreeMap<(u32, u32), String> {
+    fn formulas(&mut self, name: &str, within: &Range<Data>) -> Formulas {
         match self {
             Workbook::Archive(book, _) => cells::formulas(book, name, within),
-            Workbook::Read(_) => BTreeMap::new(),
+            Workbook::Read(_) => Formulas::new(),
         }
     }
 }
 
 /// The table of a workbook.
 pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused> {
-    let mut book = Workbook::open(bytes).or_else(Refused::whole)?;
+    let mut book = Workbook::open(bytes)?;
     let names = book.names();
-    if let Some(wanted) = &opening.options.sheet {
-        let Some(name) = names.iter().find(|it| *it == wanted) else {
-            return Refused::whole(format!("found no sheet `{wanted}`, expected one of {}", quoted(&names)));
-        };
-        let range = book.range(name).or_else(Refused::whole)?;
-        return match found(&range) {
-            Some(table) => made(&mut book, &range, &table, name),
-            None => Refused::whole(format!(
-                "found no table in sheet `{name}`, expected a row that names the columns and rows of numbers below it"
-            )),
-        };
+    let wanted = opening.options.sheet.as_ref();
+    if let Some(wanted) = wanted.filter(|it| !names.contains(it)) {
+        return Refused::whole(format!("found no sheet `{wanted}`, expected one of {}", quoted(&names)));
     }
     let mut tables = Vec::new();
-    for name in &names {
-        let range = book.range(name).or_else(Refused::whole)?;
-        if let Some(table) = found(&range) {
-            tables.push((name.clone(), range, table));
-        }
+    for name in wanted.map_or(names.iter().collect(), |it| vec![it]) {
+        tables.extend(Found::of(book.range(name)?, name));
     }
-    match tables.as_slice() {
-        [(name, range, table)] => made(&mut book, range, table, name),
-        [] => Refused::whole(format!(
-            "found no table in {}, expected a sheet with a row that names the columns and rows of numbers below it",
-            if names.len() == 1 {
-                format!("the sheet {}", quoted(&names))
-            } else {
-                format!("the sheets {}", quoted(&names))
-            }
-        )),
-        several => {
-            let names: Vec<String> = several.iter().map(|it| it.0.clone()).collect();
-            Refused::whole(format!(
-                "found tables in the sheets {}, expected one: name it by --sheet",
-                quoted(&names)
-            ))
-        }
+    if let [found] = tables.as_slice() {
+        return found.made(&book.formulas(&found.sheet.name, &found.range));
     }
+    let (one, many) = (names.len() == 1, !tables.is_empty());
+    Refused::whole(match wanted {
+        _ if many => {
+            let names = quoted(tables.iter().map(|it| &it.sheet.name));
+            format!("found tables in the sheets {names}, expected one: name it by --sheet")
+        }
+        Some(name) => format!(
+            "found no table in sheet `{name}`, expected a row that names the columns and rows of numbers below it"
+        ),
+        None => format!(
+            "found no table in the sheet{} {}, expected a sheet with a row that names the columns and rows of numbers below it",
+            if one { "" } else { "s" },
+            quoted(&names)
+        ),
+    })
 }
 
 /// A number of a cell.
@@ -153,38 +137,6 @@ fn is_empty(cell: &Data) -> bool {
     matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
 }
 
-/// The table of a sheet: the first row of texts with numbers below, or below a row of units.
-fn found(range: &Range<Data>) -> Option<Found> {
-    let rows: Vec<&[Data]> = range.rows().collect();
-    let is_text = |cell: &&Data| matches!(cell, Data::String(_)) && value(cell).is_none() && !is_empty(cell);
-    for (header, row) in rows.iter().enumerate().take(FIRST) {
-        let texts = row.iter().filter(is_text).count();
-        let others = row.iter().filter(|it| !is_empty(it) && !is_text(it)).count();
-        if texts < FEWEST_COLUMNS || others > 0 {
-            continue;
-        }
-        let columns = row.iter().rposition(|it| !is_empty(it)).map_or(0, |it| it + 1);
-        let is_row = |at: usize| {
-            rows.get(at).is_some_and(|it| {
-                let named = it.iter().zip(row.iter()).filter(|(_, name)| !is_empty(name));
-                2 * named.filter(|(cell, _)| value(cell).is_some()).count() >= texts
-            })
-        };
-        let first =
-            (header + 1..rows.len()).find(|at| rows.get(*at).is_some_and(|it| !it.iter().all(is_empty)))?;
-        let has_numbers = |at: usize| rows.get(at).is_some_and(|it| it.iter().any(|it| value(it).is_some()));
-        let units = (!has_numbers(first)).then_some(first);
-        let begin = units.map_or(first, |it| it + 1);
-        if !is_row(begin) {
-            continue;
-        }
-        let all = (begin..rows.len())
-            .filter(|at| rows.get(*at).is_some_and(|it| !it.iter().take(columns).all(is_empty)));
-        return Some(Found { header, units, rows: all.collect(), columns });
-    }
-    None
-}
-
 /// The text of a cell.
 fn text(cell: &Data) -> String {
     if let Data::String(text) = cell {
@@ -193,92 +145,123 @@ fn text(cell: &Data) -> String {
     if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
-fn made(book: &mut Workbook<'_>, range: &Range<Data>, table: &Found, name: &str) -> Result<Made, Refused> {
-    let (first_row, first_column) = range.start().unwrap_or_default();
-    let line = |at: usize| first_row as usize + at + 1;
-    let sheet = Sheet { name: name.to_owned(), first_column: first_column as usize };
-    let rows: Vec<&[Data]> = range.rows().collect();
-    let row = |at: usize| rows.get(at).copied().unwrap_or_default();
-    let texts = |at: usize| -> Vec<String> {
-        (0..table.columns).map(|column| row(at).get(column).map(text).unwrap_or_default()).collect()
-    };
-    let header = texts(table.header);
-    refuse_uncomputed(&book.formulas(name, range), range, &sheet, (&table.rows, &header))?;
-    let mut made = Made::new(line(table.header), header.iter().map(String::as_str));
-    if let Some(units) = table.units {
-        let units_of = texts(units);
-        made.row(line(units), units_of.iter().map(|it| Value::Text(it)));
-    }
-    // Columns of numbers, in which a text is a number or a mistake.
-    let numeric: Vec<bool> = (0..table.columns)
-        .map(|column| {
-            let is_number = |at: &&usize| {
-                row(**at).get(column).is_some_and(|it| matches!(it, Data::Float(_) | Data::Int(_)))
-            };
-            2 * table.rows.iter().filter(is_number).count() > table.rows.len()
-        })
-        .collect();
-    let mut stored = Vec::new();
-    for &at in &table.rows {
-        let cells = cells_of_row(row(at), (&numeric, &header), (&sheet, line(at)), &mut stored)?;
-        let values = cells.iter().map(|(text, value)| match value {
-            Some(value) => Value::Number(*value),
-            None if text.is_empty() => Value::Empty,
-            None => Value::Text(text),
-        });
-        made.row(line(at), values);
-    }
-    let first = table.rows.first().map_or(0, |at| line(*at));
-    made.said.push(format!("sheet `{name}`, {} rows from row {first} on", table.rows.len()));
-    if !stored.is_empty() {
-        made.warned.push(format!(
-            "sheet `{name}`: numbers that are stored as text are read as numbers: {}",
-            first_few(&stored)
-        ));
-    }
-    made.sheet = Some(sheet);
-    Ok(made)
+/// The table of a sheet: its header, units and rows by their numbers in the range.
+struct Found {
+    range: Range<Data>,
+    sheet: Sheet,
+    header: usize,
+    names: Vec<String>,
+    units: Option<usize>,
+    rows: Vec<usize>,
 }
 
-/// The cells of a row, as texts or numbers; numbers that are stored as text in a column of numbers are told.
-fn cells_of_row(
-    row: &[Data],
-    (numeric, header): (&[bool], &[String]),
-    (sheet, line): (&Sheet, usize),
-    stored: &mut Vec<String>,
-) -> Result<Vec<(String, Option<f64>)>, Refused> {
-    let mut cells: Vec<(String, Option<f64>)> = Vec::with_capacity(numeric.len());
-    for (column, is_numeric) in numeric.iter().enumerate() {
-        let cell = row.get(column).unwrap_or(&Data::Empty);
-        let is_text = matches!(cell, Data::String(_));
-        if let Some(shown) = no_number(cell, header.get(column).map_or("", String::as_str)) {
-            cells.push((shown, None));
-            continue;
-        }
-        if *is_numeric && is_text && !is_empty(cell) {
-            let written = text(cell);
-            let place = sheet.cell(column, line);
-            let Some(value) = number(&written) else {
-                cells.push((written, None));
+impl Found {
+    /// The first row of texts with numbers below, or below a row of units.
+    fn of(range: Range<Data>, name: &str) -> Option<Self> {
+        let rows: Vec<&[Data]> = range.rows().collect();
+        let is_text =
+            |cell: &&Data| matches!(cell, Data::String(_)) && value(cell).is_none() && !is_empty(cell);
+        let is_blank = |row: &&[Data]| row.iter().all(is_empty);
+        for (header, row) in rows.iter().enumerate().take(FIRST) {
+            let texts = row.iter().filter(is_text).count();
+            if texts < FEWEST_COLUMNS || row.iter().any(|it| !is_empty(it) && !is_text(&it)) {
                 continue;
-            };
-            if is_ambiguous(&written) {
-                return Refused::whole(format!(
-                    "sheet `{}`, cell {place}: found the text `{written}`, which is {value} with a decimal comma and another number with a \
-                     separator of thousands, expected a number: type it in anew",
-                    sheet.name
-                ));
             }
-            stored.push(format!("{place} (`{written}`)"));
-            cells.push((String::new(), Some(value)));
-            continue;
+            let first = header + 1 + rows.iter().skip(header + 1).position(|it| !is_blank(it))?;
+            let has_numbers = rows.get(first).is_some_and(|it| it.iter().any(|it| value(it).is_some()));
+            let begin = if has_numbers { first } else { first + 1 };
+            let is_row = rows.get(begin).is_some_and(|it| {
+                let named = it.iter().zip(row.iter()).filter(|(_, name)| !is_empty(name));
+                2 * named.filter(|(cell, _)| value(cell).is_some()).count() >= texts
+            });
+            if !is_row {
+                continue;
+            }
+            let columns = row.iter().rposition(|it| !is_empty(it)).map_or(0, |it| it + 1);
+            let is_filled =
+                |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(columns).all(is_empty));
+            let first_column = range.start().map_or(0, |it| it.1 as usize);
+            return Some(Found {
+                sheet: Sheet { name: name.to_owned(), first_column },
+                header,
+                names: row.iter().take(columns).map(text).collect(),
+                units: (!has_numbers).then_some(first),
+                rows: (begin..rows.len()).filter(is_filled).collect(),
+                range,
+            });
         }
-        match value(cell).filter(|_| !is_text) {
-            Some(value) => cells.push((String::new(), Some(value))),
-            None => cells.push((text(cell), None)),
-        }
+        None
     }
-    Ok(cells)
+
+    /// The number of a row in the sheet.
+    fn line(&self, row: usize) -> usize {
+        self.range.start().map_or(0, |it| it.0 as usize) + row + 1
+    }
+
+    fn cell(&self, row: usize, column: usize) -> &Data {
+        self.range.get((row, column)).unwrap_or(&Data::Empty)
+    }
+
+    fn made(&self, formulas: &Formulas) -> Result<Made, Refused> {
+        refuse_uncomputed(formulas, &self.range, &self.sheet, (&self.rows, &self.names))?;
+        let mut made = Made::new(self.line(self.header), self.names.iter().map(String::as_str));
+        if let Some(units) = self.units {
+            let texts: Vec<String> = (0..self.names.len()).map(|it| text(self.cell(units, it))).collect();
+            made.row(self.line(units), texts.iter().map(|it| Value::Text(it)));
+        }
+        // Columns of numbers, in which a text is a number or a mistake.
+        let is_numeric = |column: usize| {
+            let is_number = |at: &&usize| matches!(self.cell(**at, column), Data::Float(_) | Data::Int(_));
+            2 * self.rows.iter().filter(is_number).count() > self.rows.len()
+        };
+        let numeric: Vec<bool> = (0..self.names.len()).map(is_numeric).collect();
+        let mut stored = Vec::new();
+        for &row in &self.rows {
+            let cells = numeric.iter().enumerate();
+            let cells: Vec<(String, Option<f64>)> =
+                cells.map(|(at, it)| self.typed((row, at), *it, &mut stored)).collect::<Result<_, _>>()?;
+            let typed = cells.iter().map(|(text, number)| number.map_or(Value::Text(text), Value::Number));
+            made.row(self.line(row), typed);
+        }
+        let (name, first) = (&self.sheet.name, self.rows.first().map_or(0, |at| self.line(*at)));
+        made.say(format!("sheet `{name}`, {} rows from row {first} on", self.rows.len()));
+        if !stored.is_empty() {
+            let stored = first_few(&stored);
+            made.warn(format!(
+                "sheet `{name}`: numbers that are stored as text are read as numbers: {stored}"
+            ));
+        }
+        made.sheet = Some(self.sheet.clone());
+        Ok(made)
+    }
+
+    /// The text of a cell, or its number; those that are stored as text in a column of numbers are told.
+    fn typed(
+        &self,
+        (row, column): (usize, usize),
+        is_numeric: bool,
+        stored: &mut Vec<String>,
+    ) -> Result<(String, Option<f64>), Refused> {
+        let cell = self.cell(row, column);
+        if let Some(shown) = no_number(cell, self.names.get(column).map_or("", String::as_str)) {
+            return Ok((shown, None));
+        }
+        let written = text(cell);
+        if !matches!(cell, Data::String(_)) {
+            return Ok((written, value(cell)));
+        }
+        let Some(value) = number(&written).filter(|_| is_numeric) else { return Ok((written, None)) };
+        let place = self.sheet.cell(column, self.line(row));
+        if is_ambiguous(&written) {
+            return Refused::whole(format!(
+                "sheet `{}`, cell {place}: found the text `{written}`, which is {value} with a decimal comma and another number with a \
+                 separator of thousands, expected a number: type it in anew",
+                self.sheet.name
+            ));
+        }
+        stored.push(format!("{place} (`{written}`)"));
+        Ok((written, Some(value)))
+    }
 }
 
 /// Whether a number with a comma may be one of thousands: three digits behind it, and one to three before it that are not zero alone.

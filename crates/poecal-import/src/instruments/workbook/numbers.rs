@@ -2,6 +2,8 @@
 
 use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
 
+use super::super::fields::Fields;
+
 /// The styles of cells.
 #[derive(Default)]
 pub(crate) struct Styles {
@@ -28,18 +30,27 @@ impl Styles {
     }
 }
 
-pub(crate) fn f64_at(bytes: &[u8], at: usize) -> Option<f64> {
-    bytes.get(at..at.checked_add(8)?)?.try_into().ok().map(f64::from_le_bytes)
+/// A number in eight bytes.
+pub(crate) fn long(fields: &mut Fields<'_>) -> Option<f64> {
+    fields.u64().map(f64::from_bits)
 }
 
 /// A number in four bytes: an integer or the upper half of a number, maybe hundredths.
-pub(crate) fn short(bits: u32) -> f64 {
+pub(crate) fn short(fields: &mut Fields<'_>) -> Option<f64> {
+    let bits = fields.u32()?;
     let value = if bits & 2 != 0 {
         f64::from(bits.cast_signed() >> 2)
     } else {
         f64::from_bits(u64::from(bits & !3) << 32)
     };
-    if bits & 1 != 0 { value / 100.0 } else { value }
+    Some(if bits & 1 != 0 { value / 100.0 } else { value })
+}
+
+/// So many letters of two bytes.
+pub(crate) fn wide(fields: &mut Fields<'_>, count: usize) -> Option<String> {
+    let pairs = fields.bytes(count.checked_mul(2)?)?.chunks_exact(2);
+    let units: Vec<u16> = pairs.filter_map(|it| Fields(it).u16()).collect();
+    Some(String::from_utf16_lossy(&units))
 }
 
 /// Whether a format of numbers is one of dates or times: a letter of it, outside of quotes and brackets.

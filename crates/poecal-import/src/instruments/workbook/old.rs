@@ -2,9 +2,10 @@
 
 use calamine::Data;
 
+use super::super::fields::Fields;
 use super::cells::{Found, Left, ReadSheet};
-use super::container::{u16_at, u32_at, workbook};
-use super::numbers::{Styles, f64_at, short};
+use super::container::workbook;
+use super::numbers::{Styles, long, short, wide};
 
 /// Kinds of records.
 mod kind {
@@ -38,14 +39,12 @@ struct Record<'b> {
 }
 
 /// The records of a stream, up to the end of a part of it.
-struct Records<'b>(&'b [u8]);
+struct Records<'b>(Fields<'b>);
 
 impl<'b> Records<'b> {
     fn one(&mut self) -> Option<(u16, &'b [u8])> {
-        let (kind, size) = (u16_at(self.0, 0)?, usize::from(u16_at(self.0, 2)?));
-        let own = self.0.get(4..4 + size)?;
-        self.0 = self.0.get(4 + size..)?;
-        Some((kind, own))
+        let (kind, size) = (self.0.u16()?, self.0.u16()?);
+        Some((kind, self.0.bytes(usize::from(size))?))
     }
 }
 
@@ -55,7 +54,7 @@ impl<'b> Iterator for Records<'b> {
     fn next(&mut self) -> Option<Record<'b>> {
         let (kind, own) = self.one().filter(|it| it.0 != kind::END)?;
         let mut parts = vec![own];
-        while u16_at(self.0, 0) == Some(kind::MORE) {
+        while Fields(self.0.0).u16() == Some(kind::MORE) {
             parts.push(self.one()?.1);
         }
         Some(Record { kind, parts })
@@ -94,18 +93,18 @@ impl Shared {
     fn of(stream: &[u8]) -> Result<Self, String> {
         let (mut shared, mut formats, mut styles, mut is_1904) =
             (Shared::default(), Vec::new(), Vec::new(), false);
-        for Record { kind, parts } in Records(stream) {
-            let data = parts.first().copied().unwrap_or_default();
+        for Record { kind, parts } in Records(Fields(stream)) {
+            let mut data = Fields(parts.first().copied().unwrap_or_default());
             match kind {
-                kind::BEGIN if u16_at(data, 0) != Some(VERSION) => {
+                kind::BEGIN if data.u16() != Some(VERSION) => {
                     return Err("found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx".to_owned());
                 }
                 kind::LOCKED => {
                     return Err("found a workbook with a password, expected one without: save its table as `CSV UTF-8`".to_owned());
                 }
-                kind::DATES => is_1904 = u16_at(data, 0) == Some(1),
-                kind::FORMAT => formats.extend(u16_at(data, 0).zip(text(data.get(2..).unwrap_or_default()))),
-                kind::STYLE => styles.push(u16_at(data, 2).unwrap_or_default()),
+                kind::DATES => is_1904 = data.u16() == Some(1),
+                kind::FORMAT => formats.extend(data.u16().zip(text(&mut data))),
+                kind::STYLE => styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default()),
                 kind::SHEET => shared.sheets.extend(sheet(data)),
                 kind::TEXTS => shared.texts = texts(&parts),
                 _ => {}
@@ -119,38 +118,38 @@ impl Shared {
     fn read(&self, stream: &[u8], cells: &mut Found, left: &mut Left) -> Result<(), String> {
         // Where a formula is whose text comes in a record of its own.
         let mut waiting = None;
-        for Record { kind, parts } in Records(stream) {
-            let data = parts.first().copied().unwrap_or_default();
+        for Record { kind, parts } in Records(Fields(stream)) {
+            let mut data = Fields(parts.first().copied().unwrap_or_default());
             if kind == kind::OF_FORMULA {
-                if let Some((place, value)) = waiting.take().zip(text(data)) {
+                if let Some((place, value)) = waiting.take().zip(text(&mut data)) {
                     cells.add(place, Data::String(value), left)?;
                 }
                 continue;
             }
-            let Some((row, column)) = u16_at(data, 0).zip(u16_at(data, 2)) else { continue };
+            let Some((row, column)) = data.u16().zip(data.u16()) else { continue };
             let place = (u32::from(row), u32::from(column));
-            let style = u16_at(data, 4).unwrap_or_default();
-            let number = |at: usize| self.styles.number(f64_at(data, at)?, style);
-            let value = match kind {
-                kind::NUMBER => number(6),
-                kind::SHORT => u32_at(data, 6).and_then(|it| self.styles.number(short(it), style)),
-                kind::LABEL | kind::RICH => text(data.get(6..).unwrap_or_default()).map(Data::String),
-                kind::OF_TEXTS => {
-                    let at = u32_at(data, 6).and_then(|it| usize::try_from(it).ok());
-                    at.and_then(|at| self.texts.get(at)).cloned().map(Data::String)
-                }
-                kind::FLAG => data.get(6..8).filter(|it| it[1] == 0).map(|it| Data::Bool(it[0] != 0)),
-                kind::FORMULA if data.get(12..14) != Some(&[0xFF, 0xFF]) => number(6),
-                kind::FORMULA => {
-                    waiting = data.get(6).filter(|it| **it == 0).map(|_| place);
+            let several = data.0.chunks_exact(6);
+            let style = data.u16().unwrap_or_default();
+            let value = match (kind, data.0) {
+                (kind::FORMULA, [first, _, _, _, _, _, 0xFF, 0xFF, ..]) => {
+                    waiting = (*first == 0).then_some(place);
                     None
                 }
-                kind::SEVERAL => {
-                    for (next, own) in (0_u32..).zip(data.get(4..).unwrap_or_default().chunks_exact(6)) {
-                        let value = u16_at(own, 0).zip(u32_at(own, 2));
-                        let value = value.and_then(|(style, it)| self.styles.number(short(it), style));
-                        let place = (place.0, place.1 + next);
-                        value.map_or(Ok(()), |value| cells.add(place, value, left))?;
+                (kind::NUMBER | kind::FORMULA, _) => {
+                    long(&mut data).and_then(|it| self.styles.number(it, style))
+                }
+                (kind::SHORT, _) => short(&mut data).and_then(|it| self.styles.number(it, style)),
+                (kind::LABEL | kind::RICH, _) => text(&mut data).map(Data::String),
+                (kind::OF_TEXTS, _) => {
+                    data.index().and_then(|at| self.texts.get(at)).cloned().map(Data::String)
+                }
+                (kind::FLAG, [flag, 0, ..]) => Some(Data::Bool(*flag != 0)),
+                (kind::SEVERAL, _) => {
+                    for (next, own) in (0_u32..).zip(several) {
+                        let mut own = Fields(own);
+                        let value = own.u16().zip(short(&mut own));
+                        let value = value.and_then(|(style, it)| self.styles.number(it, style));
+                        value.map_or(Ok(()), |it| cells.add((place.0, place.1 + next), it, left))?;
                     }
                     None
                 }
@@ -163,98 +162,83 @@ impl Shared {
 }
 
 /// A sheet of numbers: where it begins, and its name.
-fn sheet(data: &[u8]) -> Option<(usize, String)> {
-    let start = usize::try_from(u32_at(data, 0)?).ok()?;
-    let (kind, count) = (*data.get(5)?, usize::from(*data.get(6)?));
-    let name = letters(data.get(8..)?, count, data.get(7)? & 1 != 0)?;
+fn sheet(mut data: Fields<'_>) -> Option<(usize, String)> {
+    let (start, _, kind) = (data.index()?, data.u8()?, data.u8()?);
+    let (count, is_wide) = (data.u8()?, data.u8()? & 1 != 0);
+    let name = letters(&mut data, usize::from(count), is_wide)?;
     (kind == 0).then_some((start, name.replace('\0', "")))
 }
 
 /// A text that states its number of letters and whether they have two bytes.
-fn text(data: &[u8]) -> Option<String> {
-    letters(data.get(3..)?, usize::from(u16_at(data, 0)?), data.get(2)? & 1 != 0)
+fn text(data: &mut Fields<'_>) -> Option<String> {
+    let (count, is_wide) = (data.u16()?, data.u8()? & 1 != 0);
+    letters(data, usize::from(count), is_wide)
 }
 
 /// So many letters of one or two bytes.
-fn letters(bytes: &[u8], count: usize, is_wide: bool) -> Option<String> {
+fn letters(data: &mut Fields<'_>, count: usize, is_wide: bool) -> Option<String> {
     if is_wide {
-        let units: Vec<u16> =
-            bytes.get(..2 * count)?.chunks_exact(2).filter_map(|it| u16_at(it, 0)).collect();
-        return Some(String::from_utf16_lossy(&units));
+        return wide(data, count);
     }
-    Some(bytes.get(..count)?.iter().map(|it| char::from(*it)).collect())
+    Some(data.bytes(count)?.iter().map(|it| char::from(*it)).collect())
 }
 
 /// The texts that cells share: a list that goes on from record to record, in which a text may be cut, with its width stated anew behind the cut.
 fn texts(parts: &[&[u8]]) -> Vec<String> {
-    let mut parts =
-        Cut { rest: parts.first().copied().unwrap_or_default(), others: parts.get(1..).unwrap_or_default() };
-    let mut found = Vec::new();
-    if parts.bytes(8).is_none() {
-        return found;
+    let Some((first, others)) = parts.split_first() else { return Vec::new() };
+    let mut parts = Cut { rest: Fields(first), others };
+    match parts.here().and_then(|it| it.bytes(8)) {
+        Some(_) => std::iter::from_fn(|| parts.text()).collect(),
+        None => Vec::new(),
     }
-    while let Some(text) = parts.text() {
-        found.push(text);
-    }
-    found
 }
 
 /// The bytes of a record and of those that continue it.
 struct Cut<'p> {
-    rest: &'p [u8],
+    rest: Fields<'p>,
     others: &'p [&'p [u8]],
 }
 
 impl<'p> Cut<'p> {
-    /// Goes on in the next record at the end of one.
-    fn go_on(&mut self) -> Option<()> {
-        while self.rest.is_empty() {
+    /// What is left of the record, or of the next one at the end of one.
+    fn here(&mut self) -> Option<&mut Fields<'p>> {
+        while self.rest.0.is_empty() {
             let (first, others) = self.others.split_first()?;
-            (self.rest, self.others) = (first, others);
+            (self.rest, self.others) = (Fields(first), others);
         }
-        Some(())
-    }
-
-    /// So many bytes, which no cut separates.
-    fn bytes(&mut self, count: usize) -> Option<&'p [u8]> {
-        self.go_on()?;
-        let (found, rest) = self.rest.split_at_checked(count)?;
-        self.rest = rest;
-        Some(found)
+        Some(&mut self.rest)
     }
 
     fn skip(&mut self, mut count: usize) -> Option<()> {
         while count > 0 {
-            self.go_on()?;
-            let here = count.min(self.rest.len());
-            self.rest = self.rest.get(here..)?;
-            count -= here;
+            let here = self.here()?;
+            let own = count.min(here.0.len());
+            here.bytes(own)?;
+            count -= own;
         }
         Some(())
     }
 
     fn text(&mut self) -> Option<String> {
-        let head = self.bytes(3)?;
-        let (mut left, flags) = (usize::from(u16_at(head, 0)?), *head.get(2)?);
+        let mut head = Fields(self.here()?.bytes(3)?);
+        let (mut left, flags) = (usize::from(head.u16()?), head.u8()?);
         let mut is_wide = flags & 1 != 0;
-        let runs = if flags & 8 != 0 { u16_at(self.bytes(2)?, 0)? } else { 0 };
-        let beside = if flags & 4 != 0 { u32_at(self.bytes(4)?, 0)? } else { 0 };
+        let runs = if flags & 8 != 0 { self.here()?.u16()? } else { 0 };
+        let beside = if flags & 4 != 0 { self.here()?.index()? } else { 0 };
         let mut found = String::new();
         while left > 0 {
-            if self.rest.is_empty() {
-                self.go_on()?;
-                is_wide = self.bytes(1)?.first()? & 1 != 0;
+            if self.rest.0.is_empty() {
+                is_wide = self.here()?.u8()? & 1 != 0;
             }
-            let width = if is_wide { 2 } else { 1 };
-            let here = left.min(self.rest.len() / width);
+            let here = left.min(self.rest.0.len() / if is_wide { 2 } else { 1 });
             if here == 0 {
                 return None;
             }
-            found.push_str(&letters(self.bytes(here * width)?, here, is_wide)?);
+            found.push_str(&letters(&mut self.rest, here, is_wide)?);
             left -= here;
         }
         self.skip(usize::from(runs) * 4)?;
-        self.skip(usize::try_from(beside).ok()?)?;
+        self.skip(beside)?;
         Some(found)
     }
 }
