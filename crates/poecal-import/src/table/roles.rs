@@ -1,13 +1,16 @@
 //! What columns are called: our names, and those of makers, recorders, cameras and scripts around them.
 //!
-//! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which
-//! `conventions.rs` takes with those of quaternions, vectors and matrices.
+//! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which `conventions.rs` takes
+//! beside quaternions, vectors and matrices.
 
+use super::kinds;
 use poecal_numerics::named_unit::NamedUnit;
 
 /// What a column is for, or what a word in its name says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
+    /// Has a meaning in every file of measurements, by exactly this name.
+    Ours,
     /// The readings of a numbered joint, with its number.
     Joint,
     /// The time of a row.
@@ -58,8 +61,12 @@ pub(crate) enum Role {
     MeasuredSet,
 }
 
-/// Words of each role in small letters and digits, the first that a file has is meant.
+/// Words of each role in small letters and digits, but for our own; the first that a file has is meant.
 const ROLES: &[(Role, &str)] = &[
+    (
+        Role::Ours,
+        "x y z qx qy qz qw rx ry rz roll pitch yaw target instrument pair sigma_position sigma_x sigma_y sigma_z sigma_rotation id set",
+    ),
     (Role::Joint, "q j a joint axis theta th jnt jointposition jointangle angle"),
     (Role::Time, "time t timestamp stamp times timeseconds seconds elapsed"),
     (Role::Picture, "image picture file filename"),
@@ -132,6 +139,16 @@ impl Role {
             Some((*part, words.split(' ').find_map(|word| name.strip_prefix(word))?))
         })
     }
+}
+
+/// Names with a meaning in every file, beside those of joints.
+pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
+    Role::Ours.words().chain(kinds::names())
+}
+
+/// Whether a name has a meaning in every file.
+pub(crate) fn is_our_name(name: &str) -> bool {
+    our_names().any(|ours| ours == name)
 }
 
 /// Letters and digits of a name, small.
