@@ -167,3 +167,35 @@ pub(crate) fn without_unit(name: &str) -> (&str, Option<NamedUnit>) {
     let found = parts.and_then(|(stem, word)| Some((stem, unit_of(word)?)));
     found.map_or((name, None), |(stem, unit)| (stem, Some(unit)))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn a_word_stands_once_in_a_role() {
+        for (role, row) in ROLES {
+            let words: Vec<&str> = row.split(' ').collect();
+            let all: BTreeSet<&str> = words.iter().copied().collect();
+            assert_eq!(all.len(), words.len(), "{role:?}");
+            let is_plain = |word: &&str| *role == Role::Ours || plain(word) == *word;
+            assert!(words.iter().all(is_plain), "{role:?}: {row}");
+        }
+    }
+
+    #[test]
+    fn a_name_has_its_unit_at_its_end() {
+        let parts = |name| {
+            let (stem, unit) = without_unit(name);
+            (stem, unit.map(NamedUnit::symbol))
+        };
+        for name in ["flange_x_mm", "flange_x mm", "flange_x-MM", "flange_x.mm"] {
+            assert_eq!(parts(name), ("flange_x", Some("mm")), "{name}");
+        }
+        for name in ["x", "mm", "flange_x", "xmm", "tvec[0]"] {
+            assert_eq!(parts(name), (name, None), "{name}");
+        }
+    }
+}
