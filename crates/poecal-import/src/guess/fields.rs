@@ -43,12 +43,26 @@ impl MappedChoice {
     }
 }
 
-/// Where the unit of angles of joints, slides, positions and angles of orientations stands.
-pub(crate) const UNITS: [(&str, Unit); 4] = [
-    ("unit.angle", Unit::Radian),
-    ("unit.length", Unit::Metre),
-    ("unit.position", Unit::Metre),
-    ("unit.orientation", Unit::Radian),
+/// The unit of some columns: its field, and what it is up to a number, and beyond it.
+pub(crate) struct UnitField {
+    pub(crate) key: &'static str,
+    pub(crate) of: Unit,
+    pub(crate) most: f64,
+    pub(crate) usual: [&'static str; 2],
+}
+
+const fn unit(key: &'static str, of: Unit, most: f64, usual: [&'static str; 2]) -> UnitField {
+    UnitField { key, of, most, usual }
+}
+
+/// Beyond this an angle is in degrees: joints turn once to either side.
+pub(crate) const MOST_RADIANS: f64 = 7.0;
+/// Units of angles of joints, slides, positions and angles of orientations; robots reach less than 20 m.
+pub(crate) const UNITS: [UnitField; 4] = [
+    unit("unit.angle", Unit::Radian, MOST_RADIANS, ["rad", "deg"]),
+    unit("unit.length", Unit::Metre, 10.0, ["m", "mm"]),
+    unit("unit.position", Unit::Metre, 20.0, ["m", "mm"]),
+    unit("unit.orientation", Unit::Radian, MOST_RADIANS, ["rad", "deg"]),
 ];
 /// Ways in which poses may point, as a mapping calls them.
 pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
@@ -67,7 +81,7 @@ impl MappedField {
 
     /// A field for the unit of columns.
     pub(crate) fn unit(group: &'static str, key: &str, label: &str) -> Self {
-        let quantity = UNITS.iter().find(|it| it.0 == key).map_or(Unit::One, |it| it.1);
+        let quantity = UNITS.iter().find(|it| it.key == key).map_or(Unit::One, |it| it.of);
         let stated = MappedChoice::new("", "as the file says, else SI");
         let units = units_of(quantity).map(|unit| MappedChoice::new(unit.symbol(), unit.symbol()));
         let choices = std::iter::once(stated).chain(units).collect();

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use self::fields::{MOST_RADIANS, UNITS, UnitField, WAYS};
 pub use self::fields::{MappedChoice, MappedField};
-use self::fields::{UNITS, WAYS};
 use self::names::Names;
 use super::ReadOptions;
 use super::table::Table;
@@ -30,11 +30,6 @@ use poecal_numerics::unit::Unit;
 const ROWS: usize = 200;
 /// Cells of a column that are shown.
 const SHOWN: usize = 3;
-/// Beyond this an angle is in degrees: joints turn once to either side.
-const MOST_RADIANS: f64 = 7.0;
-/// Beyond these a slide and a position are in millimetres.
-const MOST_METRES: [f64; 2] = [10.0, 20.0];
-
 /// Which columns of a file are taken for what, with all that can be chosen instead, and the mapping that says so.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnGuess {
@@ -243,15 +238,14 @@ impl<'h> Sample<'h> {
         }
         let is_word = key == "pose" || value.is_empty();
         let chosen = if is_word { value.to_owned() } else { self.known(value, key)? };
-        let keys: Vec<String> = fields.iter().map(|it| it.key.clone()).collect();
-        match fields.iter_mut().find(|it| it.key == key) {
-            Some(field) => field.chosen = chosen,
-            None => {
-                let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-                let hint = nearest_or_all(key, &keys);
-                return ErrorKind::Option
-                    .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
-            }
+        let keys: Vec<&str> = fields.iter().map(|it| it.key.as_str()).collect();
+        let Some(at) = keys.iter().position(|it| *it == key) else {
+            let hint = nearest_or_all(key, &keys);
+            return ErrorKind::Option
+                .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
+        };
+        if let Some(field) = fields.get_mut(at) {
+            field.chosen = chosen;
         }
         Ok(())
     }
@@ -270,34 +264,27 @@ impl<'h> Sample<'h> {
 
     /// Units of columns that state none.
     fn guess_units(&self, fields: &mut [MappedField]) {
-        for (key, quantity) in UNITS {
-            let own = fields.iter().filter(|it| it.unit == key).filter_map(|it| self.index(it.used()?));
-            let unit = self.guess_unit(&own.collect::<Vec<_>>(), (key, quantity));
-            if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
-                field.chosen = unit.map_or("", NamedUnit::symbol).to_owned();
-            }
+        for unit in UNITS {
+            let own = fields.iter().filter(|it| it.unit == unit.key).filter_map(|it| self.index(it.used()?));
+            let chosen = self.guess_unit(&own.collect::<Vec<_>>(), &unit);
+            let field = fields.iter_mut().find(|it| it.key == unit.key);
+            field.into_iter().for_each(|it| it.chosen = chosen.map_or("", NamedUnit::symbol).to_owned());
         }
     }
 
     /// The unit of some columns, unless all state theirs: that in the first one's name, or by the size of the numbers.
-    fn guess_unit(&self, columns: &[usize], (key, quantity): (&str, Unit)) -> Option<NamedUnit> {
+    fn guess_unit(
+        &self,
+        columns: &[usize],
+        UnitField { of, most, usual, .. }: &UnitField,
+    ) -> Option<NamedUnit> {
         let mut cells = columns.iter().filter_map(|it| self.header.cells.get(*it));
         if cells.all(|cell| cell.units().next().is_some()) {
             return None;
         }
-        let most = match key {
-            "unit.length" => MOST_METRES[0],
-            "unit.position" => MOST_METRES[1],
-            _ => MOST_RADIANS,
-        };
-        let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == quantity);
-        let symbol = match (quantity, self.largest_of(columns) > most) {
-            (Unit::Metre, true) => "mm",
-            (Unit::Metre, false) => "m",
-            (_, true) => "deg",
-            (_, false) => "rad",
-        };
-        named.or_else(|| NamedUnit::parse(symbol, quantity).ok())
+        let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == *of);
+        let symbol = usual[usize::from(self.largest_of(columns) > *most)];
+        named.or_else(|| NamedUnit::parse(symbol, *of).ok())
     }
 
     /// Columns with a name of ours that would be read without being chosen.
@@ -328,18 +315,15 @@ impl<'h> Sample<'h> {
 }
 
 fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-    let Some((_, quantity)) = UNITS.iter().find(|it| it.0 == key) else {
-        let keys = UNITS.map(|it| it.0);
+    let Some(unit) = UNITS.iter().find(|it| it.key == key) else {
         return ErrorKind::Option.refuse(format!(
-            "--column: found `{key}`, expected {} or {}",
-            keys[..3].join(", "),
-            keys[3]
+            "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
         ));
     };
-    let unit =
-        if value.is_empty() { None } else { Some(NamedUnit::parse(value, *quantity).map_err(refused)?) };
+    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, unit.of));
+    let stated = stated.transpose().map_err(refused)?;
     if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
-        field.chosen = unit.map_or("", NamedUnit::symbol).to_owned();
+        field.chosen = stated.map_or("", NamedUnit::symbol).to_owned();
     }
     Ok(())
 }

@@ -6,8 +6,7 @@ use roxmltree::Node;
 
 use super::camera_tables::read_table;
 use super::camera_texts::read_yaml;
-use super::unknown_camera::{UNKNOWN, unknown};
-use crate::pictures::lens_checks::{EXPECTED, check, size_of_pictures};
+use crate::pictures::lens_checks::{EXPECTED, LARGEST_SIDE, check, size_of_pictures};
 use crate::stored_pictures::stored_cameras;
 use poecal_model::camera::{Camera, Distortion, Lens};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -23,6 +22,24 @@ pub struct CameraFile {
     pub cameras: Vec<Camera>,
     /// Regions of the sensor that were taken into account, and keys that were not read.
     pub said: Vec<String>,
+}
+
+/// What begins the words of a camera whose lens is unknown.
+const UNKNOWN: &str = "unknown:";
+
+/// A camera whose lens is to be found from its pictures, of which the size is known.
+fn unknown(size: &str, typed: &str) -> Result<Camera> {
+    let number = |text: &str| text.trim().parse::<u32>().ok().filter(|it| (1..=LARGEST_SIDE).contains(it));
+    let found = size.split_once(['x', 'X']).and_then(|(x, y)| Some([number(x)?, number(y)?]));
+    let Some(size_px) = found else {
+        return ErrorKind::Option.refuse(format!(
+            "found the camera `{typed}`, expected the size of its pictures, as unknown:1920x1080"
+        ));
+    };
+    // Any lens until the pictures say which.
+    let [width, height] = size_px.map(f64::from);
+    let lens = Lens { size_px: Some(size_px), ..Lens::pinhole([width; 2], [0.5 * width, 0.5 * height]) };
+    Ok(Camera { is_guessed: true, ..Camera::new("camera".to_owned(), lens) })
 }
 
 /// Reads the cameras of a file; of one that has a camera in several versions, those of the version that is named, as in `FILE#VERSION`.

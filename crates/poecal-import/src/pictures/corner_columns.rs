@@ -188,7 +188,7 @@ impl CornerColumns {
     }
 
     /// Meaning and column of each.
-    fn all(&self) -> Vec<(&'static str, usize)> {
+    pub(crate) fn all(&self) -> Vec<(&'static str, usize)> {
         let mut all = vec![("u", self.u), ("v", self.v)];
         let (names, more) = (
             ["sigma", "target", "image", "camera", "board"],
@@ -198,11 +198,6 @@ impl CornerColumns {
         let place = self.place.iter().flatten().map(|(at, _)| *at);
         all.extend(["point x", "point y", "point z"].into_iter().zip(place));
         all
-    }
-
-    /// Whether a column is one of these.
-    pub(crate) fn has(&self, index: usize) -> bool {
-        self.all().iter().any(|(_, at)| *at == index)
     }
 
     /// Whether the column of the picture has our name, so that its rows have one configuration.

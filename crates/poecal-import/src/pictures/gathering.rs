@@ -81,14 +81,8 @@ impl Gathering {
     pub(crate) fn join(&mut self, path: &Path, (others, what): (&TakenByImage, &str)) -> Result<Vec<String>> {
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
         let partners = Partners::new(&seen, others.keys().collect());
-        let mut words = Vec::new();
-        if let Some((name, other)) = partners.first {
-            words.push(format!(
-                "took the pictures whose names end in the same number for the same, {} of {}: `{name}` is `{other}` of the {what}",
-                partners.alike.len(),
-                seen.len()
-            ));
-        }
+        let alike = partners.words("pictures", seen.len());
+        let mut words: Vec<String> = alike.map(|it| format!("{it} of the {what}")).into_iter().collect();
         let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.of(name).is_none()).collect();
         let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();

@@ -1,6 +1,7 @@
 //! Pictures and corners as rows, cameras and boards of files.
 //!
-//! `corner_columns.rs` is the table of what other programs call the columns of corners, `board_files.rs` has their boards in words.
+//! `corner_columns.rs` finds the columns of corners, `stated.rs` the values of a file of cameras or boards by their keys; `board_files.rs` has boards of other
+//! programs in words.
 
 pub(crate) mod board_files;
 pub(crate) mod board_words;
@@ -19,4 +20,3 @@ pub(crate) mod region;
 pub(crate) mod sightings;
 pub(crate) mod stated;
 pub(crate) mod taken;
-pub(crate) mod unknown_camera;

@@ -30,17 +30,11 @@ pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Sight]) -
             return Err(outside(camera, size, &corners, (first, count)).at_line(path, first.line as usize));
         }
         if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
-            let smaller = size.map(|it| it / f64::from(part));
+            let ([width, height], [x, y]) = (size, size.map(|it| it / f64::from(part)));
+            let (share, of) = (["half", "third", "quarter"][part as usize - 2], of(camera));
             said.push(format!(
-                "{}: all corners{} are in the upper left {} × {} pixels of the {} × {} that its lens states, as those of pictures of \
-                 a {} of the size: if the pictures are so small, divide fx, fy, cx, cy and the size by {part}",
-                path.display(),
-                of(camera),
-                smaller[0],
-                smaller[1],
-                size[0],
-                size[1],
-                ["half", "third", "quarter"][part as usize - 2]
+                "all corners{of} are in the upper left {x} × {y} pixels of the {width} × {height} that its lens states, as those of pictures of \
+                 a {share} of the size: if the pictures are so small, divide fx, fy, cx, cy and the size by {part}"
             ));
         }
     }
@@ -74,11 +68,8 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
     let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;
     let is_exchanged = most[0] <= size[1] + BEYOND && most[1] <= size[0] + BEYOND;
     let advice = if is_like {
-        let times = if times[0] > 1.7 {
-            format!("{:.0} times as large", times[0].max(times[1]))
-        } else {
-            "larger".to_owned()
-        };
+        let most = times[0].max(times[1]);
+        let times = if times[0] > 1.7 { format!("{most:.0} times as large") } else { "larger".to_owned() };
         format!(
             "the pictures are about {times} in both directions, so the lens is that of another resolution: state it at that of the pictures (fx, fy, \
              cx, cy and the size grow alike)"
@@ -88,16 +79,10 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
     } else {
         "the lens is that of cropped pictures, or of another mode of the camera: state the lens of the pictures as they are".to_owned()
     };
+    let (all, of, [width, height], [far_x, far_y]) = (corners.len(), of(camera), size, most);
+    let (x, y) = (first.pixel.x, first.pixel.y);
     ErrorKind::Measurement.error(format!(
-        "found the corner ({:.1}, {:.1}), and {count} of {} corners, outside the {} × {} pixels of the pictures that the lens{} states; \
-         they reach to ({:.1}, {:.1}), expected corners in the picture: {advice}",
-        first.pixel.x,
-        first.pixel.y,
-        corners.len(),
-        size[0],
-        size[1],
-        of(camera),
-        most[0],
-        most[1]
+        "found the corner ({x:.1}, {y:.1}), and {count} of {all} corners, outside the {width} × {height} pixels of the pictures that the lens{of} states; \
+         they reach to ({far_x:.1}, {far_y:.1}), expected corners in the picture: {advice}"
     ))
 }

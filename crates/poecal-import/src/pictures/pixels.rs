@@ -24,11 +24,10 @@ impl Reader<'_> {
     /// Reads a file of readings by picture, whose corners are in another one.
     pub(crate) fn readings_of_pictures(&mut self, path: &Path, mut table: Table<'_>) -> Result<()> {
         let mut layout = ColumnLayout::pictures(&table.header, self.robot, self.options, self.map)?;
-        let image = match corner_columns::picture(&table.header, self.found.data.reading_names())? {
-            Some(image) => image,
-            None => table.header.require("image", "for the name of the picture", |_| false, "")?,
-        };
-        let column = table.header.cells.get(image).map_or(String::new(), |cell| cell.text.clone());
+        let image = corner_columns::picture(&table.header, self.found.data.reading_names())?;
+        let missing = || table.header.require("image", "for the name of the picture", |_| false, "");
+        let image = image.map_or_else(missing, Ok)?;
+        let column = table.header.text(image).to_owned();
         layout.ignored.retain(|(name, _)| *name != column);
         let mut inputs = Cursor::new(layout, self.robot, self.map.decimal);
         table.each_row(|row| {
@@ -126,12 +125,13 @@ impl Reader<'_> {
             header.require("image", "for the name of the picture", |_| false, "")?;
         }
         // What counts corners is no id of their picture.
-        if let Some(id) = layout.id.filter(|at| columns.has(*at) || columns.place.is_some()) {
+        if let Some(id) =
+            layout.id.filter(|id| columns.place.is_some() || columns.all().iter().any(|(_, at)| at == id))
+        {
             layout.ignored.extend(header.cells.get(id).map(|cell| (cell.text.clone(), None)));
             layout.id = None;
         }
-        let own = header.cells.iter().enumerate().filter(|(at, _)| columns.has(*at));
-        let own: Vec<&str> = own.map(|(_, cell)| cell.text.as_str()).collect();
+        let own: Vec<&str> = columns.all().into_iter().map(|(_, at)| header.text(at)).collect();
         layout.ignored.retain(|(name, _)| !own.contains(&name.as_str()));
         Ok(layout)
     }

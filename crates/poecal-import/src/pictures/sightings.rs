@@ -20,7 +20,7 @@ impl Reader<'_> {
         self.found.data.pictures.cameras.clone_from(&self.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
         let said = check_sizes(path, &self.cameras, &gathered)?;
-        self.found.warnings.extend(said);
+        self.warn(path, said);
         self.guess_lenses(&gathered)?;
         for one in gathered {
             let Some(taken) = one.taken else { continue };

@@ -8,6 +8,5 @@ pub(crate) mod picture_poses;
 pub(crate) mod pose_columns;
 pub(crate) mod pose_file;
 pub(crate) mod pose_lists;
-pub(crate) mod pose_names;
 pub(crate) mod pose_readings;
 pub(crate) mod pose_table;

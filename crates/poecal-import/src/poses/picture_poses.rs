@@ -18,7 +18,7 @@ use poecal_fit::hand_eye::PoseList;
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_model::camera::{Picture, Pictures};
 use poecal_model::robot::{Joint, Robot};
-use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
+use poecal_numerics::error::{ErrorKind, Result, first_few};
 
 /// Poses of the target by pictures.
 pub(crate) struct PicturePoses {
@@ -45,7 +45,7 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
                        unknown:1920x1080 with the size of the pictures";
         return Err(ErrorKind::Measurement.error(message).in_file(path));
     }
-    let Some(named) = arm.named() else {
+    let Some(rows) = arm.rows_by_name()? else {
         let message = "found no names of pictures, expected a column `image` in the file of the arm's poses, as in that of the corners";
         return Err(ErrorKind::Measurement.error(message).in_file(&arm.path));
     };
@@ -58,7 +58,7 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     let map = ColumnMap::default();
     let mut reader = Reader::new(&stand_in, options, &map);
     reader.taken_as = "poses of the arm";
-    for (name, row) in named.rows()? {
+    for (name, row) in rows {
         let place = (arm.path.clone(), arm.lines.get(row).copied().unwrap_or(1));
         let taken = Taken { readings: vec![row as f64], set: None, id: String::new(), place };
         reader.taken.insert(name.clone(), taken);
@@ -69,8 +69,8 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
     refuse_several(pictures).map_err(|error| error.in_file(path))?;
-    let poses = PoseList::of_pictures(pictures)
-        .map_err(|found| Error::new(ErrorKind::Measurement, found).in_file(path))?;
+    let poses =
+        PoseList::of_pictures(pictures).map_err(|found| ErrorKind::Measurement.error(found).in_file(path))?;
     let row =
         |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
     let rows: Vec<usize> = pictures.all.iter().map(|it| row(it) as usize).collect();
@@ -79,13 +79,7 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
         "the target: its pose by its corners in each picture ({corners} corners in {} pictures)",
         rows.len()
     );
-    Ok(PicturePoses {
-        rows,
-        poses,
-        words,
-        warnings: found.warnings,
-        sha256: found.sha256.into_iter().collect(),
-    })
+    Ok(PicturePoses { rows, poses, words, warnings: found.warnings, sha256: found.sha256 })
 }
 
 /// Refuses pictures of several boards, or by several cameras.
@@ -102,7 +96,7 @@ fn refuse_several(pictures: &Pictures) -> Result<()> {
             "found pictures of several cameras or boards ({}), expected one of each: leave the rows of one",
             first_few(&names)
         );
-        return Err(Error::new(ErrorKind::Measurement, message));
+        return ErrorKind::Measurement.refuse(message);
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! One file with lists of poses: of an arm's flange, of what a camera saw, or both side by side; an arm's also by the readings of its joints.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
@@ -7,7 +8,6 @@ use nalgebra::Vector3;
 use super::pose_columns::{
     NumberColumn, PoseColumns, PoseUnits, Whose, found, list_words, name_column, text_column,
 };
-use super::pose_names::Named;
 use super::pose_readings::others;
 use crate::read::joints::read_joints;
 use crate::table::mapping::ColumnMap;
@@ -77,10 +77,22 @@ impl PoseFile {
         self.lines.iter().enumerate().map(words).collect()
     }
 
-    /// The names of the rows, if a column has them.
-    pub(crate) fn named(&self) -> Option<Named<'_>> {
-        let names = self.names.as_deref()?;
-        Some(Named { path: &self.path, names, lines: &self.lines })
+    /// The row of each name, if a column has them.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Measurement`] if a name comes twice, with its line.
+    pub(crate) fn rows_by_name(&self) -> Result<Option<BTreeMap<&String, usize>>> {
+        let Some(names) = &self.names else { return Ok(None) };
+        let mut rows = BTreeMap::new();
+        for (row, name) in names.iter().enumerate() {
+            if rows.insert(name, row).is_some() {
+                let message =
+                    format!("found the name `{name}` a second time, expected each pose once: rename it");
+                let line = self.lines.get(row).copied().unwrap_or(1);
+                return Err(ErrorKind::Measurement.error(message).at_line(&self.path, line));
+            }
+        }
+        Ok(Some(rows))
     }
 
     /// The list of one of both.

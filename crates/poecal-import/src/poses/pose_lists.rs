@@ -1,13 +1,13 @@
 //! Lists of poses: of an arm's flange, and of what a camera saw, side by side in one file or in two.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::picture_poses::{are_corners_of, poses_of_pictures};
 use super::pose_columns::{PoseUnits, Whose};
 use super::pose_file::{List, PoseFile, read_poses};
-use super::pose_names::by_name;
 use crate::ReadOptions;
+use crate::table::picture_names::Partners;
 use poecal_fit::hand_eye::{PoseList, Touches};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -129,18 +129,18 @@ fn side_by_side(mut file: PoseFile) -> Result<PosePairs> {
 
 fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let mut warnings = std::mem::take(&mut first.warnings);
-    let rows: Vec<(usize, usize)> = match (first.named(), second.named()) {
-        (Some(one), Some(other)) => by_name(&one, &other, &mut warnings)?,
-        _ if first.lines.len() == second.lines.len() => (0..first.lines.len()).zip(0..).collect(),
-        _ => {
-            let message = format!(
-                "found {} poses, and {} in {}, expected as many, or a column `image` of names in both files by which they are joined",
-                first.lines.len(),
-                second.lines.len(),
-                second.path.display()
-            );
-            return Err(ErrorKind::Measurement.error(message).in_file(&first.path));
-        }
+    let rows: Vec<(usize, usize)> = if first.names.is_some() && second.names.is_some() {
+        by_name(&first, &second, &mut warnings)?
+    } else if first.lines.len() == second.lines.len() {
+        (0..first.lines.len()).zip(0..).collect()
+    } else {
+        let message = format!(
+            "found {} poses, and {} in {}, expected as many, or a column `image` of names in both files by which they are joined",
+            first.lines.len(),
+            second.lines.len(),
+            second.path.display()
+        );
+        return Err(ErrorKind::Measurement.error(message).in_file(&first.path));
     };
     let sha256 = checksums([&first, &second]);
     let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
@@ -162,4 +162,30 @@ fn with_pictures(mut arm: PoseFile, corners: &Path, options: &ReadOptions) -> Re
     let pairs = paired(&arm, flange, &pictures.rows, (pictures.poses, pictures.words));
     let warnings = arm.warnings.into_iter().chain(pictures.warnings).collect();
     Ok(PosePairs { warnings, sha256, ..pairs })
+}
+
+/// Rows of the same name, or whose names end in the same number, in the order of the first file.
+fn by_name(first: &PoseFile, second: &PoseFile, warnings: &mut Vec<String>) -> Result<Vec<(usize, usize)>> {
+    let one = first.rows_by_name()?.unwrap_or_default();
+    let other = second.rows_by_name()?.unwrap_or_default();
+    let names = |rows: &BTreeMap<_, usize>| rows.keys().copied().collect::<BTreeSet<&String>>();
+    let partners = Partners::new(&names(&one), names(&other));
+    let pair = |(row, name)| Some((row, *other.get(partners.of(name)?)?));
+    let rows: Vec<(usize, usize)> = first.names.iter().flatten().enumerate().filter_map(pair).collect();
+    if rows.is_empty() {
+        let message = format!(
+            "found no name that is in {} too, expected the same names in both files, or ones that end in the same number, each once",
+            second.path.display()
+        );
+        return Err(ErrorKind::Measurement.error(message).in_file(&first.path));
+    }
+    warnings.extend(partners.words("poses", rows.len()));
+    let alone = one.len() + other.len() - 2 * rows.len();
+    if alone > 0 {
+        let both = rows.len();
+        warnings.push(format!(
+            "{alone} poses are in one of the two files only, and left out; {both} are in both"
+        ));
+    }
+    Ok(rows)
 }

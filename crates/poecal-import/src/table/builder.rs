@@ -5,47 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::column_spec::ColumnSpec;
 use super::header::Header;
 use super::inputs::{Input, InputSource, Term};
-use super::kinds;
 use super::mapping::ColumnMap;
 use super::numbered::numbered;
+use super::roles::is_our_name;
 use super::times::seconds_of;
 use poecal_model::robot::{Controller, FactorReading, ReadingKind, Robot, sum_words};
 use poecal_numerics::error::{ErrorKind, MissingColumn, Result, first_few};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 use poecal_storage::numbers::LARGEST_NUMBER;
-
-/// Names with a meaning in every file, beside those of joints.
-pub(crate) const OUR_NAMES: [&str; 23] = [
-    "x",
-    "y",
-    "z",
-    "qx",
-    "qy",
-    "qz",
-    "qw",
-    "rx",
-    "ry",
-    "rz",
-    "roll",
-    "pitch",
-    "yaw",
-    "target",
-    "instrument",
-    "pair",
-    "sigma_position",
-    "sigma_x",
-    "sigma_y",
-    "sigma_z",
-    "sigma_rotation",
-    "id",
-    "set",
-];
-
-/// Whether a name has a meaning in every file.
-pub(crate) fn is_our_name(name: &str) -> bool {
-    OUR_NAMES.contains(&name) || kinds::names().any(|known| known == name)
-}
 
 /// Advice where a column of ours is missing.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";

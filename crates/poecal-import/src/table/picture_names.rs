@@ -29,7 +29,7 @@ pub(crate) struct Partners<'a> {
     /// Names that are not the same, and end in the same number.
     pub(crate) alike: BTreeMap<&'a String, &'a String>,
     /// The first of these, by its number.
-    pub(crate) first: Option<(&'a String, &'a String)>,
+    first: Option<(&'a String, &'a String)>,
 }
 
 impl<'a> Partners<'a> {
@@ -37,6 +37,14 @@ impl<'a> Partners<'a> {
         let pairs = same_numbers(own, &others);
         let first = pairs.first().copied();
         Partners { others, alike: pairs.into_iter().collect(), first }
+    }
+
+    /// What was taken for the same by its number, of so many, in words.
+    pub(crate) fn words(&self, what: &str, all: usize) -> Option<String> {
+        let ((name, other), some) = (self.first?, self.alike.len());
+        Some(format!(
+            "took the {what} whose names end in the same number for the same, {some} of {all}: `{name}` is `{other}`"
+        ))
     }
 
     /// The other file's name of a picture: the same, or that with the same number.

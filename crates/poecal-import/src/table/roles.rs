@@ -1,13 +1,16 @@
 //! What columns are called: our names, and those of makers, recorders, cameras and scripts around them.
 //!
-//! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which
-//! `conventions.rs` takes with those of quaternions, vectors and matrices.
+//! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which `conventions.rs` takes
+//! beside quaternions, vectors and matrices.
 
+use super::kinds;
 use poecal_numerics::named_unit::NamedUnit;
 
 /// What a column is for, or what a word in its name says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
+    /// Has a meaning in every file of measurements, by exactly this name.
+    Ours,
     /// The readings of a numbered joint, with its number.
     Joint,
     /// The time of a row.
@@ -58,8 +61,12 @@ pub(crate) enum Role {
     MeasuredSet,
 }
 
-/// Words of each role in small letters and digits, the first that a file has is meant.
+/// Words of each role in small letters and digits, but for our own; the first that a file has is meant.
 const ROLES: &[(Role, &str)] = &[
+    (
+        Role::Ours,
+        "x y z qx qy qz qw rx ry rz roll pitch yaw target instrument pair sigma_position sigma_x sigma_y sigma_z sigma_rotation id set",
+    ),
     (Role::Joint, "q j a joint axis theta th jnt jointposition jointangle angle"),
     (Role::Time, "time t timestamp stamp times timeseconds seconds elapsed"),
     (Role::Picture, "image picture file filename"),
@@ -134,6 +141,16 @@ impl Role {
     }
 }
 
+/// Names with a meaning in every file, beside those of joints.
+pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
+    Role::Ours.words().chain(kinds::names())
+}
+
+/// Whether a name has a meaning in every file.
+pub(crate) fn is_our_name(name: &str) -> bool {
+    our_names().any(|ours| ours == name)
+}
+
 /// Letters and digits of a name, small.
 pub(crate) fn plain(name: &str) -> String {
     name.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
@@ -149,4 +166,36 @@ pub(crate) fn without_unit(name: &str) -> (&str, Option<NamedUnit>) {
     let parts = name.rsplit_once(|it: char| !it.is_alphanumeric() && it != '°');
     let found = parts.and_then(|(stem, word)| Some((stem, unit_of(word)?)));
     found.map_or((name, None), |(stem, unit)| (stem, Some(unit)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn a_word_stands_once_in_a_role() {
+        for (role, row) in ROLES {
+            let words: Vec<&str> = row.split(' ').collect();
+            let all: BTreeSet<&str> = words.iter().copied().collect();
+            assert_eq!(all.len(), words.len(), "{role:?}");
+            let is_plain = |word: &&str| *role == Role::Ours || plain(word) == *word;
+            assert!(words.iter().all(is_plain), "{role:?}: {row}");
+        }
+    }
+
+    #[test]
+    fn a_name_has_its_unit_at_its_end() {
+        let parts = |name| {
+            let (stem, unit) = without_unit(name);
+            (stem, unit.map(NamedUnit::symbol))
+        };
+        for name in ["flange_x_mm", "flange_x mm", "flange_x-MM", "flange_x.mm"] {
+            assert_eq!(parts(name), ("flange_x", Some("mm")), "{name}");
+        }
+        for name in ["x", "mm", "flange_x", "xmm", "tvec[0]"] {
+            assert_eq!(parts(name), (name, None), "{name}");
+        }
+    }
 }

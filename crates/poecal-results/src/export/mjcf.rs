@@ -50,15 +50,18 @@ pub(crate) fn write(robot: &Robot) -> Result<Written> {
         let _ = writeln!(text, "{}</body>", " ".repeat(indent));
     }
     text.push_str("    </body>\n  </worldbody>\n");
-    let followers = plain.joints.iter().zip(&names.joints).filter_map(|(it, own)| Some((it, own, plain.leader(it)?)));
-    let equalities: String = followers.map(|(joint, own, leader)| {
-        let (offset, multiplier) = (shortest(joint.reading.offset), shortest(joint.reading.multiplier));
-        format!(
-            "    <joint joint1=\"{}\" joint2=\"{}\" polycoef=\"{offset} {multiplier} 0 0 0\"/>\n",
-            escaped(own),
-            escaped(&names.joints[leader])
-        )
-    }).collect();
+    let followers =
+        plain.joints.iter().zip(&names.joints).filter_map(|(it, own)| Some((it, own, plain.leader(it)?)));
+    let equalities: String = followers
+        .map(|(joint, own, leader)| {
+            let (offset, multiplier) = (shortest(joint.reading.offset), shortest(joint.reading.multiplier));
+            format!(
+                "    <joint joint1=\"{}\" joint2=\"{}\" polycoef=\"{offset} {multiplier} 0 0 0\"/>\n",
+                escaped(own),
+                escaped(&names.joints[leader])
+            )
+        })
+        .collect();
     if !equalities.is_empty() {
         let _ = write!(text, "  <equality>\n{equalities}  </equality>\n");
     }

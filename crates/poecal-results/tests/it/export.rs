@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::calibrate;
-use poecal_model::robot::{Joint, JointKind, Robot};
+use poecal_formats::urdf::ChainSelection;
+use poecal_model::robot::{Joint, JointKind, Reading, Robot};
 use poecal_model::simulate::random::uniform;
 use poecal_model::simulate::{Kind, Simulation, elbow, gantry, random_chain, scara, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs};

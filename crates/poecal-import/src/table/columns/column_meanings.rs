@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::super::builder::{Builder, OUR_NAMES, is_our_name};
+use super::super::builder::Builder;
 use super::super::header::unit_in_name;
 use super::super::inputs::{Input, InputSource};
-use super::super::kinds;
+use super::super::roles::{is_our_name, our_names};
 use poecal_numerics::error::{Error, ErrorKind, Result, distance_within};
 
 impl Builder<'_> {
@@ -33,8 +33,7 @@ impl Builder<'_> {
 
     pub(crate) fn ignored(&self) -> Vec<(String, Option<String>)> {
         let cells = self.header.cells.iter().enumerate();
-        let missing: Vec<&'static str> =
-            OUR_NAMES.into_iter().chain(kinds::names()).filter(|ours| self.header.count(ours) == 0).collect();
+        let missing: Vec<&'static str> = our_names().filter(|ours| self.header.count(ours) == 0).collect();
         cells
             .filter(|(index, cell)| !self.is_used(*index) && !cell.text.is_empty())
             .map(|(_, cell)| (cell.text.clone(), meant(&cell.name, &missing)))
