@@ -157,7 +157,7 @@ fn camera_info(node: &Node) -> Result<Option<CameraInfo>> {
     let model = node.get("distortion_model").and_then(Node::text).unwrap_or_default().to_owned();
     let mut part = [0.0; KEYS.len()];
     for (value, keys) in part.iter_mut().zip(KEYS) {
-        *value = stated(keys)?;
+        *value = stated(&keys.split('.').collect::<Vec<_>>())?;
     }
     let region = Region::new(part).or_else(|found| node.refuse(found))?;
     Ok(Some(CameraInfo { size_px, k, d, model, region }))

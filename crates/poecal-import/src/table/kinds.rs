@@ -1,12 +1,8 @@
 //! Measurements of other kinds than positions and orientations, each in columns of its own.
 
-use std::borrow::Cow;
 use std::fmt;
 
-use crate::PlaneContact;
-use crate::table::Row;
 use poecal_model::measurement::{Columns, FUNCTIONS, From, Function, Quantity, Row as TableRow};
-use poecal_numerics::error::Result;
 
 /// A kind of measurement: a function in a form of its own in files.
 #[derive(Clone, Copy)]
@@ -53,7 +49,7 @@ impl Kind {
     }
 
     /// Words of a column of words.
-    fn words(column: &str) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn words(column: &str) -> impl Iterator<Item = &'static str> {
         kinds()
             .filter_map(|kind| kind.columns.word)
             .filter(move |(name, _)| *name == column)
@@ -82,32 +78,5 @@ impl KindColumns {
     /// What its place is called, and the columns that name it.
     pub(crate) fn place(&self) -> (&'static str, &[usize]) {
         (self.kind.place_word(), &self.places)
-    }
-
-    /// Name of the place of a row; `None` if no cell names it.
-    pub(crate) fn place_name<'r>(&self, row: &Row<'r>) -> Option<Cow<'r, str>> {
-        let mut parts = self.places.iter().filter_map(|&at| row.cells.get(at)).map(|cell| cell.text());
-        let first = parts.next()?;
-        let joined = parts.fold(first, |all, part| match (all.is_empty(), part.is_empty()) {
-            (true, _) => part,
-            (false, true) => all,
-            (false, false) => Cow::Owned(format!("{all}/{part}")),
-        });
-        Some(joined).filter(|name| !name.is_empty())
-    }
-
-    /// Whether the row's word is that of the kind; of none, the usual one.
-    pub(crate) fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
-        let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
-        let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
-        let Some((at, text)) = cell.filter(|(_, text)| !text.is_empty()) else {
-            return Ok(usual.word() == own);
-        };
-        if !Kind::words(column).any(|word| word == text) {
-            let words: Vec<String> = Kind::words(column).map(|word| format!("`{word}`")).collect();
-            let message = format!("found `{text}` in column `{column}`, expected {}", words.join(" or "));
-            return Err(row.error(at, message));
-        }
-        Ok(text == own)
     }
 }

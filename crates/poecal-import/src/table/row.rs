@@ -1,5 +1,7 @@
 //! Measurement of a target in a row.
 
+use std::borrow::Cow;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::cursor::Cursor;
@@ -110,6 +112,33 @@ pub(crate) fn component_noise(
 }
 
 impl KindColumns {
+    /// Name of the place of a row; `None` if no cell names it.
+    pub(crate) fn place_name<'r>(&self, row: &Row<'r>) -> Option<Cow<'r, str>> {
+        let mut parts = self.places.iter().filter_map(|&at| row.cells.get(at)).map(|cell| cell.text());
+        let first = parts.next()?;
+        let joined = parts.fold(first, |all, part| match (all.is_empty(), part.is_empty()) {
+            (true, _) => part,
+            (false, true) => all,
+            (false, false) => Cow::Owned(format!("{all}/{part}")),
+        });
+        Some(joined).filter(|name| !name.is_empty())
+    }
+
+    /// Whether the row's word is that of the kind; of none, the usual one.
+    fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
+        let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
+        let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
+        let Some((at, text)) = cell.filter(|(_, text)| !text.is_empty()) else {
+            return Ok(usual.word() == own);
+        };
+        if !Kind::words(column).any(|word| word == text) {
+            let words: Vec<String> = Kind::words(column).map(|word| format!("`{word}`")).collect();
+            let message = format!("found `{text}` in column `{column}`, expected {}", words.join(" or "));
+            return Err(row.error(at, message));
+        }
+        Ok(text == own)
+    }
+
     /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
     pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
         let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
