@@ -68,19 +68,25 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     if !is_posed {
         return frames.table(&bodies, "marker", opening);
     }
-    for it in &bodies {
+    add_orientations(&mut frames, &mut bodies, expected)?;
+    let mut made = frames.table(&bodies, "body", opening)?;
+    made.say("orientations are of the matrix, which agrees with the angles");
+    Ok(made)
+}
+
+/// Adds the orientations of bodies behind the cells of the frames, of which so many are in the header.
+fn add_orientations(frames: &mut Frames<'_>, bodies: &mut [Body], width: usize) -> Result<(), Refused> {
+    for it in bodies.iter() {
         let start = it.position[0];
         frames.refuse_words(&it.name, &(start..start + POSED).collect::<Vec<_>>())?;
     }
     for frame in &mut frames.all {
-        add_quaternions(frame, &bodies, expected)?;
+        add_quaternions(frame, bodies, width)?;
     }
     for (at, body) in bodies.iter_mut().enumerate() {
-        body.quaternion = Some([0, 1, 2, 3].map(|part| expected + 4 * at + part));
+        body.quaternion = Some([0, 1, 2, 3].map(|part| width + 4 * at + part));
     }
-    let mut made = frames.table(&bodies, "body", opening)?;
-    made.say("orientations are of the matrix, which agrees with the angles");
-    Ok(made)
+    Ok(())
 }
 
 /// Adds the quaternion of each body behind the cells of a frame, of which so many are in the header.
@@ -98,11 +104,11 @@ fn add_quaternions(frame: &mut Frame<'_>, bodies: &[Body], width: usize) -> Resu
         let is_turn = (matrix.transpose() * matrix - Matrix3::identity()).amax() < AGREE_RAD;
         if !is_turn || !off.is_finite() || off >= AGREE_RAD {
             return At(frame.line).refuse(format!(
-                    "found a matrix Rot of `{}` that differs from Roll, Pitch, Yaw by {:.2} deg, expected the same rotation: export with the \
-                     default angles (about x, then y, then z)",
-                    body.name,
-                    off.to_degrees()
-                ));
+                "found a matrix Rot of `{}` that differs from Roll, Pitch, Yaw by {:.2} deg, expected the same rotation: export with the \
+                 default angles (about x, then y, then z)",
+                body.name,
+                off.to_degrees()
+            ));
         }
         more.extend(Pose::new(matrix, Vector3::zeros()).quaternion_xyzw().map(Value::Number));
     }
