@@ -59,9 +59,7 @@ impl Reader<'_> {
         layout: &ColumnLayout,
         inputs: &InputReader<'_>,
     ) -> Result<bool> {
-        let Some((column, name)) = layout.pair.and_then(|at| Some((at, row.cells.get(at)?.text()))) else {
-            return Ok(false);
-        };
+        let Some((column, name)) = layout.pair.zip(row.cell(layout.pair)) else { return Ok(false) };
         match self.begun.get(name.as_ref()) {
             _ if name.is_empty() => return Ok(false),
             Some((Some(_), _)) => return Ok(false),
@@ -89,7 +87,7 @@ impl Reader<'_> {
         inputs: &InputReader<'_>,
     ) -> Result<()> {
         let target = self.target(row, layout, target)?;
-        let pair = layout.pair.and_then(|at| row.cells.get(at)).map(|cell| cell.text());
+        let pair = row.cell(layout.pair);
         let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
         let observation = Observation {
             station: self.station(row, layout, kind, from.map(|_| target))?,
@@ -103,25 +101,21 @@ impl Reader<'_> {
             },
             ..Observation::new(target, measurement)
         };
-        self.found
-            .data
-            .push_observation(inputs.readings(), observation)
-            .map_err(|error| row.error(0, error.message()))?;
-        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-            self.found.data.ids.push(cell.text().into_owned());
-        }
+        let pushed = self.found.data.push_observation(inputs.readings(), observation);
+        pushed.map_err(|error| row.error(0, error.message()))?;
+        self.found.data.ids.extend(row.cell(layout.id).map(Cow::into_owned));
         Ok(())
     }
 
     /// The stated set of a row.
     pub(crate) fn set(&mut self, row: &Row<'_>, layout: &ColumnLayout) -> Result<Option<Set>> {
-        let text = |index: usize| row.cells.get(index).map(|cell| cell.text()).unwrap_or_default();
         match &layout.set {
             SetRule::Unstated => Ok(None),
             SetRule::Words(index) => set_of(row, *index),
             SetRule::Where(index, rule) => {
                 self.fit_values_seen.resize(rule.values.len(), false);
-                let Some(value) = rule.matching(&text(*index)) else { return Ok(Some(Set::HeldOut)) };
+                let text = row.cell(Some(*index)).unwrap_or_default();
+                let Some(value) = rule.matching(&text) else { return Ok(Some(Set::HeldOut)) };
                 if let Some(seen) = self.fit_values_seen.get_mut(value) {
                     *seen = true;
                 }
@@ -132,7 +126,7 @@ impl Reader<'_> {
 
     /// Index of the row's target. Either all rows name their target or none does.
     fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
-        let cell = layout.target_column.and_then(|column| row.cells.get(column)).map(|cell| cell.text());
+        let cell = row.cell(layout.target_column);
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
         let column = layout.target_column;
         let index = self.targets.index(row, column, "target", name)?;
@@ -153,9 +147,8 @@ impl Reader<'_> {
         kind: Option<&KindColumns>,
         shared: Option<usize>,
     ) -> Result<usize> {
-        let text = |column: usize| row.cells.get(column).map(|cell| cell.text()).filter(|it| !it.is_empty());
         let own = kind.and_then(|kind| kind.place_name(row));
-        let instrument = layout.instrument.and_then(text);
+        let instrument = row.cell(layout.instrument).filter(|it| !it.is_empty());
         if let (Some(kind), Some(own), Some(other)) = (kind, &own, &instrument)
             && own != other
         {
@@ -227,7 +220,7 @@ impl Reader<'_> {
 
 /// The set that a cell states.
 pub(crate) fn set_of(row: &Row<'_>, index: usize) -> Result<Option<Set>> {
-    match row.cells.get(index).map(|cell| cell.text()).unwrap_or_default().as_ref() {
+    match row.cell(Some(index)).unwrap_or_default().as_ref() {
         "" => Ok(None),
         "fit" => Ok(Some(Set::Fit)),
         "held_out" => Ok(Some(Set::HeldOut)),
