@@ -1,12 +1,11 @@
 //! Poses of a board in a camera by its corners, beside poses of an arm that were read elsewhere.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use nalgebra::Vector3;
 
 use super::pose_file::PoseFile;
-use super::pose_lists::PosePairs;
 use crate::ReadOptions;
 use crate::pictures::corner_columns::are_corners;
 use crate::pictures::picture_files::Taken;
@@ -21,6 +20,16 @@ use poecal_model::camera::{Picture, Pictures};
 use poecal_model::robot::{Joint, Robot};
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 
+/// Poses of the target by pictures.
+pub(crate) struct PicturePoses {
+    /// The row of the arm's poses at which each picture was taken.
+    pub(crate) rows: Vec<usize>,
+    pub(crate) poses: PoseList,
+    pub(crate) words: String,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) sha256: BTreeMap<String, String>,
+}
+
 /// Whether a file has corners in pixels; one that cannot be read has none, and is named where it is read for what it should be.
 pub(crate) fn are_corners_of(path: &Path) -> bool {
     let map = ColumnMap::default();
@@ -29,12 +38,8 @@ pub(crate) fn are_corners_of(path: &Path) -> bool {
     table.is_ok_and(|table| are_corners(&table.header, &[], &map).unwrap_or(false))
 }
 
-/// Reads a file of corners, whose pictures were taken at poses of an arm by their names: poses of the target, and the row of the arm's pose of each.
-pub(crate) fn poses_of_pictures(
-    path: &Path,
-    arm: &PoseFile,
-    options: &ReadOptions,
-) -> Result<(PosePairs, Vec<usize>)> {
+/// Reads a file of corners, whose pictures were taken at poses of an arm by their names.
+pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptions) -> Result<PicturePoses> {
     if options.cameras.is_empty() {
         let message = "found corners in pixels and no lens, expected --lens FILE with the focal lengths and the centre of the camera, or \
                        unknown:1920x1080 with the size of the pictures";
@@ -64,19 +69,17 @@ pub(crate) fn poses_of_pictures(
     refuse_wrong_boards(&found.data).map_err(|error| error.in_file(path))?;
     let pictures = &found.data.pictures;
     refuse_several(pictures).map_err(|error| error.in_file(path))?;
-    let target =
+    let poses =
         PoseList::of_pictures(pictures).map_err(|found| ErrorKind::Measurement.error(found).in_file(path))?;
     let row =
         |picture: &Picture| found.data.readings(picture.row as usize).first().copied().unwrap_or_default();
     let rows: Vec<usize> = pictures.all.iter().map(|it| row(it) as usize).collect();
     let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
-    let count = rows.len();
     let words = format!(
-        "the target: its pose by its corners in each picture ({corners} corners in {count} pictures)"
+        "the target: its pose by its corners in each picture ({corners} corners in {} pictures)",
+        rows.len()
     );
-    let (warnings, sha256) = (found.warnings, found.sha256);
-    let seen = PosePairs { target, understood: vec![words], warnings, sha256, ..PosePairs::default() };
-    Ok((seen, rows))
+    Ok(PicturePoses { rows, poses, words, warnings: found.warnings, sha256: found.sha256 })
 }
 
 /// Refuses pictures of several boards, or by several cameras.

@@ -106,7 +106,7 @@ fn checksums<'a>(files: impl IntoIterator<Item = &'a PoseFile>) -> BTreeMap<Stri
 }
 
 /// The arm's poses in some rows of its file, each with what was seen there.
-fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, Vec<String>)) -> PosePairs {
+fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, String)) -> PosePairs {
     let names = arm.row_names();
     let width = arm.joints.len() / arm.lines.len().max(1);
     let joints = |row: &usize| arm.joints.get(row * width..(row + 1) * width).unwrap_or_default();
@@ -115,7 +115,7 @@ fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, Vec<S
         target: target.0,
         joints: rows.iter().flat_map(joints).copied().collect(),
         names: rows.iter().filter_map(|row| names.get(*row).cloned()).collect(),
-        understood: std::iter::once(flange.words).chain(target.1).collect(),
+        understood: vec![flange.words, target.1],
         ..PosePairs::default()
     }
 }
@@ -123,7 +123,7 @@ fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, Vec<S
 fn side_by_side(mut file: PoseFile) -> Result<PosePairs> {
     let (flange, target) = (file.take(Whose::Arm)?, file.take(Whose::Target)?);
     let rows: Vec<usize> = (0..file.lines.len()).collect();
-    let pairs = paired(&file, flange, &rows, (target.poses, vec![target.words]));
+    let pairs = paired(&file, flange, &rows, (target.poses, target.words));
     Ok(PosePairs { sha256: checksums([&file]), warnings: file.warnings, ..pairs })
 }
 
@@ -149,18 +149,19 @@ fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     let [mut arm, mut seen] = if is_turned { [second, first] } else { [first, second] };
     let [arm_rows, seen_rows] = if is_turned { [right, left] } else { [left, right] };
     let (flange, target) = (arm.take(Whose::Arm)?, seen.take(Whose::Target)?);
-    let pairs = paired(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), vec![target.words]));
+    let pairs = paired(&arm, flange, &arm_rows, (target.poses.of_rows(&seen_rows), target.words));
     Ok(PosePairs { warnings, sha256, ..pairs })
 }
 
 /// Poses of an arm, and the corners of pictures that were taken there.
 fn with_pictures(mut arm: PoseFile, corners: &Path, options: &ReadOptions) -> Result<PosePairs> {
-    let (seen, rows) = poses_of_pictures(corners, &arm, options)?;
+    let pictures = poses_of_pictures(corners, &arm, options)?;
     let flange = arm.take(Whose::Arm)?;
-    let mut pairs = paired(&arm, flange, &rows, (seen.target, seen.understood));
-    pairs.sha256 = checksums([&arm]).into_iter().chain(seen.sha256).collect();
-    pairs.warnings = arm.warnings.into_iter().chain(seen.warnings).collect();
-    Ok(pairs)
+    let mut sha256 = checksums([&arm]);
+    sha256.extend(pictures.sha256);
+    let pairs = paired(&arm, flange, &pictures.rows, (pictures.poses, pictures.words));
+    let warnings = arm.warnings.into_iter().chain(pictures.warnings).collect();
+    Ok(PosePairs { warnings, sha256, ..pairs })
 }
 
 /// Rows of the same name, or whose names end in the same number, in the order of the first file.
