@@ -162,10 +162,10 @@ impl FromStr for OrientationForm {
 
 impl fmt::Display for OrientationForm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (word, axes) = match self {
-            OrientationForm::Angles(Angles::Intrinsic(axes)) => ("intrinsic", axes),
-            OrientationForm::Angles(Angles::Extrinsic(axes)) if self.named().is_none() => ("extrinsic", axes),
-            _ => return f.write_str(self.named().map_or("", |it| it.2)),
+        let (word, axes) = match (self.named(), self) {
+            (None, OrientationForm::Angles(Angles::Intrinsic(axes))) => ("intrinsic", axes),
+            (None, OrientationForm::Angles(Angles::Extrinsic(axes))) => ("extrinsic", axes),
+            (named, _) => return f.write_str(named.map_or("", |it| it.2)),
         };
         let letters = axes.map(|axis| ["x", "y", "z"].get(axis).copied().unwrap_or_default());
         write!(f, "{word} Euler angles about {}", letters.join(", "))
