@@ -99,7 +99,8 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
     let (cells, largest) = first_rows(&mut table)?;
     let sample = Sample::new(&table.header, cells, largest);
     let fields = sample.fields(robot, chosen)?;
-    Ok(sample.guess(fields, path))
+    let way = chosen.iter().rfind(|it| it.0 == "pose").map(|it| it.1.as_str());
+    Ok(sample.guess(fields, way, path))
 }
 
 /// The first cells of each column, and its largest number; NaN where it has none.
@@ -230,14 +231,19 @@ impl<'h> Sample<'h> {
 
     /// Takes a column or a word in place of what was guessed.
     fn choose(&self, fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-        if key == "pose" && !WAYS.contains(&value) {
-            return ErrorKind::Option.refuse(format!(
-                "--column: found `{value}` for the way of the poses, expected {}",
-                WAYS.join(" or ")
-            ));
+        if key == "pose" {
+            let expected = WAYS.join(" or ");
+            let field = fields.iter_mut().find(|it| it.key == key && !it.choices.is_empty());
+            field.into_iter().for_each(|it| value.clone_into(&mut it.chosen));
+            return if WAYS.contains(&value) {
+                Ok(())
+            } else {
+                ErrorKind::Option.refuse(format!(
+                    "--column: found `{value}` for the way of the poses, expected {expected}"
+                ))
+            };
         }
-        let is_word = key == "pose" || value.is_empty();
-        let chosen = if is_word { value.to_owned() } else { self.known(value, key)? };
+        let chosen = if value.is_empty() { String::new() } else { self.known(value, key)? };
         let keys: Vec<&str> = fields.iter().map(|it| it.key.as_str()).collect();
         let Some(at) = keys.iter().position(|it| *it == key) else {
             let hint = nearest_or_all(key, &keys);
@@ -302,26 +308,28 @@ impl<'h> Sample<'h> {
         columns.filter(|it| !fields.iter().any(|field| field.used() == Some(it))).collect()
     }
 
-    fn guess(self, fields: Vec<MappedField>, path: &Path) -> ColumnGuess {
+    fn guess(self, fields: Vec<MappedField>, way: Option<&str>, path: &Path) -> ColumnGuess {
         let is_missing = |it: &&MappedField| it.required && it.chosen.is_empty();
         let missing = fields.iter().filter(is_missing).map(|it| it.label.clone()).collect();
         let names = self.columns.iter().map(|it| &it.name);
         let is_ignored = |name: &&String| !fields.iter().any(|it| it.used() == Some(*name));
         let ignored = names.filter(is_ignored).cloned().collect();
         let file = path.file_name().map_or_else(String::new, |it| it.to_string_lossy().into_owned());
-        let mapping = text::mapping(&fields, &self.left_out(&fields), &file);
+        let mapping = text::mapping(&fields, way, &self.left_out(&fields), &file);
         ColumnGuess { mapping, columns: self.columns, fields, ignored, missing }
     }
 }
 
 fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-    let Some(unit) = UNITS.iter().find(|it| it.key == key) else {
+    let unit = UNITS.iter().find(|it| it.key == key);
+    let of = unit.map_or(Unit::Radian, |it| it.of);
+    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, of));
+    let stated = stated.transpose().map_err(refused)?;
+    if unit.is_none() {
         return ErrorKind::Option.refuse(format!(
             "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
         ));
-    };
-    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, unit.of));
-    let stated = stated.transpose().map_err(refused)?;
+    }
     if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
         field.chosen = stated.map_or("", NamedUnit::symbol).to_owned();
     }

@@ -20,7 +20,7 @@ const GREEK: Ends = (&["alpha", "beta", "gamma"], OrientationForm::Angles(Angles
 
 /// Orientations by the last words of their names: quaternions, then our own angles, as where they are read, then those of makers.
 fn orientations() -> impl Iterator<Item = Ends> {
-    let rank = |it: &&Convention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique) };
+    let rank = |it: &&Convention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique()) };
     // Joints are called q0 to q3.
     let is_sought = |it: &&Convention| it.form.len() <= 4 && !it.has("q0");
     let mut known: Vec<&Convention> = CONVENTIONS.iter().filter(is_sought).collect();

@@ -20,8 +20,8 @@ fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
     format!("[{}]", names.into_iter().map(|it| quoted(it)).collect::<Vec<_>>().join(", "))
 }
 
-/// The mapping in TOML; what has no column is a comment.
-pub(crate) fn mapping(fields: &[MappedField], left_out: &[String], file: &str) -> String {
+/// The mapping in TOML, of poses that point in a way; what has no column is a comment.
+pub(crate) fn mapping(fields: &[MappedField], way: Option<&str>, left_out: &[String], file: &str) -> String {
     let mut out = format!("# How the columns of {} are read, by the option --columns.\n", visible(file));
     let of = |group: &'static str| fields.iter().filter(move |it| it.group == group && it.choices.is_empty());
     let word = |key: &str| {
@@ -33,7 +33,7 @@ pub(crate) fn mapping(fields: &[MappedField], left_out: &[String], file: &str) -
             let _ = writeln!(out, "{key} = {}", quoted(column));
         }
     }
-    if let Some(way) = word("pose").filter(|it| *it != WAYS[0]) {
+    if let Some(way) = way.filter(|it| *it != WAYS[0]) {
         let _ = writeln!(out, "pose = \"{way}\"");
     }
     if !left_out.is_empty() {

@@ -163,14 +163,7 @@ impl Stated<'_> {
         let is_below =
             |leaf: &Leaf| leaf.path.len() > 1 && leaf.path.first().is_some_and(|it| it == maker.section);
         let at = usize::from(self.leaves.iter().any(is_below));
-        let is_known = |key: &str| {
-            let known = |known: &str| match known.strip_suffix('*') {
-                Some(start) => key.starts_with(start) && !key.contains("flip"),
-                None => key == known,
-            };
-            maker.known.split(' ').any(known)
-        };
-        self.others(KeysOf::Board, (at, |leaf| at == 0 || is_below(leaf)), is_known)
+        self.others(KeysOf::Board, (at, |leaf| at == 0 || is_below(leaf)), &[maker.known])
     }
 
     fn kalibr(&self) -> Result<String> {

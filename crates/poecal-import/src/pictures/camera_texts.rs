@@ -34,12 +34,7 @@ const BESIDE: &str = "distortion header image_size r p rectification_matrix proj
 pub(crate) fn read_yaml(text: &str, path: &Path) -> Result<(Vec<Camera>, Vec<String>)> {
     let stated = Stated { leaves: leaves(text, path, EXPECTED)?, path };
     let others = |at: usize, own: &dyn Fn(&String) -> bool, known: &[&str]| {
-        let is_read = |key: &str| {
-            let keys =
-                known.iter().flat_map(|keys| keys.split(' ')).filter_map(|keys| keys.split('.').next());
-            keys.into_iter().any(|known| known.eq_ignore_ascii_case(key))
-        };
-        stated.others(KeysOf::Pictures, (at, |leaf| leaf.path.first().is_some_and(own)), is_read)
+        stated.others(KeysOf::Pictures, (at, |leaf| leaf.path.first().is_some_and(own)), known)
     };
     let cameras = read_chain(&stated)?;
     if !cameras.is_empty() {

@@ -58,14 +58,21 @@ impl Stated<'_> {
         })
     }
 
-    /// The keys at the place `at` that were not read, of the leaves that are `own`, in words; [`other_keys`] says which are refused.
+    /// The keys at the place `at` that were not read, of the leaves that are `own`, in words; [`other_keys`] says which are refused. Known are lists of
+    /// keys with blanks between them: of one with dots the first part, and all that begin with one with a star, unless they flip something.
     pub(crate) fn others(
         &self,
         of: KeysOf,
         (at, own): (usize, impl Fn(&Leaf) -> bool),
-        is_read: impl Fn(&str) -> bool,
+        known: &[&str],
     ) -> Result<Option<String>> {
         let own: Vec<Leaf> = self.leaves.iter().filter(|leaf| own(leaf)).cloned().collect();
-        other_keys(&own, at, is_read, (of, self.path))
+        let known =
+            || known.iter().flat_map(|keys| keys.split(' ')).filter_map(|keys| keys.split('.').next());
+        let is_it = |known: &str, key: &str| match known.strip_suffix('*') {
+            Some(start) => key.starts_with(start) && !key.contains("flip"),
+            None => known.eq_ignore_ascii_case(key),
+        };
+        other_keys(&own, at, |key| known().any(|known| is_it(known, key)), (of, self.path))
     }
 }

@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use crate::Frames;
 use crate::read::Reader;
-use crate::table::cells::Cell;
 use crate::table::cursor::Cursor;
 use crate::table::kinds::KindColumns;
 use crate::table::layout::{ColumnLayout, SetRule};
@@ -53,7 +52,9 @@ impl Reader<'_> {
     /// Whether a row is the first one of a pair, the configuration from which the second is seen.
     pub(crate) fn begins_pair(&mut self, row: &Row<'_>, inputs: &Cursor<'_>) -> Result<bool> {
         let pair = inputs.layout.pair;
-        let Some((column, name)) = pair.zip(row.text_of(pair)) else { return Ok(false) };
+        let Some((column, name)) = pair.zip(row.cell(pair).filter(|it| !it.is_empty())) else {
+            return Ok(false);
+        };
         if self.begun.get(name.as_ref()).is_some_and(|(index, _)| index.is_some()) {
             return Ok(false);
         }
@@ -78,7 +79,8 @@ impl Reader<'_> {
     ) -> Result<()> {
         let layout = &inputs.layout;
         let target = self.target(row, layout, target)?;
-        let from = row.text_of(layout.pair).and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
+        let pair = row.cell(layout.pair);
+        let from = pair.and_then(|pair| self.begun.get_mut(pair.as_ref())?.0.take());
         let observation = Observation {
             station: self.station(row, layout, kind, from.map(|_| target))?,
             from,
@@ -91,13 +93,9 @@ impl Reader<'_> {
             },
             ..Observation::new(target, measurement)
         };
-        self.found
-            .data
-            .push_observation(inputs.readings(), observation)
-            .map_err(|error| row.error(0, error.message()))?;
-        if let Some(cell) = layout.id.and_then(|id| row.cells.get(id)) {
-            self.found.data.ids.push(cell.text().into_owned());
-        }
+        let pushed = self.found.data.push_observation(inputs.readings(), observation);
+        pushed.map_err(|error| row.error(0, error.message()))?;
+        self.found.data.ids.extend(row.cell(layout.id).map(Cow::into_owned));
         Ok(())
     }
 
@@ -108,9 +106,8 @@ impl Reader<'_> {
             SetRule::Words(index) => set_of(row, *index),
             SetRule::Where(index, rule) => {
                 self.fit_values_seen.resize(rule.values.len(), false);
-                let Some(value) = rule.matching(&row.text_of(Some(*index)).unwrap_or_default()) else {
-                    return Ok(Some(Set::HeldOut));
-                };
+                let text = row.cell(Some(*index)).unwrap_or_default();
+                let Some(value) = rule.matching(&text) else { return Ok(Some(Set::HeldOut)) };
                 if let Some(seen) = self.fit_values_seen.get_mut(value) {
                     *seen = true;
                 }
@@ -121,7 +118,7 @@ impl Reader<'_> {
 
     /// Index of the row's target. Either all rows name their target or none does.
     fn target(&mut self, row: &Row<'_>, layout: &ColumnLayout, target: &TargetLayout) -> Result<usize> {
-        let cell = row.cells.get(layout.target_column.unwrap_or(usize::MAX)).map(Cell::text);
+        let cell = row.cell(layout.target_column);
         let name = cell.as_deref().or(target.name.as_deref()).filter(|name| !name.is_empty());
         let column = layout.target_column;
         let index = self.targets.index(row, column, "target", name)?;
@@ -143,7 +140,7 @@ impl Reader<'_> {
         shared: Option<usize>,
     ) -> Result<usize> {
         let own = kind.and_then(|kind| kind.place_name(row));
-        let instrument = row.text_of(layout.instrument);
+        let instrument = row.cell(layout.instrument).filter(|it| !it.is_empty());
         if let (Some(kind), Some(own), Some(other)) = (kind, &own, &instrument)
             && own != other
         {
@@ -215,7 +212,7 @@ impl Reader<'_> {
 
 /// The set that a cell states.
 pub(crate) fn set_of(row: &Row<'_>, index: usize) -> Result<Option<Set>> {
-    match row.text_of(Some(index)).unwrap_or_default().as_ref() {
+    match row.cell(Some(index)).unwrap_or_default().as_ref() {
         "" => Ok(None),
         "fit" => Ok(Some(Set::Fit)),
         "held_out" => Ok(Some(Set::HeldOut)),

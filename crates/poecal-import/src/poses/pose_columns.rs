@@ -1,6 +1,6 @@
 //! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
 
-use crate::table::conventions::{CONVENTIONS, OPENCV};
+use crate::table::conventions::{CONVENTIONS, Convention, OPENCV};
 use crate::table::header::Header;
 use crate::table::orientation::OrientationForm;
 use crate::table::roles::{Role, plain, without_unit};
@@ -177,23 +177,23 @@ pub(crate) fn found(
 fn settle(parts: &mut [Part]) {
     let is =
         |it: &Part, whose: Option<Whose>, name: &str| it.whose == whose && it.key.eq_ignore_ascii_case(name);
-    let has = |parts: &[Part], whose: Whose, of_place: bool| {
-        parts.iter().any(|it| it.whose == Some(whose) && is_of_place(&it.key) == of_place)
-    };
     let conventions = CONVENTIONS.iter().map(|it| (it.columns, it.is_makers));
     for (columns, is_makers) in conventions.chain([(&PLACE[..], false)]) {
         if !columns.iter().all(|name| parts.iter().any(|it| is(it, None, name))) {
             continue;
         }
-        let is_arms = is_makers || !has(parts, Whose::Arm, columns == PLACE);
+        let is_alike = |it: &Part| it.whose == Some(Whose::Arm) && is_of_place(&it.key) == (columns == PLACE);
+        let is_arms = is_makers || !parts.iter().any(is_alike);
         for part in parts.iter_mut().filter(|it| columns.iter().any(|name| is(it, None, name))) {
             part.whose = Some(if is_arms { Whose::Arm } else { Whose::Target });
         }
     }
     // A quaternion that came first, beside the arm's own angles and the place of the camera.
-    let is_arms = |name: &&str| parts.iter().any(|it| is(it, Some(Whose::Arm), name));
-    let has_letters = CONVENTIONS.iter().any(|it| it.is_makers && it.columns.iter().all(is_arms));
-    let is_targets = has_letters && !has(parts, Whose::Target, false);
+    let has_all = |whose: Whose, it: &Convention| {
+        it.columns.iter().all(|name| parts.iter().any(|part| is(part, Some(whose), name)))
+    };
+    let is_targets = CONVENTIONS.iter().any(|it| it.is_makers && has_all(Whose::Arm, it))
+        && !CONVENTIONS.iter().any(|it| has_all(Whose::Target, it));
     for part in parts {
         let is_arms = part.whose != Some(Whose::Target);
         let is_quaternion = part.whose == Some(Whose::Arm) && part.key.starts_with('q');

@@ -18,8 +18,6 @@ pub(crate) struct Convention {
     pub(crate) usual: Option<(&'static str, &'static str)>,
     /// What it is called.
     pub(crate) words: String,
-    /// Whether no other maker means something else by columns of these names.
-    pub(crate) is_unique: bool,
     /// Whether it is the angles of a maker of controllers, in letters of its own.
     pub(crate) is_makers: bool,
 }
@@ -29,6 +27,11 @@ impl Convention {
     pub(crate) fn usual_unit(&self, quantity: Unit) -> Option<NamedUnit> {
         let (length, angle) = self.usual?;
         NamedUnit::parse(if quantity == Unit::Metre { length } else { angle }, quantity).ok()
+    }
+
+    /// Whether no other maker means something else by columns of these names.
+    pub(crate) fn is_unique(&self) -> bool {
+        self.is_makers || self.form == OrientationForm::QuaternionWxyz
     }
 
     /// Whether a name is that of one of its columns.
@@ -42,7 +45,6 @@ impl Convention {
             form: OrientationForm::Angles(it.angles),
             usual: Some(("mm", "deg")),
             words: format!("{}'s {}", it.maker, it.names.join(", ")),
-            is_unique: true,
             is_makers: true,
         }
     }
@@ -55,22 +57,18 @@ pub(crate) const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
 /// All conventions: of several that a header has, the first is meant.
 pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
-    let named = |columns, form, words: &str, usual, is_unique| Convention {
-        columns,
-        form,
-        usual,
-        words: words.to_owned(),
-        is_unique,
-        is_makers: false,
+    let named = |columns, form, words: &str, usual| {
+        let words = words.to_owned();
+        Convention { columns, form, usual, words, is_makers: false }
     };
     let (xyzw, wxyz) = (OrientationForm::QuaternionXyzw, OrientationForm::QuaternionWxyz);
     let (vector, turns) = (OrientationForm::ROTATION_VECTOR, OrientationForm::ROLL_PITCH_YAW);
     let (matrix, metres) = (OrientationForm::MatrixByRows, Some(("m", "rad")));
     let first = [
-        named(xyzw.part_names(), xyzw, "quaternion by names", None, false),
-        named(&["q1", "q2", "q3", "q4"], wxyz, "ABB's quaternion, q1 real", Some(("mm", "1")), true),
-        named(&["q0", "q1", "q2", "q3"], wxyz, "quaternion, q0 real", None, true),
-        named(OPENCV, vector, "OpenCV's rvec and tvec", metres, false),
+        named(xyzw.part_names(), xyzw, "quaternion by names", None),
+        named(&["q1", "q2", "q3", "q4"], wxyz, "ABB's quaternion, q1 real", Some(("mm", "1"))),
+        named(&["q0", "q1", "q2", "q3"], wxyz, "quaternion, q0 real", None),
+        named(OPENCV, vector, "OpenCV's rvec and tvec", metres),
     ];
     let makers = MAKERS.iter().filter(|it| it.names != AMBIGUOUS).map(Convention::of_maker);
     let last = [
@@ -80,11 +78,10 @@ pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
             OrientationForm::Angles(Angles::XYZ),
             "angles about x, y, z as turned (Stäubli's RX, RY, RZ)",
             Some(("mm", "deg")),
-            false,
         ),
-        named(turns.part_names(), turns, "roll, pitch, yaw about fixed axes x, y, z", None, false),
-        named(vector.part_names(), vector, "Universal Robots' rotation vector", metres, false),
-        named(matrix.part_names(), matrix, "matrix by rows", None, false),
+        named(turns.part_names(), turns, "roll, pitch, yaw about fixed axes x, y, z", None),
+        named(vector.part_names(), vector, "Universal Robots' rotation vector", metres),
+        named(matrix.part_names(), matrix, "matrix by rows", None),
     ];
     first.into_iter().chain(makers).chain(last).collect()
 });

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::roles::Role;
 use poecal_model::measurement::{Columns, FUNCTIONS, From, Function, Quantity, Row as TableRow};
 
 /// A kind of measurement: a function in a form of its own in files.
@@ -57,8 +58,18 @@ impl Kind {
     }
 }
 
+/// Names with a meaning in every file, beside those of joints.
+pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
+    Role::Ours.words().chain(names())
+}
+
+/// Whether a name has a meaning in every file.
+pub(crate) fn is_our_name(name: &str) -> bool {
+    our_names().any(|ours| ours == name)
+}
+
 /// Names of all their columns.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+fn names() -> impl Iterator<Item = &'static str> {
     let words = kinds().filter_map(|kind| kind.columns.word).map(|(column, _)| column);
     kinds().flat_map(|kind| kind.columns.numbers.iter().chain(kind.columns.places).copied()).chain(words)
 }

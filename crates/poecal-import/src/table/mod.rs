@@ -32,7 +32,6 @@ pub(crate) mod understood;
 
 pub(crate) use columns::{column_names, column_spec, mapping, mapping_values};
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -369,11 +368,6 @@ impl Row<'_> {
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let offset = self.cells.get(index).map_or(0, |cell| cell.offset);
         (self.line, character_column(self.text, offset))
-    }
-
-    /// The text of a cell without quotes, unless it is empty.
-    pub(crate) fn text_of(&self, index: Option<usize>) -> Option<Cow<'_, str>> {
-        self.cells.get(index?).map(Cell::text).filter(|it| !it.is_empty())
     }
 
     /// An error at a cell.

@@ -162,12 +162,10 @@ impl FromStr for OrientationForm {
 
 impl fmt::Display for OrientationForm {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (word, axes) = if let OrientationForm::Angles(Angles::Intrinsic(axes)) = self {
-            ("intrinsic", axes)
-        } else if let (OrientationForm::Angles(Angles::Extrinsic(axes)), None) = (self, self.named()) {
-            ("extrinsic", axes)
-        } else {
-            return f.write_str(self.named().map_or("", |it| it.2));
+        let (word, axes) = match (self.named(), self) {
+            (None, OrientationForm::Angles(Angles::Intrinsic(axes))) => ("intrinsic", axes),
+            (None, OrientationForm::Angles(Angles::Extrinsic(axes))) => ("extrinsic", axes),
+            (named, _) => return f.write_str(named.map_or("", |it| it.2)),
         };
         let letters = axes.map(|axis| ["x", "y", "z"].get(axis).copied().unwrap_or_default());
         write!(f, "{word} Euler angles about {}", letters.join(", "))

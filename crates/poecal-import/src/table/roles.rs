@@ -3,7 +3,6 @@
 //! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which `conventions.rs` takes
 //! beside quaternions, vectors and matrices.
 
-use super::kinds;
 use poecal_numerics::named_unit::NamedUnit;
 
 /// What a column is for, or what a word in its name says.
@@ -139,16 +138,6 @@ impl Role {
             Some((*part, words.split(' ').find_map(|word| name.strip_prefix(word))?))
         })
     }
-}
-
-/// Names with a meaning in every file, beside those of joints.
-pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
-    Role::Ours.words().chain(kinds::names())
-}
-
-/// Whether a name has a meaning in every file.
-pub(crate) fn is_our_name(name: &str) -> bool {
-    our_names().any(|ours| ours == name)
 }
 
 /// Letters and digits of a name, small.

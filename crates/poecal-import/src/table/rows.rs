@@ -1,5 +1,6 @@
 //! The rows of a table, one after the other, and what their cells say.
 
+use std::borrow::Cow;
 use std::fmt::Arguments;
 
 use super::number::Numbers;
@@ -35,21 +36,25 @@ impl Table<'_> {
     }
 }
 
-impl Row<'_> {
+impl<'t> Row<'t> {
     /// The text of a cell as it is written; none of one that is not there.
     pub(crate) fn raw(&self, at: usize) -> &str {
         self.cells.get(at).map_or("", |cell| cell.raw)
     }
 
-    /// The text in the cell of a column; empty of one that is not there.
+    /// The text in the cell of a column that is there.
+    pub(crate) fn cell(&self, column: Option<usize>) -> Option<Cow<'t, str>> {
+        Some(self.cells.get(column?)?.text())
+    }
+
+    /// The same without blanks around it; empty of a column that is not there.
     pub(crate) fn word(&self, column: Option<usize>) -> String {
-        let cell = column.and_then(|at| self.cells.get(at));
-        cell.map_or_else(String::new, |cell| cell.text().trim().to_owned())
+        self.cell(column).unwrap_or_default().trim().to_owned()
     }
 
     /// The number of a cell; `of` says in an error what it is.
     pub(crate) fn number(&self, at: usize, numbers: &mut Numbers, of: Arguments<'_>) -> Result<f64> {
-        let text = self.cells.get(at).map(|cell| cell.text()).unwrap_or_default();
+        let text = self.cell(Some(at)).unwrap_or_default();
         let found = numbers.parse(text.trim(), self.line);
         found.map_err(|expected| self.error(at, format!("found `{text}`{of}, expected {expected}")))
     }

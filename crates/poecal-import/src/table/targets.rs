@@ -204,7 +204,7 @@ impl Builder<'_> {
             self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
         let is_stated = |at: usize, quantity| Some(self.header.unit(at, quantity, "").ok()?.is_some());
         let is_placed = is_stated(self.header.find("X").ok()??, Unit::Metre)?;
-        CONVENTIONS.iter().filter(|it| it.is_unique).find_map(|it| {
+        CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
             let quantity = it.form.quantity();
             let at =
                 it.columns.iter().map(|name| self.makers_column(name)).collect::<Option<Vec<usize>>>()?;

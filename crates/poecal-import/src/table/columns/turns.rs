@@ -55,7 +55,7 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
         let columns: Vec<&str> = cells.iter().map(|cell| cell.name.as_str()).collect();
         (columns.join(", "), mapped(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }))
     };
-    let known = CONVENTIONS.iter().filter(|it| it.is_unique).find_map(|it| {
+    let known = CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
         // Joints may be called q1 to q6.
         let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
         let form = it.form.mapped();
