@@ -20,7 +20,6 @@ pub(crate) mod messages;
 pub(crate) mod pictures;
 pub(crate) mod poses;
 pub(crate) mod read;
-pub mod stored_pictures;
 pub(crate) mod table;
 pub(crate) mod write;
 

@@ -14,11 +14,11 @@ pub(crate) use self::refused::are_messages;
 use super::instruments::{Column, Made, Value};
 use super::read::Reader;
 use super::table::Table;
-use crate::pictures::lens_checks::{check, distortion, size_of_pictures};
+use crate::pictures::lens_checks::{check, distortion};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
-use poecal_model::camera::{Board, Camera, Lens};
+use poecal_model::camera::{Board, Camera, Lens, size_of_pictures};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 

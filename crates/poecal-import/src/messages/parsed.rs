@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::pictures::region::{KEYS, Region};
+use poecal_model::camera::{REGION_KEYS, Region};
 use poecal_numerics::error::{Result, first_few};
 use poecal_storage::numbers::LARGEST_NUMBER;
 use poecal_storage::yaml_tree::{Node, NodeKind, documents};
@@ -155,8 +155,8 @@ fn camera_info(node: &Node) -> Result<Option<CameraInfo>> {
     let d = either("d", "D").map_or(Ok(Vec::new()), |it| numbers(it, "D"))?;
     let size_px = [stated(&["width"])?, stated(&["height"])?];
     let model = node.get("distortion_model").and_then(Node::text).unwrap_or_default().to_owned();
-    let mut part = [0.0; KEYS.len()];
-    for (value, keys) in part.iter_mut().zip(KEYS) {
+    let mut part = [0.0; REGION_KEYS.len()];
+    for (value, keys) in part.iter_mut().zip(REGION_KEYS) {
         *value = stated(&keys.split('.').collect::<Vec<_>>())?;
     }
     let region = Region::new(part).or_else(|found| node.refuse(found))?;

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::board_files::board_of_file;
 use super::board_words::{BOARD, in_words};
-use crate::stored_pictures::stored_boards;
+use super::stored_pictures::stored_boards;
 use crate::table::header::{Header, unit_in_name};
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::pictures::lens_checks::{EXPECTED, size_of_pictures};
+use crate::pictures::lens_checks::EXPECTED;
 use crate::table::header::Header;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
 use crate::table::text::Blocks;
 use crate::table::{Row, Table};
-use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens};
+use poecal_model::camera::{Camera, Distortion, LENS_NAMES, Lens, size_of_pictures};
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::yaml::Leaf;

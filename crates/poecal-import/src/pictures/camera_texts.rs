@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use super::region::{KEYS, Region};
 use super::stated::Stated;
-use crate::pictures::lens_checks::{EXPECTED, distortion, size_of_pictures};
-use poecal_model::camera::{Camera, Lens};
+use crate::pictures::lens_checks::{EXPECTED, distortion};
+use poecal_model::camera::{Camera, Lens, REGION_KEYS, Region, size_of_pictures};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::other_keys::KeysOf;
 use poecal_storage::yaml::leaves;
@@ -108,8 +107,8 @@ fn read_single(stated: &Stated<'_>) -> Result<(Camera, Option<String>)> {
         distortion: distortion(kind, &bent, path)?,
         size_px: size_px.map_err(in_file)?,
     };
-    let mut region = [0.0; KEYS.len()];
-    for (number, keys) in region.iter_mut().zip(KEYS) {
+    let mut region = [0.0; REGION_KEYS.len()];
+    for (number, keys) in region.iter_mut().zip(REGION_KEYS) {
         *number = stated.number(keys)?.unwrap_or(0.0);
     }
     let (lens, said) = Region::new(region).and_then(|region| region.applied(&lens)).map_err(refused)?;

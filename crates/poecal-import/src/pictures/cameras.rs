@@ -6,9 +6,9 @@ use roxmltree::Node;
 
 use super::camera_tables::read_table;
 use super::camera_texts::read_yaml;
-use crate::pictures::lens_checks::{EXPECTED, LARGEST_SIDE, check, size_of_pictures};
-use crate::stored_pictures::stored_cameras;
-use poecal_model::camera::{Camera, Distortion, Lens};
+use super::stored_pictures::stored_cameras;
+use crate::pictures::lens_checks::{EXPECTED, check};
+use poecal_model::camera::{Camera, Distortion, LARGEST_SIDE, Lens, size_of_pictures};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::is_file;
 use poecal_storage::limits::Limit;

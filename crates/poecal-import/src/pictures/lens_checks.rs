@@ -46,24 +46,6 @@ pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
     Ok(())
 }
 
-/// Largest side of a picture, pixels.
-pub(crate) const LARGEST_SIDE: u32 = 100_000;
-
-/// Width and height of a camera's pictures, as a file states them; none if it does not state both.
-///
-/// # Errors
-/// [`ErrorKind::Measurement`] without a place, if they are not whole numbers of pixels.
-pub(crate) fn size_of_pictures(stated: [Option<f64>; 2]) -> Result<Option<[u32; 2]>> {
-    let [Some(width), Some(height)] = stated else { return Ok(None) };
-    let is_side = |side: f64| side.fract() == 0.0 && (1.0..=f64::from(LARGEST_SIDE)).contains(&side);
-    if is_side(width) && is_side(height) {
-        return Ok(Some([width as u32, height as u32]));
-    }
-    ErrorKind::Measurement.refuse(format!(
-        "found pictures of {width} × {height} pixels, expected whole numbers from 1 to {LARGEST_SIDE}, or no size"
-    ))
-}
-
 /// A distortion by the name of its model and its coefficients.
 pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Distortion> {
     let refuse = |expected: &str| {

@@ -16,7 +16,7 @@ pub(crate) mod lens_checks;
 pub(crate) mod picture_files;
 pub(crate) mod picture_sizes;
 pub(crate) mod pixels;
-pub(crate) mod region;
 pub(crate) mod sightings;
 pub(crate) mod stated;
+pub(crate) mod stored_pictures;
 pub(crate) mod taken;

@@ -13,9 +13,11 @@ mod picture;
 mod pictures;
 mod pnp;
 mod poses;
+mod region;
 mod search;
 mod shape;
 mod sighting;
+mod stored;
 mod unknown;
 mod views;
 
@@ -26,9 +28,11 @@ pub use lens::{Distortion, LENS_NAMES, LENS_NUMBERS, Lens, Projection};
 pub use picture::{Camera, Corner, Picture};
 pub use pictures::Pictures;
 pub use pnp::poses_of_rays;
+pub use region::{KEYS as REGION_KEYS, Region};
 pub use search::{LensSearch, LensState};
 pub use shape::is_flat_sheet;
 pub use sighting::{Sighting, View, moved};
+pub use stored::{BoardEntry, CameraEntry, LARGEST_SIDE, PointEntry, size_of_pictures};
 pub use unknown::{
     OTHER_LENS, OwnInformation, PictureNumber, PictureUnknown, PictureUnknowns, changed_numbers,
 };

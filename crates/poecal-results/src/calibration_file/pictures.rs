@@ -1,18 +1,13 @@
 //! The pictures of a session in `calibration.json`, and its cameras and boards as input of another session.
 
-use std::path::Path;
-
-use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ReadOptions;
-use crate::pictures::lens_checks::size_of_pictures;
 use poecal_calibrate::ImageMap;
-use poecal_model::camera::{Board, Camera, Centre, CommonError, Distortion, Lens, PictureNumber};
+use poecal_import::ReadOptions;
+use poecal_model::camera::{BoardEntry, CameraEntry, Centre, CommonError, PictureNumber};
 use poecal_model::measurement::Dataset;
-use poecal_numerics::error::{Error, ErrorKind, Result};
-use poecal_storage::text_of;
+use poecal_numerics::error::Result;
 
 /// The pictures of the session: their noise, and the lenses that they were read with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -41,24 +36,6 @@ pub struct PicturesEntry {
     pub images: Vec<ImageMap>,
 }
 
-/// A body of known points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct BoardEntry {
-    /// Its name.
-    pub name: String,
-    /// Its points.
-    pub points: Vec<PointEntry>,
-}
-
-/// A point of a body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PointEntry {
-    /// Its name.
-    pub name: String,
-    /// Its place in the frame of the body, millimetres.
-    pub place_mm: [f64; 3],
-}
-
 /// The error that the corners of a picture share: standard deviations of each component.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CommonEntry {
@@ -82,23 +59,6 @@ fn once() -> f64 {
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is_once(times: &f64) -> bool {
     *times <= 1.0
-}
-
-/// A camera with its lens.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct CameraEntry {
-    /// Its name.
-    pub name: String,
-    /// Focal lengths along u and v, pixels.
-    pub focal_px: [f64; 2],
-    /// Where the axis meets the picture, pixels; the centre of the first pixel is (0, 0).
-    pub centre_px: [f64; 2],
-    /// `brown` with k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order, or `fisheye` with k1 to k4.
-    pub model: String,
-    /// Coefficients of the distortion.
-    pub distortion: Vec<f64>,
-    /// Width and height, pixels; null if they are not known.
-    pub size_px: Option<[u32; 2]>,
 }
 
 impl PicturesEntry {
@@ -135,17 +95,12 @@ impl PicturesEntry {
     /// [`ErrorKind::Measurement`] if a camera is none.
     pub fn complete(&self, options: &mut ReadOptions) -> Result<()> {
         if options.cameras.is_empty() {
-            options.cameras =
-                self.known_cameras().map_err(|found| Error::new(ErrorKind::Measurement, found))?;
+            options.cameras = self.cameras.iter().map(CameraEntry::camera).collect::<Result<_>>()?;
         }
         if options.boards.is_empty() {
             options.boards = self.boards.iter().map(BoardEntry::board).collect();
         }
         Ok(())
-    }
-
-    fn known_cameras(&self) -> std::result::Result<Vec<Camera>, String> {
-        self.cameras.iter().map(CameraEntry::camera).collect()
     }
 
     /// What the corners of a picture share.
@@ -189,101 +144,5 @@ impl PicturesEntry {
                 options.join(" and ")
             )
         })
-    }
-}
-
-impl BoardEntry {
-    fn of(board: &Board) -> Self {
-        let point = |(name, point): (&String, &Vector3<f64>)| PointEntry {
-            name: name.clone(),
-            place_mm: [0, 1, 2].map(|axis| 1e3 * point[axis]),
-        };
-        BoardEntry {
-            name: board.name.clone(),
-            points: board.names.iter().zip(&board.points).map(point).collect(),
-        }
-    }
-
-    fn board(&self) -> Board {
-        let place = |point: &PointEntry| Vector3::from(point.place_mm) * 1e-3;
-        Board {
-            name: self.name.clone(),
-            names: self.points.iter().map(|it| it.name.clone()).collect(),
-            points: self.points.iter().map(place).collect(),
-        }
-    }
-}
-
-/// What a `calibration.json` holds of its pictures.
-#[derive(Deserialize)]
-struct Stored {
-    pictures: Option<PicturesEntry>,
-}
-
-/// The pictures of a `calibration.json`.
-fn stored(path: &Path) -> Result<PicturesEntry> {
-    let refuse = |message: String| Error::new(ErrorKind::Measurement, message).in_file(path);
-    let text = text_of(path, "a calibration.json with pictures")?;
-    let stored: Stored = serde_json::from_str(&text).map_err(|error| {
-        refuse(format!("found no calibration.json ({error}), expected one with pictures"))
-    })?;
-    let expected = "found a calibration without pictures, expected one of a session with a camera";
-    stored.pictures.ok_or_else(|| refuse(expected.to_owned()))
-}
-
-/// The cameras of a `calibration.json`, with their lenses as they were found.
-///
-/// # Errors
-/// A file that is none, or has no cameras.
-pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
-    let refuse = |message: String| Error::new(ErrorKind::Measurement, message).in_file(path);
-    stored(path)?.known_cameras().map_err(refuse)
-}
-
-/// The boards of a `calibration.json`, as they were found.
-///
-/// # Errors
-/// A file that is none, or has no boards.
-pub(crate) fn stored_boards(path: &Path) -> Result<Vec<Board>> {
-    let boards: Vec<Board> = stored(path)?.boards.iter().map(BoardEntry::board).collect();
-    if boards.is_empty() {
-        let message = "found a calibration.json without boards, expected one that this version wrote";
-        return Err(Error::new(ErrorKind::Measurement, message).in_file(path));
-    }
-    Ok(boards)
-}
-
-impl CameraEntry {
-    fn camera(&self) -> std::result::Result<Camera, String> {
-        let own = &self.distortion;
-        let distortion = match self.model.as_str() {
-            "brown" => <[f64; 8]>::try_from(own.as_slice()).ok().map(Distortion::Brown),
-            "fisheye" => <[f64; 4]>::try_from(own.as_slice()).ok().map(Distortion::Fisheye),
-            _ => None,
-        };
-        let distortion = distortion.ok_or_else(|| {
-            let (count, model) = (own.len(), &self.model);
-            format!("found {count} coefficients of a distortion `{model}`, expected 8 of `brown` or 4 of `fisheye`")
-        })?;
-        let CameraEntry { focal_px, centre_px, size_px, .. } = *self;
-        let size = size_of_pictures(size_px.map_or([None; 2], |it| it.map(|side| Some(f64::from(side)))));
-        size.map_err(|error| error.message().to_owned())?;
-        Ok(Camera::new(self.name.clone(), Lens { focal_px, centre_px, distortion, size_px }))
-    }
-
-    fn of(camera: &Camera) -> Self {
-        let lens = &camera.lens;
-        let (model, distortion) = match lens.distortion {
-            Distortion::Brown(k) => ("brown", k.to_vec()),
-            Distortion::Fisheye(k) => ("fisheye", k.to_vec()),
-        };
-        CameraEntry {
-            name: camera.name.clone(),
-            focal_px: lens.focal_px,
-            centre_px: lens.centre_px,
-            model: model.to_owned(),
-            distortion,
-            size_px: lens.size_px,
-        }
     }
 }

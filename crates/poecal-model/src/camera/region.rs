@@ -1,10 +1,10 @@
 //! The part of a sensor that its pictures show, as `camera_info` of ROS states it beside the lens of the whole sensor.
 
-use poecal_model::camera::Lens;
+use super::Lens;
 
 /// A region of a sensor whose pixels are joined in rectangles. The matrix `K` is that of the whole sensor, as `sensor_msgs/CameraInfo` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Region {
+pub struct Region {
     /// The first pixel of the region.
     offset_px: [f64; 2],
     /// Width and height of the region; 0 where it is the whole sensor.
@@ -14,7 +14,7 @@ pub(crate) struct Region {
 }
 
 /// Keys of the numbers of a region.
-pub(crate) const KEYS: [&str; 6] =
+pub const KEYS: [&str; 6] =
     ["roi.x_offset", "roi.y_offset", "roi.width", "roi.height", "binning_x", "binning_y"];
 
 impl Region {
@@ -22,7 +22,7 @@ impl Region {
     ///
     /// # Errors
     /// In words, if numbers are none of a region.
-    pub(crate) fn new(numbers: [f64; 6]) -> Result<Self, String> {
+    pub fn new(numbers: [f64; 6]) -> Result<Self, String> {
         let is_wrong = |it: &f64| *it < 0.0 || it.fract() != 0.0 || *it > f64::from(u32::MAX);
         if let Some((keys, number)) = KEYS.iter().zip(numbers).find(|(_, number)| is_wrong(number)) {
             return Err(format!("found {number} for `{keys}`, expected a count of pixels"));
@@ -41,7 +41,7 @@ impl Region {
     ///
     /// # Errors
     /// In words, if the region is not on the sensor.
-    pub(crate) fn applied(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
+    pub fn applied(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
         let Region { offset_px, size_px, binning } = *self;
         let is_part = size_px[0] > 0.0;
         let whole = lens.size_px.map(|it| it.map(f64::from));

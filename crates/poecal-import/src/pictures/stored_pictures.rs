@@ -1,0 +1,58 @@
+//! Cameras and boards of a `calibration.json`, as they were found.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use poecal_model::camera::{Board, BoardEntry, Camera, CameraEntry};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::text_of;
+
+/// What a `calibration.json` holds of its pictures.
+#[derive(Deserialize)]
+struct Stored {
+    pictures: Option<StoredPictures>,
+}
+
+#[derive(Deserialize)]
+struct StoredPictures {
+    cameras: Vec<CameraEntry>,
+    #[serde(default)]
+    boards: Vec<BoardEntry>,
+}
+
+fn refuse(path: &Path, message: String) -> Error {
+    Error::new(ErrorKind::Measurement, message).in_file(path)
+}
+
+/// The pictures of a `calibration.json`.
+fn stored(path: &Path) -> Result<StoredPictures> {
+    let text = text_of(path, "a calibration.json with pictures")?;
+    let stored: Stored = serde_json::from_str(&text).map_err(|error| {
+        refuse(path, format!("found no calibration.json ({error}), expected one with pictures"))
+    })?;
+    let expected = "found a calibration without pictures, expected one of a session with a camera";
+    stored.pictures.ok_or_else(|| refuse(path, expected.to_owned()))
+}
+
+/// Its cameras.
+///
+/// # Errors
+/// A file that is none, or has no cameras.
+pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
+    let cameras: Result<_> = stored(path)?.cameras.iter().map(CameraEntry::camera).collect();
+    cameras.map_err(|error| error.in_file(path))
+}
+
+/// Its boards.
+///
+/// # Errors
+/// A file that is none, or has no boards.
+pub(crate) fn stored_boards(path: &Path) -> Result<Vec<Board>> {
+    let boards: Vec<Board> = stored(path)?.boards.iter().map(BoardEntry::board).collect();
+    if boards.is_empty() {
+        let message = "found a calibration.json without boards, expected one that this version wrote";
+        return Err(refuse(path, message.to_owned()));
+    }
+    Ok(boards)
+}
