@@ -7,9 +7,13 @@ pub mod boards;
 pub mod joined;
 pub mod joint_units;
 pub mod lengths;
+pub mod picture_sizes;
 pub mod spread;
 pub mod turns;
 
+use std::path::Path;
+
+use poecal_numerics::error::{Error, ErrorKind};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 
 /// Least share of rows with implausible values: a few corrupt rows are no wrong unit.
@@ -53,6 +57,17 @@ impl Doubt {
     #[must_use]
     pub fn new(place: DoubtPlace, message: String) -> Self {
         Doubt { place, message }
+    }
+
+    /// The error of a file; without the place of a column's head, which those know who read it.
+    #[must_use]
+    pub fn error(self, kind: ErrorKind, path: &Path) -> Error {
+        let error = kind.error(self.message);
+        match self.place {
+            DoubtPlace::Cell(line, column) => error.at(path, line, column),
+            DoubtPlace::Line(line) => error.at_line(path, line),
+            DoubtPlace::Head(_) => error.in_file(path),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 mod averaging;
 mod faces;
 mod hand_eye;
+mod markers;
 mod misread;
 mod one_station;
 mod others;
@@ -15,6 +16,7 @@ mod stations;
 pub use averaging::mean_rotation;
 pub(crate) use averaging::rotation_maximising;
 pub use faces::{faces_on_known_planes, settle_faces};
+pub use markers::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};
 pub use pairing::{
     Agreement, Aligned, AtLag, Channels as StreamChannels, EVIDENT, FEWEST_PAIRS, InMotion, JointStream,
     Lagged, MeasuredStands, Motion, MotionEntry, MovingRow, NoLag, NoStream, Order, Pair, Sampled, Span,

@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use super::Opening;
 use super::maker::{At, Column, Made, Refused, Value, place, quaternion};
-use super::rigid::{self, Places, Renamed};
+use super::marker_words;
 use super::words::{lines, quoted};
+use poecal_fit::start::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};
 use poecal_numerics::error::{first_few, shown};
 
 /// A body or a marker that moved less than this, metres, stands.
@@ -136,7 +137,7 @@ impl<'t> Frames<'t> {
                 let place = taken.get(column).zip(self.all.get(frame));
                 place.is_some_and(|(body, frame)| frame.position(body).is_some())
             };
-            let (said, warned) = renamed.words(&names, &lines, is_seen);
+            let (said, warned) = marker_words::words(&renamed, &names, &lines, is_seen);
             made.said.extend(said);
             made.warned.extend(warned);
         }
@@ -147,7 +148,7 @@ impl<'t> Frames<'t> {
     fn named<'b>(
         &self,
         taken: &[&'b Body],
-        renamed: Option<&Renamed>,
+        renamed: Option<&RenamedMarkers>,
     ) -> Result<Vec<(usize, &'b Body)>, Refused> {
         let all = taken.iter().copied().enumerate();
         match renamed {
@@ -158,16 +159,16 @@ impl<'t> Frames<'t> {
     }
 
     /// What the distances between markers show of their names, some of which are at the first of these places; `None` if they show nothing.
-    fn renamed(&self, taken: &[&Body], places: &[&Body]) -> Option<Renamed> {
-        if taken.len() < rigid::FEWEST {
+    fn renamed(&self, taken: &[&Body], places: &[&Body]) -> Option<RenamedMarkers> {
+        if taken.len() < FEWEST_MARKERS {
             return None;
         }
         let place = |frame: &Frame<'_>, body: &Body| Some(Vector3::from(frame.position(body)?) * self.unit.1);
-        let of = |frame: &Frame<'_>| -> Places { places.iter().map(|it| place(frame, it)).collect() };
-        let frames: Vec<Places> = self.all.iter().map(of).collect();
+        let of = |frame: &Frame<'_>| -> MarkerPlaces { places.iter().map(|it| place(frame, it)).collect() };
+        let frames: Vec<MarkerPlaces> = self.all.iter().map(of).collect();
         let columns: Vec<usize> = (0..taken.len()).collect();
         let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..places.len()).collect();
-        Renamed::of(&frames, &columns, &others)
+        RenamedMarkers::of(&frames, &columns, &others)
     }
 
     /// The bodies to take.

@@ -3,7 +3,7 @@
 //!
 //! A module a form, in [`FORMS`]: it makes a `Made` (`maker.rs`), columns and rows of typed cells with the line of each row, which becomes a text in our
 //! form that is read as any other; so units, lost beams, scales and errors are those of one reader. What holds joint readings and measurements at once
-//! (`recording.rs`) is two entries of the plan of files. `rigid.rs` tells markers apart by their distances.
+//! (`recording.rs`) is two entries of the plan of files. `marker_words.rs` says which markers their distances tell apart.
 
 mod auto_id;
 #[cfg(feature = "bags")]
@@ -15,13 +15,13 @@ mod figaroh;
 pub(crate) mod headerless;
 mod leica;
 mod maker;
+mod marker_words;
 mod motive;
 mod ndi;
 mod programs;
 mod qualisys;
 mod recording;
 mod refused;
-mod rigid;
 mod robodk;
 mod spatial_analyzer;
 mod two_sets;

@@ -14,7 +14,6 @@ pub(crate) mod corner_names;
 pub(crate) mod gathering;
 pub(crate) mod lens_checks;
 pub(crate) mod picture_files;
-pub(crate) mod picture_sizes;
 pub(crate) mod pixels;
 pub(crate) mod sightings;
 pub(crate) mod stated;

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::gathering::Sight;
-use super::picture_sizes::check_sizes;
 use crate::read::Reader;
 use crate::table::Table;
 use crate::table::cursor::Cursor;
 use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
+use poecal_fit::input_doubts::picture_sizes::check_sizes;
 use poecal_model::camera::{Corner, FlatView, Picture, guessed_lens, is_flat_sheet};
 use poecal_model::measurement::Source;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
@@ -19,7 +19,10 @@ impl Reader<'_> {
         let (mut left_out, mut found) = (Vec::new(), 0);
         self.found.data.pictures.cameras.clone_from(&self.cameras);
         self.found.data.pictures.boards.clone_from(&self.boards);
-        let said = check_sizes(path, &self.cameras, &gathered)?;
+        let pictures: Vec<(usize, &[Corner])> =
+            gathered.iter().map(|it| (it.camera, it.corners.as_slice())).collect();
+        let said =
+            check_sizes(&self.cameras, &pictures).map_err(|it| it.error(ErrorKind::Measurement, path))?;
         self.warn(path, said);
         self.guess_lenses(&gathered)?;
         for one in gathered {

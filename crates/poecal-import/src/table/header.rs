@@ -300,14 +300,10 @@ impl<'a> Header<'a> {
 
     /// The error of a doubt, where it shows.
     pub(crate) fn doubt(&self, doubt: Doubt, inputs: &[Input]) -> Error {
-        let error = ErrorKind::Unit.error(doubt.message.clone());
-        match doubt.place {
-            DoubtPlace::Cell(line, column) => error.at(self.path, line, column),
-            DoubtPlace::Line(line) => error.at_line(self.path, line),
-            DoubtPlace::Head(input) => match inputs.get(input).map(|it| it.source) {
-                Some(InputSource::Column(column)) => self.error(ErrorKind::Unit, column, doubt.message),
-                Some(InputSource::Constant(_)) | None => error.in_file(self.path),
-            },
+        let DoubtPlace::Head(input) = doubt.place else { return doubt.error(ErrorKind::Unit, self.path) };
+        match inputs.get(input).map(|it| it.source) {
+            Some(InputSource::Column(column)) => self.error(ErrorKind::Unit, column, doubt.message),
+            Some(InputSource::Constant(_)) | None => doubt.error(ErrorKind::Unit, self.path),
         }
     }
 

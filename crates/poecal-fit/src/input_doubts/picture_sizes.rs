@@ -1,10 +1,8 @@
 //! Sizes of pictures that lenses state, beside the corners that were seen.
 
-use std::path::Path;
-
-use super::gathering::Sight;
+use super::{Doubt, DoubtPlace};
 use poecal_model::camera::{Camera, Corner};
-use poecal_numerics::error::{Error, ErrorKind, Result, shown};
+use poecal_numerics::error::shown;
 
 /// Pixels beyond the edge of a picture at which a corner may be found: detectors refine corners that they find at the edge.
 const BEYOND: f64 = 2.0;
@@ -14,20 +12,23 @@ const FEWEST: usize = 100;
 const BEGIN: f64 = 0.1;
 const REACH: f64 = 0.9;
 
-/// Refuses corners outside the pictures that the lenses state; gives a sentence for each camera whose corners fill one part of its pictures, as
-/// those of smaller pictures do.
-pub(crate) fn check_sizes(path: &Path, cameras: &[Camera], gathered: &[Sight]) -> Result<Vec<String>> {
+/// A sentence for each camera whose corners fill one part of its pictures, as those of smaller pictures do. Pictures are corners with the number of
+/// their camera.
+///
+/// # Errors
+/// The doubt about corners outside the pictures that the lenses state.
+pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Result<Vec<String>, Doubt> {
     let mut said = Vec::new();
     for (at, camera) in cameras.iter().enumerate() {
         let Some(size) = camera.lens.size_px.map(|size| size.map(f64::from)) else { continue };
-        let corners: Vec<&Corner> =
-            gathered.iter().filter(|it| it.camera == at).flat_map(|it| &it.corners).collect();
+        let corners: Vec<&Corner> = pictures.iter().filter(|it| it.0 == at).flat_map(|it| it.1).collect();
         let is_outside = |corner: &&&Corner| {
             (0..2).any(|k| corner.pixel[k] < -0.5 - BEYOND || corner.pixel[k] > size[k] - 0.5 + BEYOND)
         };
         if let Some(first) = corners.iter().find(is_outside) {
             let count = corners.iter().filter(is_outside).count();
-            return Err(outside(camera, size, &corners, (first, count)).at_line(path, first.line as usize));
+            let message = outside(camera, size, &corners, (first, count));
+            return Err(Doubt::new(DoubtPlace::Line(first.line as usize), message));
         }
         if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
             let ([width, height], [x, y]) = (size, size.map(|it| it / f64::from(part)));
@@ -62,7 +63,7 @@ fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
 }
 
 /// The error of a corner that is outside, with how the sizes are related.
-fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> Error {
+fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> String {
     let most = [0, 1].map(|axis| extent(corners, axis).1);
     let times = [0, 1].map(|axis| most[axis] / size[axis]);
     let is_like = times[0] > 1.2 && (times[0] / times[1] - 1.0).abs() < 0.2;
@@ -81,8 +82,8 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
     };
     let (all, of, [width, height], [far_x, far_y]) = (corners.len(), of(camera), size, most);
     let (x, y) = (first.pixel.x, first.pixel.y);
-    ErrorKind::Measurement.error(format!(
+    format!(
         "found the corner ({x:.1}, {y:.1}), and {count} of {all} corners, outside the {width} × {height} pixels of the pictures that the lens{of} states; \
          they reach to ({far_x:.1}, {far_y:.1}), expected corners in the picture: {advice}"
-    ))
+    )
 }

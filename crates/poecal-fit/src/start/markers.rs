@@ -4,15 +4,13 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::words::quoted;
-use crate::join::join_words::numbered;
 use poecal_numerics::distributions::median;
 
 /// Where each marker is in a frame, metres; none where it was not seen.
-pub(crate) type Places = Vec<Option<Vector3<f64>>>;
+pub type MarkerPlaces = Vec<Option<Vector3<f64>>>;
 
 /// Fewest markers whose distances show which is which.
-pub(crate) const FEWEST: usize = 3;
+pub const FEWEST_MARKERS: usize = 3;
 /// Most markers of a body, and most places in a frame: the search is among all orders of them.
 const MOST: usize = 12;
 const MOST_PLACES: usize = 24;
@@ -40,19 +38,19 @@ struct Group {
 
 /// What the distances between markers show, by frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Renamed {
+pub struct RenamedMarkers {
     /// Of a frame in which something is not as it is named, where each marker of the body is: at the place of which column, if at any.
-    pub(crate) frames: BTreeMap<usize, BTreeMap<usize, Option<usize>>>,
+    pub frames: BTreeMap<usize, BTreeMap<usize, Option<usize>>>,
     /// The markers of the body.
-    pub(crate) markers: Vec<usize>,
+    pub markers: Vec<usize>,
 }
 
 impl Group {
     /// The largest group of some columns that keep their distances.
-    fn of(frames: &[Places], columns: &[usize]) -> Option<Self> {
+    fn of(frames: &[MarkerPlaces], columns: &[usize]) -> Option<Self> {
         let step = frames.len().div_ceil(SOME).max(1);
         let distances = |a: usize, b: usize| -> Vec<f64> {
-            let apart = |frame: &Places| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
+            let apart = |frame: &MarkerPlaces| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
             frames.iter().step_by(step).filter_map(apart).collect()
         };
         let usual = |a: usize, b: usize| {
@@ -83,7 +81,7 @@ impl Group {
             group
         };
         let groups: Vec<Vec<usize>> = columns.iter().map(grown).collect();
-        let largest = groups.iter().map(Vec::len).max().filter(|it| *it >= FEWEST)?;
+        let largest = groups.iter().map(Vec::len).max().filter(|it| *it >= FEWEST_MARKERS)?;
         let mut markers = groups.into_iter().find(|it| it.len() == largest)?;
         markers.sort_unstable();
         let row = |a: &usize| markers.iter().map(|b| of(*a, *b).unwrap_or_default()).collect();
@@ -98,7 +96,7 @@ impl Group {
     }
 
     /// Which marker is at which place, if the distances decide it; `None` where all are as they are named.
-    fn sorted(&self, frame: &Places, others: &[usize]) -> Option<Vec<Option<usize>>> {
+    fn sorted(&self, frame: &MarkerPlaces, others: &[usize]) -> Option<Vec<Option<usize>>> {
         let place = |column: usize| *frame.get(column)?;
         let own: Vec<(usize, usize)> =
             self.markers.iter().copied().enumerate().filter(|it| place(it.1).is_some()).collect();
@@ -126,7 +124,7 @@ impl Group {
             is_unclear: false,
         };
         search.next();
-        let found = search.best.filter(|_| search.count >= FEWEST && !search.is_unclear);
+        let found = search.best.filter(|_| search.count >= FEWEST_MARKERS && !search.is_unclear);
         if is_right {
             // Nothing is wrong where no marker is found.
             let named: Vec<Option<usize>> =
@@ -183,13 +181,14 @@ impl Search<'_> {
     }
 }
 
-impl Renamed {
+impl RenamedMarkers {
     /// What the distances show of the markers in some columns, of which one body is made; the places of `others` may be theirs too. `None` if no
     /// three of them keep their distances.
-    pub(crate) fn of(frames: &[Places], columns: &[usize], others: &[usize]) -> Option<Self> {
+    #[must_use]
+    pub fn of(frames: &[MarkerPlaces], columns: &[usize], others: &[usize]) -> Option<Self> {
         let group = Group::of(frames, columns)?;
         let others: Vec<usize> = others.iter().copied().filter(|it| !group.markers.contains(it)).collect();
-        let mut found = Renamed { markers: group.markers.clone(), ..Renamed::default() };
+        let mut found = RenamedMarkers { markers: group.markers.clone(), ..RenamedMarkers::default() };
         for (at, frame) in frames.iter().enumerate() {
             let Some(sorted) = group.sorted(frame, &others) else { continue };
             found.frames.insert(at, group.markers.iter().copied().zip(sorted).collect());
@@ -198,55 +197,9 @@ impl Renamed {
     }
 
     /// The column at whose place a marker is in a frame.
-    pub(crate) fn place_of(&self, frame: usize, column: usize) -> Option<usize> {
+    #[must_use]
+    pub fn place_of(&self, frame: usize, column: usize) -> Option<usize> {
         self.frames.get(&frame).and_then(|it| it.get(&column)).copied().unwrap_or(Some(column))
-    }
-
-    /// What is said of it: notes, and what should be looked at. `lines` are those of the frames.
-    pub(crate) fn words(
-        &self,
-        names: &[&str],
-        lines: &[usize],
-        is_seen: impl Fn(usize, usize) -> bool,
-    ) -> (Vec<String>, Vec<String>) {
-        let name = |column: &usize| names.get(*column).copied().unwrap_or_default();
-        let mut exchanged: BTreeMap<Vec<usize>, Vec<String>> = BTreeMap::new();
-        let (mut unnamed, mut lost) = (0, Vec::new());
-        for (frame, of) in &self.frames {
-            let line = lines.get(*frame).map_or_else(String::new, ToString::to_string);
-            let moved =
-                of.iter().filter_map(|(marker, at)| Some((*marker, (*at)?))).filter(|it| it.0 != it.1);
-            let (own, others): (Vec<_>, Vec<_>) = moved.partition(|it| self.markers.contains(&it.1));
-            unnamed += others.len();
-            let is_left = |(marker, at): (&usize, &Option<usize>)| {
-                at.is_none() && is_seen(*frame, *marker) && !of.values().any(|it| *it == Some(*marker))
-            };
-            if of.iter().any(is_left) {
-                lost.push(line.clone());
-            }
-            if !own.is_empty() {
-                exchanged.entry(own.iter().map(|it| it.0).collect()).or_default().push(line);
-            }
-        }
-        let at = |lines: &[String]| match lines.len() {
-            1 => format!("one frame ({})", numbered(lines)),
-            count => format!("{count} frames ({})", numbered(lines)),
-        };
-        let exchanges = exchanged.iter().map(|(markers, lines)| {
-            let (names, at) = (quoted(markers.iter().map(name)), at(lines));
-            format!("exchanged the names of {names} in {at}, where their distances to the other markers are those of each other: check the labels there")
-        });
-        let mut warned: Vec<String> = exchanges.collect();
-        if !lost.is_empty() {
-            warned.push(format!(
-                "left out markers in {}, since their distances are those of no marker of the body",
-                at(&lost)
-            ));
-        }
-        let said = (unnamed > 0).then(|| {
-            format!("found {unnamed} places of its markers among those without a name, by the distances between them")
-        });
-        (said.into_iter().collect(), warned)
     }
 }
 
@@ -256,7 +209,7 @@ mod tests {
     use poecal_arm::lie::rotation;
 
     /// A body that turns and moves: its markers with noise, in frames.
-    fn moving(markers: &[Vector3<f64>], frames: usize, noise_m: f64, seed: u64) -> Vec<Places> {
+    fn moving(markers: &[Vector3<f64>], frames: usize, noise_m: f64, seed: u64) -> Vec<MarkerPlaces> {
         let mut state = seed;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -307,7 +260,7 @@ mod tests {
                 frame[3] = frame[3].map(|it| it + Vector3::new(0.03, 0.02, 0.0));
             }
             let columns: Vec<usize> = (0..count).collect();
-            let found = Renamed::of(&frames, &columns, &[count, count + 1]).unwrap();
+            let found = RenamedMarkers::of(&frames, &columns, &[count, count + 1]).unwrap();
             for (at, frame) in frames.iter().enumerate() {
                 for (marker, expected) in truth[at].iter().enumerate().take(count) {
                     let place = found.place_of(at, marker).and_then(|it| frame[it]);
@@ -337,7 +290,7 @@ mod tests {
         for (at, frame) in frames.iter_mut().enumerate() {
             frame.push(Some(Vector3::new(0.001 * at as f64, 0.0, 0.0)));
         }
-        assert!(Renamed::of(&frames, &[0, 1, 2], &[]).is_none());
+        assert!(RenamedMarkers::of(&frames, &[0, 1, 2], &[]).is_none());
     }
 
     #[test]
@@ -347,12 +300,11 @@ mod tests {
             [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
         let mut frames = moving(&markers, 200, 1e-4, 4);
         frames[50].swap(0, 1);
-        let found = Renamed::of(&frames, &[0, 1, 2], &[]).unwrap();
+        let found = RenamedMarkers::of(&frames, &[0, 1, 2], &[]).unwrap();
         assert!(found.frames.is_empty(), "{:?}", found.frames);
         frames[60].swap(0, 2);
-        let found = Renamed::of(&frames, &[0, 1, 2], &[]).unwrap();
+        let found = RenamedMarkers::of(&frames, &[0, 1, 2], &[]).unwrap();
         assert_eq!(found.frames.keys().copied().collect::<Vec<_>>(), [60]);
-        let (_, warned) = found.words(&["A", "B", "C"], &(8..208).collect::<Vec<_>>(), |_, _| true);
-        assert!(warned[0].contains("left out markers in one frame (line 68)"), "{warned:?}");
+        assert_eq!(found.frames[&60].values().copied().collect::<Vec<_>>(), [None; 3]);
     }
 }
