@@ -13,6 +13,9 @@ pub fn is_run(c: char) -> bool {
 /// A text as a cell: one that a spreadsheet would run, or that begins with an apostrophe, gets an apostrophe in front; numbers do not.
 /// Quoted where necessary.
 pub fn cell(text: &str) -> Cow<'_, str> {
+    if is_plain(text) {
+        return text.into();
+    }
     let is_marked = text.starts_with(MARK) || text.starts_with(is_run) && !is_number(text);
     let padded = text.starts_with(char::is_whitespace) || text.ends_with(char::is_whitespace);
     // A line that begins with # would be a comment.
@@ -21,6 +24,18 @@ pub fn cell(text: &str) -> Cow<'_, str> {
         return format!("\"{mark}{}\"", text.replace('"', "\"\"")).into();
     }
     if is_marked { format!("{MARK}{text}").into() } else { text.into() }
+}
+
+/// Whether a text is surely a cell as it is: digits with a point, letters.
+fn is_plain(text: &str) -> bool {
+    let body = text.strip_prefix('-').unwrap_or(text);
+    let mut points = 0;
+    let is_number = !body.is_empty()
+        && body.bytes().all(|it| {
+            points += usize::from(it == b'.');
+            it.is_ascii_digit() || it == b'.'
+        });
+    is_number && points < 2 && body != "." || text.bytes().all(|it| it.is_ascii_alphanumeric())
 }
 
 /// The text of a cell, without the apostrophe of [`cell`].

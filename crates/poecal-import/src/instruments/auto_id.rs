@@ -1,7 +1,7 @@
 //! The table that *Auto ID* of DELMIA reads: no header, tabs, the name, x, y, z in millimetres, roll, pitch, yaw in degrees, and the joints in
 //! degrees.
 
-use super::maker::{Column, Made, Refused, Value, place};
+use super::maker::{At, Column, Made, Refused, Value, place};
 use super::words::{cells, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
@@ -31,15 +31,12 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         let found = cells(content, Separator::Tab);
         let (count, expected) = (found.len(), made.width());
         if count != expected {
-            return Refused::at(
-                line,
-                format!(
-                    "found {count} cells, expected {expected}: a name, x, y, z, roll, pitch, yaw and the joints"
-                ),
-            );
+            return At(line).refuse(format!(
+                "found {count} cells, expected {expected}: a name, x, y, z, roll, pitch, yaw and the joints"
+            ));
         }
         made.row(line, found.into_iter().map(Value::Text));
     }
-    made.said.push(format!("{} poses in mm, with roll, pitch, yaw in deg; joints in deg", made.rows()));
+    made.say(format!("{} poses in mm, with roll, pitch, yaw in deg; joints in deg", made.rows()));
     Ok(made)
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Opening;
-use super::maker::{Column, Made, Refused, Value, place, quaternion};
+use super::maker::{At, Column, Made, Refused, Value, place, quaternion};
 use super::rigid::{self, Places, Renamed};
 use super::words::{lines, quoted};
 use poecal_numerics::error::{first_few, shown};
@@ -83,7 +83,7 @@ impl<'t> Frames<'t> {
         for (line, content) in lines(text).filter(|it| it.0 > header) {
             let cells = cells(content, separator);
             let time = time(&cells, all.len(), all.last().and_then(|it| it.time));
-            let time = time.or_else(|message| Refused::at(line, message))?;
+            let time = time.or_else(|message| At(line).refuse(message))?;
             all.push(Frame { line, time, cells: cells.into_iter().map(Value::Text).collect() });
         }
         Ok(Frames { all, unit, header, unnamed: Vec::new(), are_unnamed: false })
@@ -92,10 +92,7 @@ impl<'t> Frames<'t> {
     /// The table of the body that moves; of several, of the one that was asked for.
     pub(crate) fn table(&self, bodies: &[Body], what: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         if self.all.is_empty() {
-            return Refused::at(
-                self.header,
-                "found the names of columns and no frame, expected at least one",
-            );
+            return At(self.header).refuse("found the names of columns and no frame, expected at least one");
         }
         let taken = self.taken(bodies, what, opening)?;
         let places: Vec<&Body> = taken.iter().copied().chain(&self.unnamed).collect();
@@ -108,10 +105,7 @@ impl<'t> Frames<'t> {
         let given = self.named(&taken, renamed.as_ref())?;
         let names: Vec<String> = given.iter().map(|it| format!("`{}`", it.1.name)).collect();
         let all_names = first_few(&names);
-        let column = |it: Column| {
-            let source = format!("{} of {all_names}", it.name());
-            it.made_of(source)
-        };
+        let column = |it: Column| it.made_of(|name| format!("{name} of {all_names}"));
         let columns = std::iter::once(Column::from("time").in_unit("s"))
             .chain(has_several.then(|| Column::from("target")))
             .chain(place(self.unit.0).map(column))
@@ -129,11 +123,11 @@ impl<'t> Frames<'t> {
                 made.row(frame.line, std::iter::once(time).chain(name).chain(parts));
             }
         }
-        made.said.push(format!("{} frames of {}, {}", self.all.len(), names.join(", "), self.unit.0));
+        made.say(format!("{} frames of {}, {}", self.all.len(), names.join(", "), self.unit.0));
         let is_taken = |it: &Body| taken.iter().any(|taken| std::ptr::eq(*taken, it));
         let left = quoted(bodies.iter().filter(|it| !is_taken(it)).map(|it| it.name.as_str()));
         if !left.is_empty() {
-            made.said.push(format!("left out {left}"));
+            made.say(format!("left out {left}"));
         }
         if let Some(renamed) = renamed {
             let names: Vec<&str> = taken.iter().map(|it| it.name.as_str()).collect();
@@ -159,10 +153,7 @@ impl<'t> Frames<'t> {
         match renamed {
             _ if !self.are_unnamed => Ok(all.collect()),
             Some(renamed) => Ok(all.filter(|it| renamed.markers.contains(&it.0)).collect()),
-            None => Refused::at(
-                self.header,
-                "found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot",
-            ),
+            None => At(self.header).refuse("found no marker with a name, and no three that keep their distances, expected a rigid body, or markers with names, on the robot"),
         }
     }
 
@@ -238,12 +229,9 @@ impl<'t> Frames<'t> {
                     && cell.number().is_none()
                 {
                     let (word, body) = (shown(word), shown(body));
-                    return Refused::at(
-                        frame.line,
-                        format!(
+                    return At(frame.line).refuse(format!(
                             "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where it was not seen"
-                        ),
-                    );
+                        ));
                 }
             }
         }

@@ -12,6 +12,13 @@ impl<'b> Fields<'b> {
         Some(found)
     }
 
+    /// Bytes with their number before them.
+    #[cfg(feature = "bags")]
+    pub(crate) fn counted(&mut self) -> Option<&'b [u8]> {
+        let count = self.u64()?;
+        self.bytes(usize::try_from(count).ok()?)
+    }
+
     fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         self.bytes(N)?.try_into().ok()
     }

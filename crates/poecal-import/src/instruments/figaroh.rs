@@ -49,6 +49,6 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         }
     }
     let count = if has_several { format!("{} markers", markers.len()) } else { "one marker".to_owned() };
-    made.said.push(format!("{count} in metres"));
+    made.say(format!("{count} in metres"));
     Ok(made)
 }

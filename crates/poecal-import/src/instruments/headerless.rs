@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::maker::{Column, Made, Refused, Value};
+use super::maker::{At, Column, Made, Refused, Value};
 use super::words::{are_targets, cells, lines, number, repeats};
 use super::{Form, Opening};
 use crate::Separator;
@@ -37,10 +37,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let first = rows.first().map_or(1, |it| it.0);
     if let Some((line, cells)) = rows.iter().find(|it| it.1.len() != width) {
         let found = cells.len();
-        return Refused::at(
-            *line,
-            format!("found {found} cells, expected {width} as in other lines from line {first} on"),
-        );
+        return At(*line)
+            .refuse(format!("found {found} cells, expected {width} as in other lines from line {first} on"));
     }
     // Columns of measurements that this table does not have are of another one.
     let is_of_this = |map: &&ColumnMap| {
@@ -53,7 +51,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     for (line, cells) in &rows {
         let mut numbers = cells.iter().skip(usize::from(is_named));
         if let Some(bad) = numbers.find(|it| number(it).is_none()) {
-            return Refused::at(*line, format!("found `{bad}`, expected a number as in other rows"));
+            return At(*line).refuse(format!("found `{bad}`, expected a number as in other rows"));
         }
     }
     let count = opening.robot.joint_reading_names().len();
@@ -66,15 +64,12 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         }
         3 if count != 3 => Ok(points(rows, is_named)),
         4 if !is_named && count != 3 && count != 4 && rows.iter().all(is_whole) => Ok(points(rows, true)),
-        _ => Refused::at(
-            first,
-            format!(
+        _ => At(first).refuse(format!(
                 "found a table without names of columns, with {}{numbers} numbers in a row, expected {count} joint readings, with a time or a name \
                  before them, or x, y, z of a point, with its name before them: put a line above that names the columns, or number them in a mapping \
                  (--columns), like `position = {{ columns = [1, 2, 3] }}`",
                 if is_named { "a name and " } else { "" }
-            ),
-        ),
+            )),
     }
 }
 
@@ -96,7 +91,7 @@ fn joints(rows: Vec<Row<'_>>, before: Option<&str>, opening: &Opening<'_>) -> Ma
     let names = opening.robot.joint_reading_names();
     let mut made = made(before.into_iter().chain(names.iter().map(String::as_str)), rows);
     let time = if before == Some("time[s]") { ", with the time before them" } else { "" };
-    made.said.push(format!("{} rows of joint readings{time}", made.rows()));
+    made.say(format!("{} rows of joint readings{time}", made.rows()));
     made
 }
 
@@ -114,6 +109,6 @@ fn points(rows: Vec<Row<'_>>, is_named: bool) -> Made {
         made.warned.extend(repeats(&names, &lines));
         String::new()
     };
-    made.said.push(format!("{} points{targets}", made.rows()));
+    made.say(format!("{} points{targets}", made.rows()));
     made
 }

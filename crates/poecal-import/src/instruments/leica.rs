@@ -1,7 +1,7 @@
 //! Poses and points that Leica's software for trackers writes as CSV: columns with two blanks before their unit, expanded uncertainties `U(95)`, the
 //! quaternion with its real part `Q0` first.
 
-use super::maker::{Column, Made, Refused, Value};
+use super::maker::{At, Column, Made, Refused, Value};
 use super::words::{Head, lines, name_and_unit, quoted};
 use super::{Form, Opening};
 
@@ -23,8 +23,11 @@ const COLUMNS: [(&str, &str); 10] = [
     ("U(95) Z", "sigma_z"),
 ];
 
-/// The header, and the names of its columns with their units.
-fn head(text: &str) -> Option<(Head<'_>, Vec<(String, Option<&str>)>)> {
+/// Names of columns with their units.
+type Names<'t> = Vec<(String, Option<&'t str>)>;
+
+/// The header, and what it names.
+fn head(text: &str) -> Option<(Head<'_>, Names<'_>)> {
     let head = Head::recognised(lines(text).next()?);
     let parts = head.names.iter().map(|it| name_and_unit(it, &[['[', ']']]));
     let one_blank = |name: &str| name.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -42,28 +45,27 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 type Used = (usize, bool, Column);
 
 /// Finds the columns with a meaning.
-fn find_columns(head: &Head<'_>, names: &[(String, Option<&str>)]) -> Result<Vec<Used>, Refused> {
+fn find_columns(head: &Head<'_>, names: &Names<'_>) -> Result<Vec<Used>, Refused> {
     let (mut used, mut turns) = (Vec::new(), 0);
     for (theirs, ours) in COLUMNS {
         let mut found = names.iter().enumerate().filter(|(_, it)| it.0 == theirs);
         let Some((at, (_, unit))) = found.next() else { continue };
         if found.next().is_some() {
-            return Refused::at(head.line, format!("found a second column `{theirs}`, expected one"));
+            return At(head.line).refuse(format!("found a second column `{theirs}`, expected one"));
         }
         let is_turn = theirs.starts_with('Q');
         turns += usize::from(is_turn);
         let is_expanded = ours.starts_with("sigma");
         let divided = if is_expanded { format!(" / {COVERAGE}") } else { String::new() };
         let own = head.names.get(at).copied().unwrap_or_default();
-        let column = Column::from(ours).made_of(format!("{own}{divided}"));
+        let column = Column::from(ours).made_of(|_| format!("{own}{divided}"));
         let column = match unit {
             _ if is_turn => column,
             Some(unit) => column.in_unit(unit),
             None => {
-                return Refused::at(
-                    head.line,
-                    format!("found the column `{theirs}` without a unit, expected one, as `{theirs} [mm]`"),
-                );
+                return At(head.line).refuse(format!(
+                    "found the column `{theirs}` without a unit, expected one, as `{theirs} [mm]`"
+                ));
             }
         };
         used.push((at, is_expanded, column));
@@ -71,10 +73,8 @@ fn find_columns(head: &Head<'_>, names: &[(String, Option<&str>)]) -> Result<Vec
     if matches!(turns, 0 | 4) {
         return Ok(used);
     }
-    Refused::at(
-        head.line,
-        format!("found {turns} of the columns Q0, Q1, Q2, Q3, expected all of them, or none"),
-    )
+    At(head.line)
+        .refuse(format!("found {turns} of the columns Q0, Q1, Q2, Q3, expected all of them, or none"))
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
@@ -94,16 +94,16 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
             }),
         );
     }
-    made.said.push(format!("{} measurements", made.rows()));
+    made.say(format!("{} measurements", made.rows()));
     if names.iter().any(|it| it.0 == "U(95) X") {
-        made.said.push(format!("U(95) divided by {COVERAGE} are the standard deviations"));
+        made.say(format!("U(95) divided by {COVERAGE} are the standard deviations"));
     }
     let is_left = |(at, it): &(usize, &(String, Option<&str>))| {
         !it.0.is_empty() && !used.iter().any(|used| used.0 == *at)
     };
     let left = quoted(names.iter().enumerate().filter(is_left).map(|(_, it)| &it.0));
     if !left.is_empty() {
-        made.said.push(format!("left out {left}"));
+        made.say(format!("left out {left}"));
     }
     Ok(made)
 }

@@ -1,6 +1,8 @@
 //! Makes tables in our form.
 
+use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::words::number;
 use crate::table::places::{Places, Sheet};
@@ -19,10 +21,7 @@ pub(crate) struct Made {
     columns: Vec<Column>,
     /// The line that names the columns.
     head: usize,
-    rows: Vec<Row>,
-    /// The cells of all rows, one after the other, and the texts of these.
-    cells: Vec<Held>,
-    texts: String,
+    rows: Arc<Rows>,
     /// The sheet of a workbook.
     pub(crate) sheet: Option<Sheet>,
     /// The frame that the file says its measurements are in.
@@ -38,6 +37,36 @@ pub(crate) struct Made {
     other: Option<Box<Made>>,
 }
 
+/// Rows of cells.
+#[derive(Clone, Debug, Default)]
+struct Rows {
+    /// The line of each row, and where its cells end.
+    ends: Vec<(usize, usize)>,
+    /// The cells of all rows, one after the other.
+    cells: Vec<Held>,
+    texts: String,
+}
+
+/// A cell that is held: a text by where it is among those of all cells.
+#[derive(Clone, Copy, Debug)]
+enum Held {
+    Text(usize, usize),
+    Number(f64),
+    Empty,
+}
+
+/// The text of rows in our form, which is written while it is read.
+struct Text {
+    rows: Arc<Rows>,
+    /// What is behind the cells of each row.
+    behind: String,
+    /// The row and the cell that come next.
+    next: (usize, usize),
+    /// What was written, and how much of it was read.
+    written: String,
+    read: usize,
+}
+
 /// A column.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Column {
@@ -45,21 +74,6 @@ pub(crate) struct Column {
     unit: Option<String>,
     /// What it was made of, where that has another name in the file.
     source: Option<String>,
-}
-
-/// The line of a row, and where its cells end.
-#[derive(Clone, Copy, Debug)]
-struct Row {
-    line: usize,
-    end: usize,
-}
-
-/// A cell that is held: a text by its end, behind that of the text before.
-#[derive(Clone, Copy, Debug)]
-enum Held {
-    Text(usize),
-    Number(f64),
-    Empty,
 }
 
 /// What a set of coordinates is called.
@@ -102,13 +116,9 @@ impl Column {
         Column { unit: Some(unit.to_owned()), ..self }
     }
 
-    /// The same with what it was made of.
-    pub(crate) fn made_of(self, source: String) -> Self {
-        Column { source: Some(source), ..self }
-    }
-
-    pub(crate) fn name(&self) -> &str {
-        &self.name
+    /// The same with what it was made of, by its name.
+    pub(crate) fn made_of(self, source: impl FnOnce(&str) -> String) -> Self {
+        Column { source: Some(source(&self.name)), ..self }
     }
 
     /// As it stands in a header.
@@ -146,17 +156,16 @@ impl Made {
 
     /// Adds a row of a line.
     pub(crate) fn row<'c>(&mut self, line: usize, cells: impl IntoIterator<Item = Value<'c>>) {
-        for value in cells {
-            self.cells.push(match value {
-                Value::Text(text) => {
-                    self.texts.push_str(text);
-                    Held::Text(self.texts.len())
-                }
-                Value::Number(number) => Held::Number(number),
-                Value::Empty => Held::Empty,
-            });
-        }
-        self.rows.push(Row { line, end: self.cells.len() });
+        let Rows { ends, cells: all, texts } = Arc::make_mut(&mut self.rows);
+        all.extend(cells.into_iter().map(|value| match value {
+            Value::Text(text) => {
+                texts.push_str(text);
+                Held::Text(texts.len() - text.len(), texts.len())
+            }
+            Value::Number(number) => Held::Number(number),
+            Value::Empty => Held::Empty,
+        }));
+        ends.push((line, all.len()));
     }
 
     /// The same with its frame as that of an instrument of this name.
@@ -177,6 +186,16 @@ impl Made {
         Some([Made { other: None, ..self.clone() }, other])
     }
 
+    /// Adds what was understood, in a few words.
+    pub(crate) fn say(&mut self, words: impl Into<String>) {
+        self.said.push(words.into());
+    }
+
+    /// Adds a sentence that should be looked at.
+    pub(crate) fn warn(&mut self, sentence: impl Into<String>) {
+        self.warned.push(sentence.into());
+    }
+
     /// Number of columns.
     pub(crate) fn width(&self) -> usize {
         self.columns.len()
@@ -184,60 +203,73 @@ impl Made {
 
     /// Number of rows.
     pub(crate) fn rows(&self) -> usize {
-        self.rows.len()
+        self.rows.ends.len()
     }
 
-    /// The columns and rows as a text in our form.
-    pub(crate) fn text(&self) -> String {
+    /// Its blocks, with where their lines are in the file, and with what was understood.
+    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
         let instrument = self.frame.as_deref().filter(|_| self.is_by_frame).map(cell);
-        let titles: Vec<String> = self.columns.iter().map(|it| cell(&it.title()).into_owned()).collect();
-        let mut text = titles.join(",");
-        text.push_str(if instrument.is_some() { ",instrument\n" } else { "\n" });
-        let (mut at, mut start) = (0, 0);
-        for row in &self.rows {
-            for (column, held) in self.cells.get(at..row.end).unwrap_or_default().iter().enumerate() {
-                if column > 0 {
-                    text.push(',');
-                }
-                match *held {
-                    Held::Text(end) => {
-                        text.push_str(&cell(self.texts.get(start..end).unwrap_or_default()));
-                        start = end;
-                    }
-                    Held::Number(number) => push_number(&mut text, number),
-                    Held::Empty => {}
-                }
-            }
-            at = row.end;
-            if let Some(instrument) = &instrument {
-                text.push(',');
-                text.push_str(instrument);
-            }
-            text.push('\n');
-        }
-        text
-    }
-
-    /// Where its lines are in the file.
-    pub(crate) fn places(&self) -> Places {
-        let sources = self.columns.iter().filter_map(|it| Some((it.title(), it.source.clone()?)));
-        Places {
-            lines: std::iter::once(self.head).chain(self.rows.iter().map(|it| it.line)).collect(),
+        let titles: Vec<String> = self.columns.iter().map(Column::title).collect();
+        let names = titles.iter().map(String::as_str).chain(instrument.iter().map(|_| "instrument"));
+        let names: Vec<_> = names.map(cell).collect();
+        let text = Text {
+            rows: Arc::clone(&self.rows),
+            behind: instrument.map_or_else(String::new, |it| format!(",{it}")) + "\n",
+            next: (0, 0),
+            written: names.join(",") + "\n",
+            read: 0,
+        };
+        let sources = titles.iter().zip(&self.columns);
+        let sources = sources.filter_map(|(title, column)| Some((title.clone(), column.source.clone()?)));
+        let places = Places {
+            lines: std::iter::once(self.head).chain(self.rows.ends.iter().map(|it| it.0)).collect(),
             sheet: self.sheet.clone(),
             form: self.title,
             understood: self.said.join("; "),
             sources: sources.collect(),
-        }
-    }
-
-    /// Its blocks.
-    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
-        let places = self.places();
+        };
         let colon = if places.understood.is_empty() { "" } else { ": " };
         let note = format!("{}: took it for {}{colon}{}", path.display(), self.title, places.understood);
         let warnings = self.warned.iter().map(|it| format!("{}: {it}", path.display())).collect();
-        Blocks::made(path, expected, self.text(), self.sha256.clone())
-            .with_places(places, Said { notes: vec![note], warnings })
+        let said = Said { notes: vec![note], warnings };
+        Blocks::made(path, expected, Box::new(text), self.sha256.clone()).with_places(places, said)
+    }
+}
+
+impl Text {
+    /// Writes the next row; false behind the last one.
+    fn advance(&mut self) -> bool {
+        let (row, start) = self.next;
+        let Some((_, end)) = self.rows.ends.get(row) else { return false };
+        for (column, held) in self.rows.cells.get(start..*end).unwrap_or_default().iter().enumerate() {
+            if column > 0 {
+                self.written.push(',');
+            }
+            match *held {
+                Held::Text(start, end) => {
+                    self.written.push_str(&cell(self.rows.texts.get(start..end).unwrap_or_default()));
+                }
+                Held::Number(number) => push_number(&mut self.written, number),
+                Held::Empty => {}
+            }
+        }
+        self.next = (row + 1, *end);
+        self.written.push_str(&self.behind);
+        true
+    }
+}
+
+impl io::Read for Text {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if self.read == self.written.len() {
+            self.written.clear();
+            self.read = 0;
+        }
+        while self.written.len() < into.len() && self.advance() {}
+        let mut rest = self.written.as_bytes().get(self.read..).unwrap_or_default();
+        let count = rest.read(into)?;
+        self.read += count;
+        Ok(count)
     }
 }
 
@@ -254,15 +286,21 @@ impl<T: Into<String>> From<T> for Refused {
     }
 }
 
+/// A line of a file.
+#[derive(Clone, Copy)]
+pub(crate) struct At(pub(crate) usize);
+
+impl At {
+    /// A file that is not read because of the line.
+    pub(crate) fn refuse<T>(self, message: impl Into<String>) -> Result<T, Refused> {
+        Err(Refused { line: Some(self.0), message: message.into() })
+    }
+}
+
 impl Refused {
     /// A file that is not read as a whole.
     pub(crate) fn whole<T>(message: impl Into<String>) -> Result<T, Self> {
         Err(message.into().into())
-    }
-
-    /// One that is not read because of a line.
-    pub(crate) fn at<T>(line: usize, message: impl Into<String>) -> Result<T, Self> {
-        Err(Refused { line: Some(line), message: message.into() })
     }
 
     /// Of an error without a file.

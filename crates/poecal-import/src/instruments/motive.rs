@@ -1,7 +1,7 @@
 //! Takes that Motive (OptiTrack) exported as CSV, versions 1.2 to 1.25: by the labels of their head, never by counting lines.
 
 use super::bodies::{Body, Frames, cells};
-use super::maker::{Made, Refused};
+use super::maker::{At, Made, Refused};
 use super::words::{lines, number};
 use super::{Form, Opening};
 
@@ -35,12 +35,9 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (_, head) = lines(text).next().ok_or("found no line")?;
     if let Some(other) = [';', '\t'].into_iter().find(|it| !head.contains(',') && head.contains(*it)) {
         let what = if other == ';' { "`;`" } else { "tabs" };
-        return Refused::at(
-            1,
-            format!(
+        return At(1).refuse(format!(
                 "found {what} between the cells of a take of Motive, expected commas, which Motive writes: export the take again"
-            ),
-        );
+            ));
     }
     let head = cells(head, ',');
     let value = |key: &str| {
@@ -48,25 +45,18 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         head.get(at + 1).copied()
     };
     let Some(stated) = value("Length Units") else {
-        return Refused::at(
-            1,
-            "found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters",
-        );
+        return At(1).refuse("found no `Length Units` in the head of a take of Motive, expected Meters, Centimeters or Millimeters");
     };
     let Some((_, unit)) = UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(stated)) else {
-        return Refused::at(
-            1,
-            format!("found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"),
-        );
+        return At(1).refuse(format!(
+            "found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"
+        ));
     };
     let labels = Labels::of(text)?;
     let (bodies, unnamed) = labels.bodies(value("Rotation Type").unwrap_or("Quaternion"))?;
     let is_time = |it: &&str| it.starts_with("Time") && !it.starts_with("TimeCode");
     let Some(time) = labels.axes.iter().position(is_time) else {
-        return Refused::at(
-            labels.line,
-            "found no column `Time`, expected the time of each frame in seconds",
-        );
+        return At(labels.line).refuse("found no column `Time`, expected the time of each frame in seconds");
     };
     let frames = Frames::of(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
     let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
@@ -74,7 +64,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let mut made = frames.table(&bodies, "body or marker", opening)?;
     let stated: Option<usize> = value("Total Exported Frames").and_then(|it| it.parse().ok());
     if let Some(stated) = stated.filter(|it| *it != frames.all.len()) {
-        made.said.push(format!("its head says {stated} frames, and it has {}", frames.all.len()));
+        made.say(format!("its head says {stated} frames, and it has {}", frames.all.len()));
     }
     Ok(made)
 }
@@ -153,12 +143,9 @@ impl<'t> Labels<'t> {
         };
         let bodies = of("Rigid Body");
         if bodies.iter().any(|it| it.quaternion.is_none()) && !rotation.eq_ignore_ascii_case("quaternion") {
-            return Refused::at(
-                1,
-                format!(
-                    "found the rotation type `{rotation}`, expected Quaternion: export the take with quaternions"
-                ),
-            );
+            return At(1).refuse(format!(
+                "found the rotation type `{rotation}`, expected Quaternion: export the take with quaternions"
+            ));
         }
         if !bodies.is_empty() {
             return Ok((bodies, Vec::new()));
@@ -170,10 +157,8 @@ impl<'t> Labels<'t> {
             (false, _) => Ok((named, unnamed)),
             // Those that are there from the beginning on, if their distances make a body of them.
             (true, false) => Ok((unnamed, named)),
-            (true, true) => Refused::at(
-                self.line,
-                "found neither a rigid body nor a marker with a name, expected one on the robot",
-            ),
+            (true, true) => At(self.line)
+                .refuse("found neither a rigid body nor a marker with a name, expected one on the robot"),
         }
     }
 }

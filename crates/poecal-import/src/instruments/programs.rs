@@ -1,6 +1,6 @@
 //! Joint readings of robot programs: RAPID, that of Rokae, KRL, FANUC's and URScript, in the order of their motions.
 
-use super::maker::{Column, Made, Refused, Value};
+use super::maker::{At, Column, Made, Refused, Value};
 use super::words::{lines, number};
 use super::{Form, Opening};
 use poecal_numerics::error::first_few;
@@ -56,22 +56,16 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             1 => ("a target".to_owned(), "is a pose"),
             count => (format!("{count} targets"), "are poses"),
         };
-        return Refused::at(
-            *line,
-            format!(
+        return At(*line).refuse(format!(
                 "found a program of {title} with {targets} that {are}, which say nothing of the joints, expected joint targets alone: write them from the \
                  controller's joint readings"
-            ),
-        );
+            ));
     }
     if let Some(listed) = found.listed.first() {
-        return Refused::at(
-            listed.line,
-            format!(
-                "found the target `{}` in a program of {title}, of which the joint readings are not known: {}",
-                listed.name, listed.reason
-            ),
-        );
+        return At(listed.line).refuse(format!(
+            "found the target `{}` in a program of {title}, of which the joint readings are not known: {}",
+            listed.name, listed.reason
+        ));
     }
     // Targets that are numbers in a motion have no name.
     let is_named = language != Language::UrScript;
@@ -87,8 +81,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             "found a program of {title} without joint targets, expected at least one"
         ));
     }
-    made.said
-        .push(format!("{title}, {} joint targets in the order of its motions, or of its text", made.rows()));
+    made.say(format!("{title}, {} joint targets in the order of its motions, or of its text", made.rows()));
     Ok(made)
 }
 
@@ -103,12 +96,12 @@ fn of_rokae(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let names = opening.robot.joint_reading_names();
     let mut made = begun(opening, true, 1);
     for (line, content) in lines(text).filter(|it| it.1.contains("jointtarget")) {
-        let (name, values) = rokae_target(content, &names).or_else(|message| Refused::at(line, message))?;
+        let (name, values) = rokae_target(content, &names).or_else(|message| At(line).refuse(message))?;
         let readings = values.into_iter().zip(opening.slides());
         let si = readings.map(|(value, slides)| if slides { value * 1e-3 } else { value.to_radians() });
         made.row(line, std::iter::once(Value::Text(name)).chain(si.map(Value::Number)));
     }
-    made.said.push(format!("joint targets of Rokae, {}, in degrees", made.rows()));
+    made.say(format!("joint targets of Rokae, {}, in degrees", made.rows()));
     Ok(made)
 }
 

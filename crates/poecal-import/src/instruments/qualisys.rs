@@ -1,7 +1,7 @@
 //! Files that Qualisys Track Manager exported as TSV: bodies (6D) or markers (3D), in millimetres.
 
 use super::bodies::{Body, Frame, Frames, cells};
-use super::maker::{Made, Refused, Value};
+use super::maker::{At, Made, Refused, Value};
 use super::words::{lines, number};
 use super::{Form, Opening};
 use nalgebra::{Matrix3, Vector3};
@@ -44,10 +44,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (first, step) = if is_posed {
         let Some(first) = place(0) else {
             let name = names.first().copied().unwrap_or_default();
-            return Refused::at(
-                line,
-                format!("found no column `{name} X`, expected the position of the first body"),
-            );
+            return At(line)
+                .refuse(format!("found no column `{name} X`, expected the position of the first body"));
         };
         (first, place(1).and_then(|it| it.checked_sub(first)).unwrap_or(POSED))
     } else {
@@ -81,7 +79,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         body.quaternion = Some([0, 1, 2, 3].map(|part| expected + 4 * at + part));
     }
     let mut made = frames.table(&bodies, "body", opening)?;
-    made.said.push("orientations are of the matrix, which agrees with the angles".to_owned());
+    made.say("orientations are of the matrix, which agrees with the angles");
     Ok(made)
 }
 
@@ -99,15 +97,12 @@ fn add_quaternions(frame: &mut Frame<'_>, bodies: &[Body], width: usize) -> Resu
         let off = rotation::log(&(by_angles.transpose() * matrix)).norm();
         let is_turn = (matrix.transpose() * matrix - Matrix3::identity()).amax() < AGREE_RAD;
         if !is_turn || !off.is_finite() || off >= AGREE_RAD {
-            return Refused::at(
-                frame.line,
-                format!(
+            return At(frame.line).refuse(format!(
                     "found a matrix Rot of `{}` that differs from Roll, Pitch, Yaw by {:.2} deg, expected the same rotation: export with the \
                      default angles (about x, then y, then z)",
                     body.name,
                     off.to_degrees()
-                ),
-            );
+                ));
         }
         more.extend(Pose::new(matrix, Vector3::zeros()).quaternion_xyzw().map(Value::Number));
     }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::words::quoted;
+use crate::join::join_words::numbered;
 use poecal_numerics::distributions::median;
-use poecal_numerics::error::first_few;
 
 /// Where each marker is in a frame, metres; none where it was not seen.
 pub(crate) type Places = Vec<Option<Vector3<f64>>>;
@@ -117,9 +117,16 @@ impl Group {
             .filter_map(|column| Some((column, place(column)?)))
             .take(MOST_PLACES)
             .collect();
-        let mut search = Search { group: self, places: &places, taken: Vec::new(), best: None };
+        let mut search = Search {
+            group: self,
+            places: &places,
+            taken: Vec::new(),
+            best: None,
+            count: 0,
+            is_unclear: false,
+        };
         search.next();
-        let found = search.best.filter(|it| it.count >= FEWEST && !it.is_unclear).map(|it| it.of);
+        let found = search.best.filter(|_| search.count >= FEWEST && !search.is_unclear);
         if is_right {
             // Nothing is wrong where no marker is found.
             let named: Vec<Option<usize>> =
@@ -137,16 +144,11 @@ struct Search<'g> {
     group: &'g Group,
     /// Columns and places.
     places: &'g [(usize, Vector3<f64>)],
-    /// The place of each marker so far, by its number.
-    taken: Vec<Option<usize>>,
-    best: Option<Assigned>,
-}
-
-/// Columns of the markers of a group.
-struct Assigned {
-    of: Vec<Option<usize>>,
+    /// The column and the place of each marker so far.
+    taken: Vec<Option<(usize, Vector3<f64>)>>,
+    /// The columns of most markers, their number, and whether others are as good.
+    best: Option<Vec<Option<usize>>>,
     count: usize,
-    /// Whether others are as good.
     is_unclear: bool,
 }
 
@@ -155,39 +157,28 @@ impl Search<'_> {
     fn next(&mut self) {
         let marker = self.taken.len();
         let count = self.taken.iter().flatten().count();
-        let least = self.best.as_ref().map_or(0, |it| it.count);
         let left = self.group.markers.len() - marker;
-        if count + left < least {
+        if count + left < self.count {
             return;
         }
         if left == 0 {
-            return self.judge(count);
-        }
-        for at in 0..self.places.len() {
-            let Some((_, place)) = self.places.get(at) else { continue };
-            let is_free = !self.taken.contains(&Some(at));
-            let fits = self.taken.iter().enumerate().all(|(other, it)| {
-                let other_place = it.and_then(|it| self.places.get(it));
-                other_place.is_none_or(|it| self.group.fits((marker, *place), (other, it.1)))
-            });
-            if is_free && fits {
-                self.taken.push(Some(at));
-                self.next();
-                self.taken.pop();
+            self.is_unclear = self.best.is_some() && count == self.count;
+            if !self.is_unclear {
+                self.best = Some(self.taken.iter().map(|it| it.map(|it| it.0)).collect());
+                self.count = count;
             }
+            return;
         }
-        self.taken.push(None);
-        self.next();
-        self.taken.pop();
-    }
-
-    fn judge(&mut self, count: usize) {
-        let column = |it: &Option<usize>| it.and_then(|at| self.places.get(at)).map(|it| it.0);
-        let of: Vec<Option<usize>> = self.taken.iter().map(column).collect();
-        match &mut self.best {
-            Some(best) if count == best.count => best.is_unclear = true,
-            Some(best) if count < best.count => {}
-            best => *best = Some(Assigned { of, count, is_unclear: false }),
+        let may_be = |taken: &[Option<(usize, Vector3<f64>)>], (column, place): (usize, Vector3<f64>)| {
+            taken.iter().enumerate().all(|(other, it)| {
+                it.is_none_or(|it| it.0 != column && self.group.fits((marker, place), (other, it.1)))
+            })
+        };
+        let possible: Vec<_> = self.places.iter().copied().filter(|it| may_be(&self.taken, *it)).collect();
+        for place in possible.into_iter().map(Some).chain([None]) {
+            self.taken.push(place);
+            self.next();
+            self.taken.pop();
         }
     }
 }
@@ -218,41 +209,32 @@ impl Renamed {
         lines: &[usize],
         is_seen: impl Fn(usize, usize) -> bool,
     ) -> (Vec<String>, Vec<String>) {
-        let line = |frame: &usize| lines.get(*frame).map_or_else(String::new, ToString::to_string);
-        let name = |column: usize| names.get(column).copied().unwrap_or_default();
+        let name = |column: &usize| names.get(*column).copied().unwrap_or_default();
         let mut exchanged: BTreeMap<Vec<usize>, Vec<String>> = BTreeMap::new();
         let (mut unnamed, mut lost) = (0, Vec::new());
         for (frame, of) in &self.frames {
-            let moved = of.iter().filter(|(marker, at)| at.is_some_and(|at| at != **marker));
-            let (own, others): (Vec<_>, Vec<_>) =
-                moved.partition(|(_, at)| at.is_some_and(|at| self.markers.contains(&at)));
-            if !own.is_empty() {
-                exchanged.entry(own.iter().map(|it| *it.0).collect()).or_default().push(line(frame));
-            }
+            let line = lines.get(*frame).map_or_else(String::new, ToString::to_string);
+            let moved =
+                of.iter().filter_map(|(marker, at)| Some((*marker, (*at)?))).filter(|it| it.0 != it.1);
+            let (own, others): (Vec<_>, Vec<_>) = moved.partition(|it| self.markers.contains(&it.1));
             unnamed += others.len();
             let is_left = |(marker, at): (&usize, &Option<usize>)| {
                 at.is_none() && is_seen(*frame, *marker) && !of.values().any(|it| *it == Some(*marker))
             };
             if of.iter().any(is_left) {
-                lost.push(line(frame));
+                lost.push(line.clone());
+            }
+            if !own.is_empty() {
+                exchanged.entry(own.iter().map(|it| it.0).collect()).or_default().push(line);
             }
         }
-        let frames =
-            |count: usize| if count == 1 { "one frame".to_owned() } else { format!("{count} frames") };
-        let at = |lines: &[String]| {
-            format!(
-                "{} (line{} {})",
-                frames(lines.len()),
-                if lines.len() == 1 { "" } else { "s" },
-                first_few(lines)
-            )
+        let at = |lines: &[String]| match lines.len() {
+            1 => format!("one frame ({})", numbered(lines)),
+            count => format!("{count} frames ({})", numbered(lines)),
         };
         let exchanges = exchanged.iter().map(|(markers, lines)| {
-            format!(
-                "exchanged the names of {} in {}, where their distances to the other markers are those of each other: check the labels there",
-                quoted(markers.iter().map(|it| name(*it))),
-                at(lines)
-            )
+            let (names, at) = (quoted(markers.iter().map(name)), at(lines));
+            format!("exchanged the names of {names} in {at}, where their distances to the other markers are those of each other: check the labels there")
         });
         let mut warned: Vec<String> = exchanges.collect();
         if !lost.is_empty() {

@@ -1,7 +1,7 @@
 //! The table of measurements that RoboDK's script for calibration writes: joints in degrees, poses of the target in millimetres with angles about
 //! x, then the new y, then the newest z, in radians, and the tool.
 
-use super::maker::{Made, Refused, Value, place, quaternion};
+use super::maker::{At, Made, Refused, Value, place, quaternion};
 use super::words::{Head, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
@@ -28,10 +28,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let joints: Vec<usize> = (1..).map_while(|number| head.at(&format!("J{number}"))).collect();
     if joints.len() != count {
         let found = joints.len();
-        return Refused::at(
-            head.line,
-            format!("found {found} columns J1, J2, …, expected {count} as the model has joints"),
-        );
+        return At(head.line)
+            .refuse(format!("found {found} columns J1, J2, …, expected {count} as the model has joints"));
     }
     let pose: Vec<usize> = POSE.into_iter().filter_map(|it| head.at(it)).collect();
     let columns = opening.joint_columns("deg").chain(place("mm")).chain(quaternion());
@@ -39,22 +37,19 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     for (line, found) in head.rows(text) {
         let values: Vec<f64> = pose.iter().map_while(|at| number(found.get(*at)?)).collect();
         let [_, _, _, a, b, c] = values[..] else {
-            return Refused::at(line, "found a row without X, Y, Z, rX, rY and rZ as numbers, expected them");
+            return At(line).refuse("found a row without X, Y, Z, rX, rY and rZ as numbers, expected them");
         };
         if [a, b, c].iter().any(|it| it.abs() > 7.0) {
-            return Refused::at(
-                line,
-                "found an angle beyond 7, expected radians, as RoboDK's script writes them",
-            );
+            return At(line)
+                .refuse("found an angle beyond 7, expected radians, as RoboDK's script writes them");
         }
         let turned = Pose::new(Angles::XYZ.rotation([a, b, c]), Vector3::zeros()).quaternion_xyzw();
         let texts = joints.iter().chain(pose.iter().take(3)).map(|at| Value::at(&found, *at));
         made.row(line, texts.chain(turned.into_iter().map(Value::Number)));
     }
-    made.said
-        .push(format!("{} poses, joints in deg, positions in mm, angles about x, y, z in rad", made.rows()));
+    made.say(format!("{} poses, joints in deg, positions in mm, angles about x, y, z in rad", made.rows()));
     if head.at("TCP X").is_some() {
-        made.said.push("the tool (TCP) is found anew".to_owned());
+        made.say("the tool (TCP) is found anew");
     }
     Ok(made)
 }

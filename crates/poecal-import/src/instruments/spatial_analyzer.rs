@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::maker::{Column, Made, Refused, Value, place};
+use super::maker::{At, Column, Made, Refused, Value, place};
 use super::words::{are_targets, cells, is_no_number, lines, number, repeats};
 use super::{Form, Opening};
 use crate::Separator;
@@ -53,12 +53,12 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let Comments { frame, is_cylindrical, unit } = Comments::of(text)?;
     let points = lines(text).filter(|it| comment(it.1).is_none());
-    let point = |(line, content): (usize, _)| Point::of(line, content).or_else(|why| Refused::at(line, why));
+    let point = |(line, content): (usize, _)| Point::of(line, content).or_else(|why| At(line).refuse(why));
     let points: Vec<Point<'_>> = points.map(point).collect::<Result<_, _>>()?;
     let first =
         points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
     refuse_unlike(first, &points)?;
-    let layout = Layout::of(first, &points).or_else(|why| Refused::at(first.line, why))?;
+    let layout = Layout::of(first, &points).or_else(|why| At(first.line).refuse(why))?;
     let (names, have_targets) = layout.names(&points);
     let sigmas = ["sigma_x", "sigma_y", "sigma_z"].map(|it| Column::from(it).in_unit(unit));
     let columns = std::iter::once(Column::from(if have_targets { "target" } else { "id" }))
@@ -79,23 +79,22 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
         made.row(point.line, std::iter::once(Value::Text(name)).chain(row));
     }
     let count = points.len();
-    made.said.push(match frame {
+    made.say(match frame {
         Some(frame) => format!("{count} points in frame `{frame}`, {unit}"),
         None => format!("{count} points, {unit}"),
     });
     made.frame = frame.map(str::to_owned);
     if is_cylindrical {
-        made.said.push("cylindrical coordinates became x, y, z".to_owned());
+        made.say("cylindrical coordinates became x, y, z");
     }
     if layout.has_offsets {
-        made.said.push("two offsets of each point are left out".to_owned());
+        made.say("two offsets of each point are left out");
     }
     if layout.has_uncertainties {
-        made.said
-            .push("three uncertainties of each point are taken as standard deviations of x, y, z".to_owned());
+        made.say("three uncertainties of each point are taken as standard deviations of x, y, z");
     }
     if have_targets {
-        made.said.push(format!("names come again, and are those of {} targets", different(&names)));
+        made.say(format!("names come again, and are those of {} targets", different(&names)));
     } else {
         let lines: Vec<usize> = points.iter().map(|it| it.line).collect();
         made.warned.extend(repeats(&names, &lines));
@@ -114,21 +113,15 @@ fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused>
     let (words, count) = counts(first);
     if let Some(other) = points.iter().find(|it| counts(it) != (words, count)) {
         let (own_words, own_count) = counts(other);
-        return Refused::at(
-            other.line,
-            format!(
-                "found {own_words} names and {own_count} numbers, expected {words} and {count} as in line {}",
-                first.line
-            ),
-        );
+        return At(other.line).refuse(format!(
+            "found {own_words} names and {own_count} numbers, expected {words} and {count} as in line {}",
+            first.line
+        ));
     }
     // A line that was cut has no time, and its last number may have been cut.
     let timed = points.iter().filter(|it| it.has_time).count();
     match points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
-        Some(other) => Refused::at(
-            other.line,
-            "found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out",
-        ),
+        Some(other) => At(other.line).refuse("found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out"),
         None => Ok(()),
     }
 }
@@ -151,18 +144,14 @@ impl<'t> Comments<'t> {
             Some("CARTESIAN") => false,
             Some("CYLINDRICAL") => true,
             _ => {
-                return Refused::at(
-                    line,
-                    "found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian",
-                );
+                return At(line).refuse("found coordinates that are neither Cartesian nor cylindrical, expected x, y and z: export the points as Cartesian");
             }
         };
         if unit.is_empty() {
-            return Refused::at(line, "found no unit in brackets, as `(mm)`, expected one");
+            return At(line).refuse("found no unit in brackets, as `(mm)`, expected one");
         }
         if is_cylindrical && !is_degrees {
-            return Refused::at(
-                line,
+            return At(line).refuse(
                 "found angles in another unit than degrees, expected deg: export the points as Cartesian",
             );
         }
@@ -178,13 +167,10 @@ fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t
     });
     let Some(first) = all.next() else { return Ok(None) };
     match all.find(|it| it.1 != first.1) {
-        Some((line, other)) => Refused::at(
-            line,
-            format!(
+        Some((line, other)) => At(line).refuse(format!(
                 "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
                 first.1
-            ),
-        ),
+            )),
         None => Ok(Some(first)),
     }
 }

@@ -1,7 +1,7 @@
 //! Reports with two sets of coordinates in a row, nominal and measured, as robot makers write them: a table for each set, of which the robot
 //! decides.
 
-use super::maker::{Called, Column, Made, Refused, Value};
+use super::maker::{At, Called, Column, Made, Refused, Value};
 use super::words::{Head, lines, name_and_unit, number};
 use super::{Form, Opening};
 use crate::table::numbered::plain;
@@ -11,23 +11,8 @@ pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinat
 /// Lines in which the header is sought.
 const FIRST: usize = 20;
 /// What a set is called that was wanted or computed, and one that was measured.
-const NOMINAL: [&str; 14] = [
-    "nominal",
-    "nom",
-    "theoretical",
-    "theory",
-    "ideal",
-    "command",
-    "commanded",
-    "cmd",
-    "desired",
-    "reference",
-    "ref",
-    "design",
-    "calculated",
-    "target",
-];
-const MEASURED: [&str; 7] = ["measured", "measurement", "meas", "actual", "act", "real", "laser"];
+const NOMINAL: &str = "nominal nom theoretical theory ideal command commanded cmd desired reference ref design calculated target";
+const MEASURED: &str = "measured measurement meas actual act real laser";
 /// Coordinates; the angles behind them have as many conventions as makers.
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "roll", "pitch", "yaw"];
@@ -51,8 +36,8 @@ struct Sets<'t> {
 }
 
 fn called(word: &str) -> Option<Called> {
-    let is = |words: &[&str]| words.contains(&word);
-    if is(&MEASURED) { Some(Called::Measured) } else { is(&NOMINAL).then_some(Called::Nominal) }
+    let is_of = |words: &str| words.split(' ').any(|it| it == word);
+    if is_of(MEASURED) { Some(Called::Measured) } else { is_of(NOMINAL).then_some(Called::Nominal) }
 }
 
 /// A name of a column as a coordinate, with what its set is called.
@@ -151,8 +136,8 @@ impl<'t> Sets<'t> {
             made.row(line, taken.iter().map(|at| Value::at(&found, *at)));
         }
         if self.parts.contains(&Part::Angle) {
-            made.said.push(
-                "the positions alone, since angles do not say their convention, which a mapping does (--columns)".to_owned(),
+            made.say(
+                "the positions alone, since angles do not say their convention, which a mapping does (--columns)",
             );
         }
         Ok(made)
@@ -167,7 +152,7 @@ fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
     let sets = Sets::of_text(text).ok_or("found no header")?;
     let (first, second) = (sets.table(text, 0)?, sets.table(text, 1)?);
     if first.rows() == 0 {
-        return Refused::at(sets.head.line, "found a header and no rows, expected rows below `x`");
+        return At(sets.head.line).refuse("found a header and no rows, expected rows below `x`");
     }
     Ok(first.with_other(sets.called, second))
 }

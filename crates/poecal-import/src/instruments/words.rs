@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::maker::Refused;
+use super::maker::{At, Refused};
 use crate::join::join_words::numbered;
 use crate::table::cells::{Separator, split};
 use crate::table::header::bracketed;
@@ -80,7 +80,7 @@ impl<'t> Head<'t> {
     pub(crate) fn refuse_longer(&self, line: usize, found: &[&str], header: &str) -> Result<(), Refused> {
         match (found.len(), self.names.len()) {
             (found, expected) if found > expected => {
-                Refused::at(line, format!("found {found} cells, expected {expected} as in {header}"))
+                At(line).refuse(format!("found {found} cells, expected {expected} as in {header}"))
             }
             _ => Ok(()),
         }

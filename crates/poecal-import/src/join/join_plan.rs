@@ -199,9 +199,11 @@ pub(crate) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result
         let error = opening.opened(path, MEASURED).err();
         return Ok(error.map_or_else(Found::whole, |it| Found::unreadable(&it)));
     }
-    let opened = opening.opened(path, MEASURED)?;
-    let table = if let Opened::Made(table) = &opened { Some((**table).clone()) } else { None };
-    let found = part_of(path, opened.blocks(path, MEASURED), opening, map);
+    let (blocks, table) = match opening.opened(path, MEASURED)? {
+        Opened::Own(blocks) => (*blocks, None),
+        Opened::Made(table) => (table.blocks(path, MEASURED), Some(*table)),
+    };
+    let found = part_of(path, blocks, opening, map);
     Ok(Found { table, ..found.unwrap_or_else(|error| Found::unreadable(&error)) })
 }
 

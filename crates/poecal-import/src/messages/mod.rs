@@ -17,7 +17,7 @@ use super::table::Table;
 use crate::pictures::lens_checks::{check, distortion, size_of_pictures};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::mapping::ColumnMap;
-use crate::table::text::{Blocks, Said};
+use crate::table::text::Blocks;
 use poecal_model::camera::{Board, Camera, Lens};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
@@ -30,15 +30,14 @@ impl Reader<'_> {
     pub(crate) fn messages(&mut self, path: &Path, mut blocks: Blocks<'_>) -> Result<()> {
         let text = blocks.rest()?;
         let made = self.corners_of_messages(&text).map_err(|error| error.with_path(path).in_file(path))?;
-        let rows = Blocks::made(path, "messages", made.text(), None);
-        let rows = rows.with_places(made.places(), Said::default());
+        let mut rows = made.blocks(path, "messages");
+        let warned = rows.said().warnings;
         // A column of the header is none of the file.
         let column = |error: &Error| error.place().and_then(|place| place.column);
         Table::open(path, rows, &ColumnMap::default())
             .and_then(|table| self.corners(path, table))
             .map_err(|error| if column(&error).is_some() { error.without_line() } else { error })?;
         self.found.sha256.extend(blocks.sha256().map(|sha256| (path.display().to_string(), sha256)));
-        let warned = made.warned.iter().map(|it| format!("{}: {it}", path.display()));
         self.found.warnings.extend(warned);
         Ok(())
     }
@@ -92,11 +91,11 @@ impl Reader<'_> {
         let others: Vec<&str> = others.filter(|name| !joints.iter().any(|own| own.0 == *name)).collect();
         made.warned.extend(camera.into_iter().chain(board));
         if !others.is_empty() {
-            made.warned.push(format!("ignored the joints {}", first_few(&others)));
+            made.warn(format!("ignored the joints {}", first_few(&others)));
         }
         if !without.is_empty() {
             let names = first_few(&without);
-            made.warned.push(format!("left out {} messages without pixels: {names}", without.len()));
+            made.warn(format!("left out {} messages without pixels: {names}", without.len()));
         }
         Ok(made)
     }
@@ -180,9 +179,10 @@ impl Reader<'_> {
         for body in &bodies.0 {
             let Board { name, points, .. } = &body.board;
             let is_mounted = self.robot.mounted.iter().any(|mount| mount.name == *name);
-            let link = (!is_mounted)
-                .then(|| format!(": --target {name}=LINK says on which link of a URDF it is"))
-                .unwrap_or_default();
+            let link = match is_mounted {
+                true => String::new(),
+                false => format!(": --target {name}=LINK says on which link of a URDF it is"),
+            };
             names.push(format!("`{name}` ({} points of the sensor {}){link}", points.len(), body.sensor));
             match self.boards.iter().find(|own| own.name == *name) {
                 Some(own) if own.points != *points => {

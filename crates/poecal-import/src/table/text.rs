@@ -1,6 +1,6 @@
 //! Text of a file and its lines.
 
-use std::io::{Cursor, Read};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::configurations::{self, Configurations};
@@ -24,7 +24,7 @@ const FIRST_LINES: usize = 64;
 enum TextSource {
     File(Hashing<Input>),
     /// Made of other files, with the checksum of their bytes.
-    Made(Cursor<Vec<u8>>, Option<String>),
+    Made(Box<dyn Read>, Option<String>),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
@@ -75,14 +75,19 @@ impl<'a> Blocks<'a> {
             return Blocks::open(path, expected);
         }
         let Configurations { text, sha256, left } = configurations::read(path)?;
-        let mut blocks = Blocks::made(path, expected, text, Some(sha256));
+        let mut blocks = Blocks::made(path, expected, Box::new(Cursor::new(text)), Some(sha256));
         blocks.said.warnings.extend(left.iter().map(ToString::to_string));
         Ok(blocks)
     }
 
     /// The blocks of a text that was made of a file or a folder, with the checksum of its bytes.
-    pub(crate) fn made(path: &'a Path, expected: &'a str, text: String, sha256: Option<String>) -> Self {
-        Blocks::of(path, expected, TextSource::Made(Cursor::new(text.into_bytes()), sha256), BLOCK)
+    pub(crate) fn made(
+        path: &'a Path,
+        expected: &'a str,
+        text: Box<dyn Read>,
+        sha256: Option<String>,
+    ) -> Self {
+        Blocks::of(path, expected, TextSource::Made(text, sha256), BLOCK)
     }
 
     /// The same with the places of its lines, and what was understood.
@@ -113,7 +118,7 @@ impl<'a> Blocks<'a> {
     /// The blocks of a text that messages call `path`, of so many bytes per read.
     #[cfg(test)]
     pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
-        Blocks::of(path, "a table (CSV)", TextSource::Made(Cursor::new(text.to_vec()), None), size)
+        Blocks::of(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
     }
 
     fn of(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
@@ -236,7 +241,7 @@ impl<'a> Blocks<'a> {
         })?;
         let sha256 = self.sha256();
         self.said.notes.push("the text is UTF-16".to_owned());
-        self.source = TextSource::Made(Cursor::default(), sha256);
+        self.source = TextSource::Made(Box::new(io::empty()), sha256);
         Ok(text.into_bytes())
     }
 

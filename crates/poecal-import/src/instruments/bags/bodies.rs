@@ -91,20 +91,13 @@ impl Body {
 
     /// Its table, with or without orientations, and with times since a whole second.
     pub(crate) fn table(&self, topic: &str, is_posed: bool, since_s: i64) -> Made {
-        const PARTS: [&str; 7] = [
-            "position.x",
-            "position.y",
-            "position.z",
-            "orientation.x",
-            "orientation.y",
-            "orientation.z",
-            "orientation.w",
-        ];
         let words = self.words(topic);
-        let made_of = |column: Column, part: &str| column.made_of(format!("{part} of {words}"));
-        let time = made_of(Column::from("time").in_unit("s"), "stamp");
-        let parts = place("m").chain(quaternion()).zip(PARTS).map(|(column, part)| made_of(column, part));
-        let mut made = Made::new(1, std::iter::once(time).chain(parts.take(if is_posed { 7 } else { 3 })));
+        let time = Column::from("time").in_unit("s").made_of(|_| format!("stamp of {words}"));
+        let position = place("m").map(|it| it.made_of(|name| format!("position.{name} of {words}")));
+        let part = |name: &str| format!("orientation.{} of {words}", name.trim_start_matches('q'));
+        let turned = quaternion().map(|it| it.made_of(part));
+        let columns = std::iter::once(time).chain(position).chain(turned.filter(|_| is_posed));
+        let mut made = Made::new(1, columns);
         for (time, at, Seen { position, quaternion }) in self.seen.sorted(since_s) {
             let is_seen = is_stated(position) && (!is_posed || is_stated(quaternion));
             let numbers = position.iter().chain(quaternion.iter().filter(|_| is_posed));
@@ -112,7 +105,7 @@ impl Body {
             made.row(at + 1, std::iter::once(Value::Number(time)).chain(cells));
         }
         let what = if is_posed { "poses" } else { "points" };
-        made.said.push(format!(
+        made.say(format!(
             "{} {what} of {words} in the frame `{}`, m; lines are its messages",
             made.rows(),
             self.parent

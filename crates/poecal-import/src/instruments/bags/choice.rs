@@ -27,7 +27,7 @@ impl Measured<'_> {
     pub(crate) fn table(&self, since_s: i64) -> Made {
         let mut made = self.body.table(&self.topic.name, self.bodies.are_posed(), since_s);
         if !self.left.is_empty() {
-            made.said.push(format!("left out {}", first_few(&self.left)));
+            made.say(format!("left out {}", first_few(&self.left)));
         }
         made
     }
@@ -87,10 +87,7 @@ pub(crate) fn joints<'t>(
     options: &ReadOptions,
 ) -> Result<(&'t Topic, &'t Readings), Missing> {
     let what = "no joint readings (sensor_msgs/msg/JointState)";
-    let all = wanted(topics, options, what, |it| match it {
-        Content::Joints(readings) => Some(readings),
-        _ => None,
-    })?;
+    let all = wanted(topics, options, what, Content::readings)?;
     let having: Vec<_> = all.iter().filter(|it| it.1.held() > 0).copied().collect();
     match having.as_slice() {
         [one] => whole(one.0).map(|()| *one),
@@ -112,10 +109,7 @@ pub(crate) fn joints<'t>(
 /// What was measured.
 pub(crate) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Result<Measured<'t>, Missing> {
     let what = "nothing measured (PoseStamped, PointStamped, TransformStamped or TFMessage)";
-    let all = wanted(topics, options, what, |it| match it {
-        Content::Bodies(bodies) => Some(bodies),
-        _ => None,
-    })?;
+    let all = wanted(topics, options, what, Content::bodies)?;
     let own = |it: &(&'t Topic, &'t Bodies)| {
         let (topic, bodies) = *it;
         bodies.all.iter().map(move |body| Measured { topic, bodies, body, left: Vec::new() })

@@ -101,26 +101,19 @@ pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
         return Ok(damage);
     }
     while topics.refused.is_none() {
-        let opcode = match next(&mut input, &mut data)? {
-            Ok(opcode) => opcode,
+        let mut times = (0, 0);
+        let taken = match next(&mut input, &mut data)? {
             Err(why) => {
                 damage.end = Some((at, why));
-                return Ok(damage);
+                break;
             }
-        };
-        match opcode {
-            op::DATA_END | op::FOOTER => return Ok(damage),
+            Ok(op::DATA_END | op::FOOTER) => break,
             // Chunks are unpacked here: one that is damaged is left out as a whole.
-            op::CHUNK => {
-                if let Err((why, times)) = chunk(&data, &mut unpacked, topics) {
-                    damage.add(at, why, times);
-                }
-            }
-            _ => {
-                if let Err(why) = record(opcode, &data, topics) {
-                    damage.add(at, why, (0, 0));
-                }
-            }
+            Ok(op::CHUNK) => chunk(&data, &mut unpacked, topics, &mut times),
+            Ok(opcode) => record(opcode, &data, topics),
+        };
+        if let Err(why) = taken {
+            damage.add(at, why, times);
         }
         at = at.saturating_add((HEAD + data.len()) as u64);
     }
@@ -161,37 +154,36 @@ fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bo
     Ok(input.take(size as u64).read_to_end(into)? == size)
 }
 
-/// Takes the records of a chunk, or says why not, with the times of its messages.
-fn chunk(data: &[u8], unpacked: &mut Vec<u8>, topics: &mut Topics<'_>) -> Result<(), (String, (u64, u64))> {
+/// Takes the records of a chunk, or says why not; puts the times of its messages into `times`.
+fn chunk(
+    data: &[u8],
+    unpacked: &mut Vec<u8>,
+    topics: &mut Topics<'_>,
+    times: &mut (u64, u64),
+) -> Result<(), String> {
     let mut fields = Fields(data);
-    let head = |fields: &mut Fields<'_>| {
-        let times = (fields.u64()?, fields.u64()?);
-        Some((times, fields.u64()?, fields.u32()?))
-    };
-    let Some((times, size, crc)) = head(&mut fields) else { return Err((SHORT.to_owned(), (0, 0))) };
-    let with_times = |why: String| (why, times);
-    let short = || with_times(SHORT.to_owned());
-    let how = text(&mut fields).ok_or_else(short)?;
-    let packed = fields.u64().and_then(|size| fields.bytes(usize::try_from(size).ok()?)).ok_or_else(short)?;
-    let mut records = packed;
+    let head = |fields: &mut Fields<'_>| Some(((fields.u64()?, fields.u64()?), fields.u64()?, fields.u32()?));
+    let (stated, size, crc) = head(&mut fields).ok_or(SHORT)?;
+    *times = stated;
+    let how = text(&mut fields).ok_or(SHORT)?;
+    let mut records = fields.counted().ok_or(SHORT)?;
     if !how.is_empty() {
         if size > Limit::Chunk.most() {
-            return Err(with_times(too_large("a chunk", size)));
+            return Err(too_large("a chunk", size));
         }
-        unpack(packed, how, size, unpacked).map_err(with_times)?;
+        unpack(records, how, size, unpacked)?;
         records = unpacked;
     }
     if records.len() as u64 != size {
-        return Err(with_times(format!("{} bytes, expected {size}", records.len())));
+        return Err(format!("{} bytes, expected {size}", records.len()));
     }
     if crc != 0 && crc32fast::hash(records) != crc {
-        return Err(with_times("another checksum than stated".to_owned()));
+        return Err("another checksum than stated".to_owned());
     }
     let mut rest = Fields(records);
     while !rest.0.is_empty() && topics.refused.is_none() {
-        let (Some(opcode), Some(size)) = (rest.u8(), rest.u64()) else { return Err(short()) };
-        let own = usize::try_from(size).ok().and_then(|size| rest.bytes(size)).ok_or_else(short)?;
-        record(opcode, own, topics).map_err(with_times)?;
+        let (opcode, own) = rest.u8().zip(rest.counted()).ok_or(SHORT)?;
+        record(opcode, own, topics)?;
     }
     Ok(())
 }
@@ -214,7 +206,7 @@ fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String
         }
         Some(())
     };
-    take().ok_or_else(|| SHORT.to_owned())
+    Ok(take().ok_or(SHORT)?)
 }
 
 /// What is found in place of a record that ends too soon.

@@ -81,23 +81,21 @@ impl Readings {
     pub(crate) fn table(&self, topic: &str, columns: impl Iterator<Item = Column>, since_s: i64) -> Made {
         let columns = columns.zip(&self.joints);
         let columns =
-            columns.map(|(column, joint)| column.made_of(format!("position of `{joint}` in {topic}")));
+            columns.map(|(column, joint)| column.made_of(|_| format!("position of `{joint}` in {topic}")));
         let mut made = Made::new(1, std::iter::once(Column::from("time").in_unit("s")).chain(columns));
         let width = self.joints.len();
         for (time, at, number) in self.rows.sorted(since_s) {
             let values = self.values.get(at * width..(at + 1) * width).unwrap_or_default();
             made.row(*number, std::iter::once(&time).chain(values).copied().map(Value::Number));
         }
-        made.said
-            .push(format!("{} joint readings of `{topic}`, rad and m; lines are its messages", made.rows()));
+        made.say(format!("{} joint readings of `{topic}`, rad and m; lines are its messages", made.rows()));
         let others = self.messages - self.held() - self.infinite;
         if others > 0 {
-            made.said.push(format!("left out {others} messages of other joints"));
+            made.say(format!("left out {others} messages of other joints"));
         }
         if self.infinite > 0 {
             let count = self.infinite;
-            made.warned
-                .push(format!("`{topic}`: left out {count} messages with readings that are no numbers"));
+            made.warn(format!("`{topic}`: left out {count} messages with readings that are no numbers"));
         }
         made.warned.extend(self.rows.clock().warning(topic));
         made

@@ -22,18 +22,17 @@ pub(crate) enum Content {
 }
 
 impl Content {
-    /// Number of readings or poses that are held.
-    fn held(&self) -> usize {
-        match self {
-            Content::Joints(readings) => readings.held(),
-            Content::Bodies(bodies) => bodies.held,
-            Content::Other => 0,
-        }
+    pub(crate) fn readings(&self) -> Option<&Readings> {
+        if let Content::Joints(readings) = self { Some(readings) } else { None }
     }
 
-    /// Number of bodies.
-    fn frames(&self) -> usize {
-        if let Content::Bodies(bodies) = self { bodies.all.len() } else { 0 }
+    pub(crate) fn bodies(&self) -> Option<&Bodies> {
+        if let Content::Bodies(bodies) = self { Some(bodies) } else { None }
+    }
+
+    /// Number of readings or poses that are held.
+    fn held(&self) -> usize {
+        self.readings().map_or(0, Readings::held) + self.bodies().map_or(0, |it| it.held)
     }
 }
 
@@ -77,7 +76,7 @@ impl Topic {
 
     /// Whether its messages name the bodies that they are about.
     pub(crate) fn names_bodies(&self) -> bool {
-        matches!(&self.content, Content::Bodies(bodies) if bodies.all.iter().any(|it| !it.child.is_empty()))
+        self.content.bodies().is_some_and(|it| it.all.iter().any(|it| !it.child.is_empty()))
     }
 
     /// Takes a message.
@@ -173,7 +172,7 @@ impl<'a> Topics<'a> {
                 let before = topic.content.held();
                 topic.take(log_ns, message);
                 self.held += topic.content.held() - before;
-                if topic.content.frames() > Limit::Topics.most_held() {
+                if topic.content.bodies().map_or(0, |it| it.all.len()) > Limit::Topics.most_held() {
                     self.refused = Some(Limit::Topics.exceeded("one topic"));
                 } else if self.held > Limit::Poses.most_held() {
                     self.refused = Some(Limit::Poses.exceeded("the messages of a bag"));

@@ -224,10 +224,10 @@ impl Found {
             made.row(self.line(row), typed);
         }
         let (name, first) = (&self.sheet.name, self.rows.first().map_or(0, |at| self.line(*at)));
-        made.said.push(format!("sheet `{name}`, {} rows from row {first} on", self.rows.len()));
+        made.say(format!("sheet `{name}`, {} rows from row {first} on", self.rows.len()));
         if !stored.is_empty() {
             let stored = first_few(&stored);
-            made.warned.push(format!(
+            made.warn(format!(
                 "sheet `{name}`: numbers that are stored as text are read as numbers: {stored}"
             ));
         }
