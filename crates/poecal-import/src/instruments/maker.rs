@@ -206,21 +206,24 @@ impl Made {
         self.rows.ends.len()
     }
 
-    /// Its blocks, with where their lines are in the file, and with what was understood.
-    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+    /// Its text from the header on.
+    fn reader(&self) -> Text {
         let instrument = self.frame.as_deref().filter(|_| self.is_by_frame).map(cell);
         let titles: Vec<String> = self.columns.iter().map(Column::title).collect();
         let names = titles.iter().map(String::as_str).chain(instrument.iter().map(|_| "instrument"));
         let names: Vec<_> = names.map(cell).collect();
-        let text = Text {
+        Text {
             rows: Arc::clone(&self.rows),
             behind: instrument.map_or_else(String::new, |it| format!(",{it}")) + "\n",
             next: (0, 0),
             written: names.join(",") + "\n",
             read: 0,
-        };
-        let sources = titles.iter().zip(&self.columns);
-        let sources = sources.filter_map(|(title, column)| Some((title.clone(), column.source.clone()?)));
+        }
+    }
+
+    /// Its blocks, with where their lines are in the file, and with what was understood.
+    pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
+        let sources = self.columns.iter().filter_map(|it| Some((it.title(), it.source.clone()?)));
         let places = Places {
             lines: std::iter::once(self.head).chain(self.rows.ends.iter().map(|it| it.0)).collect(),
             sheet: self.sheet.clone(),
@@ -232,7 +235,7 @@ impl Made {
         let note = format!("{}: took it for {}{colon}{}", path.display(), self.title, places.understood);
         let warnings = self.warned.iter().map(|it| format!("{}: {it}", path.display())).collect();
         let said = Said { notes: vec![note], warnings };
-        Blocks::made(path, expected, Box::new(text), self.sha256.clone()).with_places(places, said)
+        Blocks::made(path, expected, Box::new(self.reader()), self.sha256.clone()).with_places(places, said)
     }
 }
 
@@ -315,5 +318,43 @@ impl Refused {
             Some(line) => error.at_line(path, line),
             None => error.in_file(path),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text of a table, when so many bytes are read at a time, with the line of the file of each line.
+    fn text(made: &Made, size: usize) -> (String, Vec<usize>) {
+        let mut blocks = made.blocks(Path::new("x.txt"), "a table");
+        blocks.begin().unwrap();
+        let places = blocks.places().unwrap().lines.clone();
+        let rows = Text { written: String::new(), ..made.reader() };
+        let mut reader = io::BufReader::with_capacity(size, rows);
+        let mut found = String::new();
+        io::Read::read_to_string(&mut reader, &mut found).unwrap();
+        assert!(blocks.text().ends_with(&found));
+        (blocks.text().to_owned(), places)
+    }
+
+    #[test]
+    fn typed_cells_become_a_text_that_reads_back_the_same() {
+        let columns = [Column::from("a,b"), Column::from("x").in_unit("mm"), Column::from("=c")];
+        let mut made = Made::new(3, columns).of_file("a form", None);
+        made.row(5, [Value::Text("=1+1"), Value::Number(0.1 + 0.2), Value::Empty]);
+        made.row(9, [Value::Text("-1.5"), Value::Number(-0.0), Value::Text("say \"hi\"")]);
+        made.row(7, []);
+        for size in [1, 3, 1 << 16] {
+            let (found, lines) = text(&made, size);
+            let expected = "\"a,b\",x[mm],'=c\n'=1+1,0.30000000000000004,\n-1.5,0,\"say \"\"hi\"\"\"\n\n";
+            assert_eq!((found.as_str(), lines), (expected, vec![3, 5, 9, 7]), "{size}");
+        }
+        made.frame = Some("A, B".to_owned());
+        let (found, _) = text(&made.by_frame(), 1);
+        assert!(
+            found.starts_with("\"a,b\",x[mm],'=c,instrument\n'=1+1,0.30000000000000004,,\"A, B\"\n"),
+            "{found}"
+        );
     }
 }

@@ -6,8 +6,7 @@ use super::words::{Head, lines, number};
 use super::{Form, Opening};
 use crate::Separator;
 use nalgebra::Vector3;
-use poecal_arm::lie::Pose;
-use poecal_arm::lie::angles::Angles;
+use poecal_arm::lie::{Pose, rotation};
 
 pub(crate) const FORM: Form = Form { title: "measurements of RoboDK", is_it, table };
 
@@ -43,7 +42,9 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             return At(line)
                 .refuse("found an angle beyond 7, expected radians, as RoboDK's script writes them");
         }
-        let turned = Pose::new(Angles::XYZ.rotation([a, b, c]), Vector3::zeros()).quaternion_xyzw();
+        let turn = |axis: Vector3<f64>, angle: f64| rotation::exp(&(axis * angle));
+        let turned = turn(Vector3::x(), a) * turn(Vector3::y(), b) * turn(Vector3::z(), c);
+        let turned = Pose::new(turned, Vector3::zeros()).quaternion_xyzw();
         let texts = joints.iter().chain(pose.iter().take(3)).map(|at| Value::at(&found, *at));
         made.row(line, texts.chain(turned.into_iter().map(Value::Number)));
     }
