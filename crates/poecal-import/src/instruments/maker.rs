@@ -47,10 +47,10 @@ struct Rows {
     texts: String,
 }
 
-/// A cell that is held: a text by where it is among those of all cells.
+/// A cell that is held: a text by its end, behind that of the text before.
 #[derive(Clone, Copy, Debug)]
 enum Held {
-    Text(usize, usize),
+    Text(usize),
     Number(f64),
     Empty,
 }
@@ -60,8 +60,8 @@ struct Text {
     rows: Arc<Rows>,
     /// What is behind the cells of each row.
     behind: String,
-    /// The row and the cell that come next.
-    next: (usize, usize),
+    /// The row, the cell and the text that come next.
+    next: [usize; 3],
     /// What was written, and how much of it was read.
     written: String,
     read: usize,
@@ -160,7 +160,7 @@ impl Made {
         all.extend(cells.into_iter().map(|value| match value {
             Value::Text(text) => {
                 texts.push_str(text);
-                Held::Text(texts.len() - text.len(), texts.len())
+                Held::Text(texts.len())
             }
             Value::Number(number) => Held::Number(number),
             Value::Empty => Held::Empty,
@@ -215,7 +215,7 @@ impl Made {
         Text {
             rows: Arc::clone(&self.rows),
             behind: instrument.map_or_else(String::new, |it| format!(",{it}")) + "\n",
-            next: (0, 0),
+            next: [0; 3],
             written: names.join(",") + "\n",
             read: 0,
         }
@@ -242,21 +242,22 @@ impl Made {
 impl Text {
     /// Writes the next row; false behind the last one.
     fn advance(&mut self) -> bool {
-        let (row, start) = self.next;
+        let [row, start, mut text] = self.next;
         let Some((_, end)) = self.rows.ends.get(row) else { return false };
         for (column, held) in self.rows.cells.get(start..*end).unwrap_or_default().iter().enumerate() {
             if column > 0 {
                 self.written.push(',');
             }
             match *held {
-                Held::Text(start, end) => {
-                    self.written.push_str(&cell(self.rows.texts.get(start..end).unwrap_or_default()));
+                Held::Text(end) => {
+                    self.written.push_str(&cell(self.rows.texts.get(text..end).unwrap_or_default()));
+                    text = end;
                 }
                 Held::Number(number) => push_number(&mut self.written, number),
                 Held::Empty => {}
             }
         }
-        self.next = (row + 1, *end);
+        self.next = [row + 1, *end, text];
         self.written.push_str(&self.behind);
         true
     }
