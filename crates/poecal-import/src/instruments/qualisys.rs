@@ -68,19 +68,25 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     if !is_posed {
         return frames.table(&bodies, "marker", opening);
     }
-    for it in &bodies {
+    add_orientations(&mut frames, &mut bodies, expected)?;
+    let mut made = frames.table(&bodies, "body", opening)?;
+    made.say("orientations are of the matrix, which agrees with the angles");
+    Ok(made)
+}
+
+/// Adds the orientations of bodies behind the cells of the frames, of which so many are in the header.
+fn add_orientations(frames: &mut Frames<'_>, bodies: &mut [Body], width: usize) -> Result<(), Refused> {
+    for it in bodies.iter() {
         let start = it.position[0];
         frames.refuse_words(&it.name, &(start..start + POSED).collect::<Vec<_>>())?;
     }
     for frame in &mut frames.all {
-        add_quaternions(frame, &bodies, expected)?;
+        add_quaternions(frame, bodies, width)?;
     }
     for (at, body) in bodies.iter_mut().enumerate() {
-        body.quaternion = Some([0, 1, 2, 3].map(|part| expected + 4 * at + part));
+        body.quaternion = Some([0, 1, 2, 3].map(|part| width + 4 * at + part));
     }
-    let mut made = frames.table(&bodies, "body", opening)?;
-    made.say("orientations are of the matrix, which agrees with the angles");
-    Ok(made)
+    Ok(())
 }
 
 /// Adds the quaternion of each body behind the cells of a frame, of which so many are in the header.
