@@ -230,8 +230,8 @@ impl<'t> Frames<'t> {
                 {
                     let (word, body) = (shown(word), shown(body));
                     return At(frame.line).refuse(format!(
-                            "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where it was not seen"
-                        ));
+                        "found `{word}` in a column of `{body}`, expected a number: leave the cell empty where it was not seen"
+                    ));
                 }
             }
         }

@@ -65,11 +65,11 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         3 if count != 3 => Ok(points(rows, is_named)),
         4 if !is_named && count != 3 && count != 4 && rows.iter().all(is_whole) => Ok(points(rows, true)),
         _ => At(first).refuse(format!(
-                "found a table without names of columns, with {}{numbers} numbers in a row, expected {count} joint readings, with a time or a name \
-                 before them, or x, y, z of a point, with its name before them: put a line above that names the columns, or number them in a mapping \
-                 (--columns), like `position = {{ columns = [1, 2, 3] }}`",
-                if is_named { "a name and " } else { "" }
-            )),
+            "found a table without names of columns, with {}{numbers} numbers in a row, expected {count} joint readings, with a time or a name \
+             before them, or x, y, z of a point, with its name before them: put a line above that names the columns, or number them in a mapping \
+             (--columns), like `position = {{ columns = [1, 2, 3] }}`",
+            if is_named { "a name and " } else { "" }
+        )),
     }
 }
 

@@ -36,8 +36,8 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     if let Some(other) = [';', '\t'].into_iter().find(|it| !head.contains(',') && head.contains(*it)) {
         let what = if other == ';' { "`;`" } else { "tabs" };
         return At(1).refuse(format!(
-                "found {what} between the cells of a take of Motive, expected commas, which Motive writes: export the take again"
-            ));
+            "found {what} between the cells of a take of Motive, expected commas, which Motive writes: export the take again"
+        ));
     }
     let head = cells(head, ',');
     let value = |key: &str| {

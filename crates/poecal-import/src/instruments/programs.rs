@@ -57,9 +57,9 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             count => (format!("{count} targets"), "are poses"),
         };
         return At(*line).refuse(format!(
-                "found a program of {title} with {targets} that {are}, which say nothing of the joints, expected joint targets alone: write them from the \
-                 controller's joint readings"
-            ));
+            "found a program of {title} with {targets} that {are}, which say nothing of the joints, expected joint targets alone: write them from the \
+             controller's joint readings"
+        ));
     }
     if let Some(listed) = found.listed.first() {
         return At(listed.line).refuse(format!(

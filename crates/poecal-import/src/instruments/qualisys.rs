@@ -104,11 +104,11 @@ fn add_quaternions(frame: &mut Frame<'_>, bodies: &[Body], width: usize) -> Resu
         let is_turn = (matrix.transpose() * matrix - Matrix3::identity()).amax() < AGREE_RAD;
         if !is_turn || !off.is_finite() || off >= AGREE_RAD {
             return At(frame.line).refuse(format!(
-                    "found a matrix Rot of `{}` that differs from Roll, Pitch, Yaw by {:.2} deg, expected the same rotation: export with the \
-                     default angles (about x, then y, then z)",
-                    body.name,
-                    off.to_degrees()
-                ));
+                "found a matrix Rot of `{}` that differs from Roll, Pitch, Yaw by {:.2} deg, expected the same rotation: export with the \
+                 default angles (about x, then y, then z)",
+                body.name,
+                off.to_degrees()
+            ));
         }
         more.extend(Pose::new(matrix, Vector3::zeros()).quaternion_xyzw().map(Value::Number));
     }

@@ -168,9 +168,9 @@ fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t
     let Some(first) = all.next() else { return Ok(None) };
     match all.find(|it| it.1 != first.1) {
         Some((line, other)) => At(line).refuse(format!(
-                "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
-                first.1
-            )),
+            "found `{other}` as {what} of the points below, and `{}` above, expected one in a file: write the points of each into a file of its own",
+            first.1
+        )),
         None => Ok(Some(first)),
     }
 }

@@ -24,7 +24,7 @@ const FIRST_LINES: usize = 64;
 enum TextSource {
     File(Hashing<Input>),
     /// Made of other files, with the checksum of their bytes.
-    Made(Box<dyn Read>, Option<String>),
+    Made(Box<dyn Read + Send>, Option<String>),
 }
 
 /// A text in blocks of whole lines, so that large files are never held whole.
@@ -84,7 +84,7 @@ impl<'a> Blocks<'a> {
     pub(crate) fn made(
         path: &'a Path,
         expected: &'a str,
-        text: Box<dyn Read>,
+        text: Box<dyn Read + Send>,
         sha256: Option<String>,
     ) -> Self {
         Blocks::of(path, expected, TextSource::Made(text, sha256), BLOCK)
