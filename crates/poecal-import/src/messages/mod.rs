@@ -233,20 +233,18 @@ impl Reader<'_> {
 
 /// The readings of a message in the order of the joints.
 fn readings(message: &Message<'_>, joints: &Joints) -> Result<Vec<f64>> {
-    let reading = |(name, _): &(String, bool)| {
-        let found = message.joints.iter().find(|(own, _)| own == name);
-        found.map_or_else(
-            || {
-                let names: Vec<&str> = message.joints.iter().map(|it| it.0).collect();
-                let names = first_few(&names);
-                message.node.refuse(format!(
-                    "found no joint `{name}` in `joint_states` ({names}), expected it in each message"
-                ))
-            },
-            |(_, value)| Ok(*value),
-        )
-    };
-    joints.iter().map(reading).collect()
+    let mut readings = Vec::with_capacity(joints.len());
+    for (name, _) in joints {
+        let Some((_, value)) = message.joints.iter().find(|(own, _)| own == name) else {
+            let names: Vec<&str> = message.joints.iter().map(|it| it.0).collect();
+            let names = first_few(&names);
+            return message.node.refuse(format!(
+                "found no joint `{name}` in `joint_states` ({names}), expected it in each message"
+            ));
+        };
+        readings.push(*value);
+    }
+    Ok(readings)
 }
 
 /// The lens of the pictures, and what its region changed in words.

@@ -15,7 +15,7 @@ use poecal_storage::limits::Limit;
 use super::super::fields::Fields;
 use super::archive::Parts;
 use super::cells::{Found, Left, ReadSheet, broken};
-use super::numbers::{Styles, long, short, wide};
+use super::numbers::{Shared, long, short, wide};
 
 /// Kinds of records.
 mod kind {
@@ -109,15 +109,6 @@ impl<'b> Iterator for Records<'b> {
     }
 }
 
-/// What the sheets of a workbook share.
-#[derive(Default)]
-struct Shared {
-    /// Names of the sheets and of their parts.
-    sheets: Vec<(String, String)>,
-    texts: Vec<String>,
-    styles: Styles,
-}
-
 /// The sheets of a binary workbook; `None` of an archive that is none.
 ///
 /// # Errors
@@ -129,47 +120,61 @@ pub(crate) fn sheets(bytes: &[u8], parts: Parts) -> Result<Option<Vec<ReadSheet>
         format!("the workbook cannot be read ({error}), expected a workbook that is whole: save it again")
     };
     let Some(workbook) = archive.part(WORKBOOK).map_err(damaged)? else { return Ok(None) };
-    let shared = Shared::of(&mut archive, &workbook).map_err(damaged)?;
+    let (shared, named) = shared(&mut archive, &workbook).map_err(damaged)?;
     if shared.texts.len() as u64 > Limit::Cells.most() {
         return Err(Limit::Cells.exceeded("the texts of this workbook"));
     }
-    parts.refuse_sheets(shared.sheets.len())?;
+    parts.refuse_sheets(named.len())?;
     let mut left = Left::of_workbook();
     let mut found = Vec::new();
-    for (name, path) in &shared.sheets {
-        let sheet = archive.part(path).and_then(|it| it.ok_or_else(|| format!("there is no part `{path}`")));
-        let sheet = sheet.map_err(|error| broken(name, &error))?;
-        found.push((name.clone(), shared.range(&sheet, name, &mut left)?));
+    for (name, path) in named {
+        let sheet = archive.part(&path).and_then(|it| it.ok_or_else(|| format!("there is no part `{path}`")));
+        let sheet = sheet.map_err(|error| broken(&name, &error))?;
+        let range = shared.range(&sheet, &name, &mut left)?;
+        found.push((name, range));
     }
     Ok(Some(found))
 }
 
-impl Shared {
-    fn of(archive: &mut Archive<'_>, workbook: &[u8]) -> Result<Self, String> {
-        let mut shared = Shared::default();
-        let paths = paths(&archive.part("xl/_rels/workbook.bin.rels")?.unwrap_or_default());
-        let mut is_1904 = false;
-        for record in Records::of(workbook) {
-            match record? {
-                (kind::DATES, mut data) => is_1904 = data.u8().is_some_and(|it| it & 1 != 0),
-                (kind::SHEET, data) => {
-                    let (link, name) = link_and_name(data).ok_or(SHORT_RECORD)?;
-                    let path = paths.get(&link).filter(|it| it.contains("worksheets/"));
-                    shared.sheets.extend(path.map(|it| (name, it.clone())));
-                }
-                _ => {}
+/// What the sheets share, and their names with those of their parts.
+fn shared(archive: &mut Archive<'_>, workbook: &[u8]) -> Result<(Shared, Vec<(String, String)>), String> {
+    let (mut shared, mut named) = (Shared::default(), Vec::new());
+    let paths = paths(&archive.part("xl/_rels/workbook.bin.rels")?.unwrap_or_default());
+    for record in Records::of(workbook) {
+        match record? {
+            (kind::DATES, mut data) => shared.is_1904 = data.u8().is_some_and(|it| it & 1 != 0),
+            (kind::SHEET, data) => {
+                let (link, name) = link_and_name(data).ok_or(SHORT_RECORD)?;
+                let path = paths.get(&link).filter(|it| it.contains("worksheets/"));
+                named.extend(path.map(|it| (name, it.clone())));
             }
+            _ => {}
         }
-        for record in Records::of(&archive.part("xl/sharedStrings.bin")?.unwrap_or_default()) {
-            if let (kind::SHARED_TEXT, mut data) = record? {
-                let text = data.u8().and_then(|_| text(&mut data));
-                shared.texts.push(text.ok_or(SHORT_RECORD)?);
-            }
-        }
-        shared.styles = styles(&archive.part("xl/styles.bin")?.unwrap_or_default(), is_1904)?;
-        Ok(shared)
     }
+    for record in Records::of(&archive.part("xl/sharedStrings.bin")?.unwrap_or_default()) {
+        if let (kind::SHARED_TEXT, mut data) = record? {
+            let text = data.u8().and_then(|_| text(&mut data));
+            shared.texts.push(text.ok_or(SHORT_RECORD)?);
+        }
+    }
+    // Formats, and the list of the styles of cells, which names them.
+    let (mut styles, mut is_of_cells) = (Vec::new(), false);
+    for record in Records::of(&archive.part("xl/styles.bin")?.unwrap_or_default()) {
+        match record? {
+            (kind::FORMAT, mut data) => shared.formats.extend(data.u16().zip(text(&mut data))),
+            (kind::STYLES, _) => is_of_cells = true,
+            (kind::END_OF_STYLES, _) => is_of_cells = false,
+            (kind::STYLE, mut data) if is_of_cells => {
+                styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default());
+            }
+            _ => {}
+        }
+    }
+    shared.take_styles(&styles);
+    Ok((shared, named))
+}
 
+impl Shared {
     /// The cells of a sheet.
     fn range(&self, sheet: &[u8], name: &str, left: &mut Left) -> Result<Range<Data>, String> {
         let (mut found, mut row) = (Found::default(), 0);
@@ -194,12 +199,12 @@ impl Shared {
     fn value(&self, kind: u16, mut data: Fields<'_>) -> Option<Data> {
         // The upper byte is none of the style.
         let (style, _) = (data.u16()?, data.u16()?);
-        let number = |value| self.styles.number(value, style).unwrap_or(Data::Empty);
+        let number = |value| self.number(value, style).unwrap_or(Data::Empty);
         Some(match kind {
             kind::SHORT => number(short(&mut data)?),
             kind::NUMBER | kind::FORMULA => number(long(&mut data)?),
             kind::TEXT | kind::FORMULA_TEXT => Data::String(text(&mut data)?),
-            kind::OF_TEXTS => Data::String(self.texts.get(data.index()?)?.clone()),
+            kind::OF_TEXTS => self.text(&mut data)?,
             kind::FLAG | kind::FORMULA_FLAG => Data::Bool(data.u8()? != 0),
             kind::ERROR | kind::FORMULA_ERROR => Data::Error(error(data.u8()?)),
             _ => Data::Empty,
@@ -218,23 +223,6 @@ fn error(code: u8) -> CellErrorType {
         0x2B => CellErrorType::GettingData,
         _ => CellErrorType::Value,
     }
-}
-
-/// Which styles are dates: formats, and the list of the styles of cells, which names them.
-fn styles(part: &[u8], is_1904: bool) -> Result<Styles, String> {
-    let (mut formats, mut styles, mut is_of_cells) = (Vec::new(), Vec::new(), false);
-    for record in Records::of(part) {
-        match record? {
-            (kind::FORMAT, mut data) => formats.extend(data.u16().zip(text(&mut data))),
-            (kind::STYLES, _) => is_of_cells = true,
-            (kind::END_OF_STYLES, _) => is_of_cells = false,
-            (kind::STYLE, mut data) if is_of_cells => {
-                styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default());
-            }
-            _ => {}
-        }
-    }
-    Ok(Styles::of(&formats, &styles, is_1904))
 }
 
 /// A text with its number of letters before it.

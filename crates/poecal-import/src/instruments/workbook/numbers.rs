@@ -1,25 +1,28 @@
-//! Numbers of workbooks that are read here: how they are stored, and which are dates by their styles.
+//! Cells of workbooks that are read here: how numbers are stored, and what cells share: texts, and the styles that say which are dates.
 
 use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
 
 use super::super::fields::Fields;
 
-/// The styles of cells.
+/// What the cells of a workbook share.
 #[derive(Default)]
-pub(crate) struct Styles {
+pub(crate) struct Shared {
+    pub(crate) texts: Vec<String>,
+    /// Formats of their own by number.
+    pub(crate) formats: Vec<(u16, String)>,
+    pub(crate) is_1904: bool,
     /// Whether cells of a style are dates.
     dates: Vec<bool>,
-    is_1904: bool,
 }
 
-impl Styles {
-    /// Of formats of their own by number, and of the number of the format of each style.
-    pub(crate) fn of(formats: &[(u16, String)], styles: &[u16], is_1904: bool) -> Self {
+impl Shared {
+    /// Takes the styles of cells, by the numbers of their formats.
+    pub(crate) fn take_styles(&mut self, styles: &[u16]) {
         let is_date = |style: &u16| {
-            let stated = formats.iter().rev().find(|it| it.0 == *style);
+            let stated = self.formats.iter().rev().find(|it| it.0 == *style);
             stated.map_or(matches!(style, 14..=22 | 27..=36 | 45..=47 | 50..=58), |it| is_of_dates(&it.1))
         };
-        Styles { dates: styles.iter().map(is_date).collect(), is_1904 }
+        self.dates = styles.iter().map(is_date).collect();
     }
 
     /// A number of a style.
@@ -27,6 +30,11 @@ impl Styles {
         let is_date = self.dates.get(usize::from(style)).copied().unwrap_or_default();
         let date = || ExcelDateTime::new(value, ExcelDateTimeType::DateTime, self.is_1904);
         value.is_finite().then(|| if is_date { Data::DateTime(date()) } else { Data::Float(value) })
+    }
+
+    /// A text by its number, which comes next.
+    pub(crate) fn text(&self, fields: &mut Fields<'_>) -> Option<Data> {
+        self.texts.get(fields.index()?).cloned().map(Data::String)
     }
 }
 

@@ -5,7 +5,7 @@ use calamine::Data;
 use super::super::fields::Fields;
 use super::cells::{Found, Left, ReadSheet};
 use super::container::workbook;
-use super::numbers::{Styles, long, short, wide};
+use super::numbers::{Shared, long, short, wide};
 
 /// Kinds of records.
 mod kind {
@@ -61,14 +61,6 @@ impl<'b> Iterator for Records<'b> {
     }
 }
 
-/// What the sheets of a workbook share.
-#[derive(Default)]
-struct Shared {
-    sheets: Vec<(usize, String)>,
-    texts: Vec<String>,
-    styles: Styles,
-}
-
 /// The sheets of a workbook.
 ///
 /// # Errors
@@ -78,42 +70,45 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
         "found a container of an old office program without a workbook, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
          save the table as `CSV UTF-8`",
     )?;
-    let shared = Shared::of(&stream)?;
+    let (shared, named) = shared(&stream)?;
     let mut left = Left::of_workbook();
     let mut found = Vec::new();
-    for (start, name) in &shared.sheets {
+    for (start, name) in named {
         let mut cells = Found::default();
-        shared.read(stream.get(*start..).unwrap_or_default(), &mut cells, &mut left)?;
-        found.push((name.clone(), cells.range(&mut left)));
+        shared.read(stream.get(start..).unwrap_or_default(), &mut cells, &mut left)?;
+        found.push((name, cells.range(&mut left)));
     }
     Ok(found)
 }
 
-impl Shared {
-    fn of(stream: &[u8]) -> Result<Self, String> {
-        let (mut shared, mut formats, mut styles, mut is_1904) =
-            (Shared::default(), Vec::new(), Vec::new(), false);
-        for Record { kind, parts } in Records(Fields(stream)) {
-            let mut data = Fields(parts.first().copied().unwrap_or_default());
-            match kind {
-                kind::BEGIN if data.u16() != Some(VERSION) => {
-                    return Err("found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx".to_owned());
-                }
-                kind::LOCKED => {
-                    return Err("found a workbook with a password, expected one without: save its table as `CSV UTF-8`".to_owned());
-                }
-                kind::DATES => is_1904 = data.u16() == Some(1),
-                kind::FORMAT => formats.extend(data.u16().zip(text(&mut data))),
-                kind::STYLE => styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default()),
-                kind::SHEET => shared.sheets.extend(sheet(data)),
-                kind::TEXTS => shared.texts = texts(&parts),
-                _ => {}
+/// What the sheets share, and where each begins, with its name.
+fn shared(stream: &[u8]) -> Result<(Shared, Vec<(usize, String)>), String> {
+    let (mut shared, mut named, mut styles) = (Shared::default(), Vec::new(), Vec::new());
+    for Record { kind, parts } in Records(Fields(stream)) {
+        let mut data = Fields(parts.first().copied().unwrap_or_default());
+        match kind {
+            kind::BEGIN if data.u16() != Some(VERSION) => {
+                return Err("found a workbook of Excel 95 or earlier, expected one of Excel 97 or later: save it as .xlsx".to_owned());
             }
+            kind::LOCKED => {
+                return Err(
+                    "found a workbook with a password, expected one without: save its table as `CSV UTF-8`"
+                        .to_owned(),
+                );
+            }
+            kind::DATES => shared.is_1904 = data.u16() == Some(1),
+            kind::FORMAT => shared.formats.extend(data.u16().zip(text(&mut data))),
+            kind::STYLE => styles.push(data.u16().and_then(|_| data.u16()).unwrap_or_default()),
+            kind::SHEET => named.extend(sheet(data)),
+            kind::TEXTS => shared.texts = texts(&parts),
+            _ => {}
         }
-        shared.styles = Styles::of(&formats, &styles, is_1904);
-        Ok(shared)
     }
+    shared.take_styles(&styles);
+    Ok((shared, named))
+}
 
+impl Shared {
     /// Reads the cells of a sheet.
     fn read(&self, stream: &[u8], cells: &mut Found, left: &mut Left) -> Result<(), String> {
         // Where a formula is whose text comes in a record of its own.
@@ -135,20 +130,16 @@ impl Shared {
                     waiting = (*first == 0).then_some(place);
                     None
                 }
-                (kind::NUMBER | kind::FORMULA, _) => {
-                    long(&mut data).and_then(|it| self.styles.number(it, style))
-                }
-                (kind::SHORT, _) => short(&mut data).and_then(|it| self.styles.number(it, style)),
+                (kind::NUMBER | kind::FORMULA, _) => long(&mut data).and_then(|it| self.number(it, style)),
+                (kind::SHORT, _) => short(&mut data).and_then(|it| self.number(it, style)),
                 (kind::LABEL | kind::RICH, _) => text(&mut data).map(Data::String),
-                (kind::OF_TEXTS, _) => {
-                    data.index().and_then(|at| self.texts.get(at)).cloned().map(Data::String)
-                }
+                (kind::OF_TEXTS, _) => self.text(&mut data),
                 (kind::FLAG, [flag, 0, ..]) => Some(Data::Bool(*flag != 0)),
                 (kind::SEVERAL, _) => {
                     for (next, own) in (0_u32..).zip(several) {
                         let mut own = Fields(own);
                         let value = own.u16().zip(short(&mut own));
-                        let value = value.and_then(|(style, it)| self.styles.number(it, style));
+                        let value = value.and_then(|(style, it)| self.number(it, style));
                         value.map_or(Ok(()), |it| cells.add((place.0, place.1 + next), it, left))?;
                     }
                     None
