@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::summary::{Detail, expected, leading};
+use super::summary::{Detail, Leading, expected};
 use super::table::{line, number, number_or_dash};
 use poecal_model::robot::Robot;
 use poecal_numerics::text::visible;
@@ -108,11 +108,13 @@ impl From<ChiSquare> for TestEntry {
 
 impl SideEntry {
     fn new((name, file): (&str, &CalibrationFile)) -> Self {
-        let (set, rows) = leading(file);
+        let leading = Leading::of(file);
+        let set = leading.set;
         let quantity = set.calibrated.leading().map(|(quantity, _)| quantity);
-        let rms = rows.iter().filter_map(|(model, errors, _)| {
-            Some(ModelEntry { model: model.clone(), rms: errors.get(quantity?)?.rms })
-        });
+        let rms = leading
+            .rows()
+            .into_iter()
+            .filter_map(|(model, errors, _)| Some(ModelEntry { model, rms: errors.get(quantity?)?.rms }));
         SideEntry {
             calibration: name.to_owned(),
             model: file.inputs.model.clone(),

@@ -15,6 +15,8 @@ use poecal_model::measurement::Dataset;
 
 /// Distance of a target from the tip, in reaches, that no tool has.
 const FAR_TARGET: f64 = 3.0;
+/// Share of the error with the zero of distances freed below which the terms of joints explain more than it.
+const MORE: f64 = 0.8;
 
 /// What residuals show beside the fit.
 pub(crate) struct Signs {
@@ -51,10 +53,14 @@ impl CalibratedFit<'_> {
     pub(crate) fn signs(&self, summary: &FitSummary, figures: &Figures, finds_moves: bool) -> Signs {
         let Figures { accuracy, robustness, .. } = figures;
         let apart = self.frames_apart(accuracy);
-        let diagnosis = match &apart {
+        let mut diagnosis = match &apart {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => self.diagnosed(summary),
         };
+        // What one more unknown explains of distances may be what joints do.
+        let corrected = figures.correction.as_ref().filter(|it| it.has_terms());
+        let left_mm = corrected.map_or(f64::INFINITY, |it| it.training.lead().rms);
+        diagnosis.retain(|it| it.kind != DiagnosisKind::DistanceZero || left_mm > MORE * it.after_mm);
         let of_steps = || finds_moves.then(|| self.moved()).flatten();
         let moved = apart.as_ref().map(FramesApart::moved).or_else(of_steps);
         let input = self.input_doubts(accuracy, robustness, moved.as_ref());

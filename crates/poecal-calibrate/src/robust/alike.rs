@@ -16,22 +16,21 @@ const COMMON_TAILS: f64 = 8.0;
 pub(crate) struct Configurations {
     /// Those of two rows or more.
     groups: Vec<Vec<u32>>,
-    /// Mean number of fitted rows per configuration and target.
+    /// Mean number of fitted rows per configuration and subject ([`Dataset::subject`]).
     pub(crate) repeats: f64,
 }
 
 impl Configurations {
     /// Groups the data, and counts the fitted rows.
     pub(crate) fn new(data: &Dataset, fitted: &[u32]) -> Self {
-        let target = |row: u32| data.observations[row as usize].target;
-        // Of several rows of a target in one configuration the first counts.
+        // Of several rows of a subject in one configuration the first counts.
         let over_again: usize = data
             .grouped(fitted)
             .into_iter()
             .map(|mut rows| {
                 let count = rows.len();
-                rows.sort_by_key(|&row| target(row));
-                rows.dedup_by_key(|row| target(*row));
+                rows.sort_by_key(|&row| data.subject(row));
+                rows.dedup_by_key(|row| data.subject(*row));
                 count - rows.len()
             })
             .sum();

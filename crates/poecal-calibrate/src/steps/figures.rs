@@ -6,11 +6,12 @@ use super::trust::trust;
 use crate::corrections::CorrectedFit;
 use crate::robust::RobustFit;
 use crate::run::Run;
+use crate::run::accuracy::model_accuracy;
 use crate::run::located::located;
 use crate::run::split::too_few_to_hold_out;
 use crate::trust::coverage_check::held_out_check;
 use crate::trust::domain::Domain;
-use crate::{Accuracy, Correction, JointEffect, Models, Robustness, Trust, set_accuracy};
+use crate::{Accuracy, Correction, JointEffect, Models, Robustness, SetAccuracy, Trust, set_accuracy};
 use poecal_fit::analysis::{Identifiability, Setup, identifiability};
 use poecal_fit::start::{register, register_again};
 use poecal_fit::state::{Estimate, Session};
@@ -73,8 +74,6 @@ impl CalibratedFit<'_> {
         let (run, session, RobustFit { fitted, robustness }) = (&self.run, self.session(), &self.robust);
         let models = self.models(&session, &summary.kept);
         let of = |rows: &[u32]| set_accuracy(&session, rows, &models);
-        let rows = [&run.fit_rows[..], &run.held_out_rows[..]];
-        let robustness = robustness.clone().beside(rows, of);
         let mut trust = trust(
             &summary.view(session, &self.estimate),
             summary,
@@ -86,6 +85,11 @@ impl CalibratedFit<'_> {
         if let Some(found) = correction.as_ref().filter(|it| !it.has_terms()) {
             self.allow_for_terms(&session, &mut trust, (found, &models.registered));
         }
+        let with_terms = |rows: &[u32]| {
+            let errors = correction.as_ref().map(|it| it.errors(&run.data, rows));
+            SetAccuracy { corrected: errors.map(|it| model_accuracy(&run.data, rows, &it)), ..of(rows) }
+        };
+        let robustness = robustness.clone().beside([&run.fit_rows, &run.held_out_rows], with_terms);
         let predicted = trust.uncertainty.as_ref().map(|it| (it, &trust.coverage[..]));
         let of_calibrated = (&session, &models.calibrated);
         trust.held_out = held_out_check(of_calibrated, (&run.fit_rows, &run.held_out_rows), predicted);

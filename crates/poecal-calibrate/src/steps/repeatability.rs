@@ -53,9 +53,9 @@ pub fn repeatability(calibration: &Calibration, data: &Dataset) -> Vec<RepeatedP
     poses.collect()
 }
 
-/// Rows of one target, quantity and configuration (the readings of the group's first row), at least [`ROWS`].
+/// Rows of one subject ([`Dataset::subject`]), quantity and configuration (the readings of the group's first row), at least [`ROWS`].
 fn groups(data: &Dataset) -> Vec<Vec<u32>> {
-    let class = |row: u32| (data.observations[row as usize].target, leading(data, row));
+    let class = |row: u32| (data.subject(row), leading(data, row));
     data.alike(&data.all_rows(), SAME, ROWS, class)
 }
 

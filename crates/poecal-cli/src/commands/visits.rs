@@ -79,7 +79,8 @@ impl Visited {
         };
         let new = new.map(|path| read_joints(path, &self.robot, &self.meaning)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());
-        let found = witnesses(&self.file, rows.data, readings, count, target, &self.options)?;
+        let kept = rows.kept(&self.file);
+        let found = witnesses(&self.file, &kept, readings, count, target, &self.options)?;
         let told = report::WitnessPlan::new(&found, &self.file.robot.name, new.is_some());
         let table =
             measurements::to_measure_again(&found.rows, &found.configurations, &self.robot, new.is_some())?;

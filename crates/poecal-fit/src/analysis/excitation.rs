@@ -150,7 +150,7 @@ impl Excitation {
             Some(JointKind::Prismatic) => STILL_M,
             Some(JointKind::Revolute) | None => STILL_RAD,
         };
-        let (mut all, mut of_targets) = (BTreeSet::new(), BTreeSet::new());
+        let (mut all, mut of_subjects) = (BTreeSet::new(), BTreeSet::new());
         for &row in setup.rows {
             let observation = setup.session.observation(row);
             if self.numbers >= unknowns && self.seen[observation.target] > 1 {
@@ -160,7 +160,7 @@ impl Excitation {
             let place: Vec<i64> = values.map(|(joint, value)| (value / step(joint)).round() as i64).collect();
             all.insert(place.clone());
             let way = setup.estimate.tree.route_index(observation.into());
-            if of_targets.insert((observation.target, way, place)) {
+            if of_subjects.insert((setup.session.data.subject(row), way, place)) {
                 self.numbers += observation.measurement.dim();
                 self.seen[observation.target] += 1;
             }

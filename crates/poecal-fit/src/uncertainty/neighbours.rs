@@ -11,14 +11,14 @@ use poecal_model::measurement::ByQuantity;
 const PROBES: usize = 400;
 const NEIGHBOURS: usize = 4000;
 
-/// Of each quantity, whether the residuals of one target in neighbouring configurations are correlated significantly (theory.md §9,
+/// Of each quantity, whether the residuals of one subject in neighbouring configurations are correlated significantly (theory.md §9,
 /// *Neighbours*).
 pub(crate) fn alike(view: &View<'_>) -> ByQuantity<bool> {
     let pool = sample_rows(view.rows, NEIGHBOURS);
     let mut errors = view.session.errors(&pool, view.estimate);
     turn_to_first(view.session.data, &pool, view.estimate, &mut errors);
     let spans = view.spans(view.rows);
-    let targets: Vec<usize> = pool.iter().map(|&row| view.session.observation(row).target).collect();
+    let subjects: Vec<_> = pool.iter().map(|&row| view.session.data.subject(row)).collect();
     let step = pool.len().div_ceil(PROBES).max(1);
     let joints = scaled(view, &spans, &pool);
     let mut sums: ByQuantity<PairSums> = ByQuantity::default();
@@ -27,7 +27,7 @@ pub(crate) fn alike(view: &View<'_>) -> ByQuantity<bool> {
         square_distances(&joints, a, &mut distances);
         let (mut nearest, mut least) = (None, f64::INFINITY);
         for (b, &distance) in distances.iter().enumerate() {
-            if distance < least && b != a && targets[b] == targets[a] {
+            if distance < least && b != a && subjects[b] == subjects[a] {
                 (nearest, least) = (Some(b), distance);
             }
         }

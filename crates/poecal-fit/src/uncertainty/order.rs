@@ -1,5 +1,7 @@
 //! Correlation of residuals along the order of the rows.
 
+use std::collections::BTreeMap;
+
 use super::clusters::SIGNIFICANT;
 use super::view::View;
 use poecal_model::measurement::Quantity;
@@ -10,7 +12,7 @@ const PAIRS: usize = 20;
 /// too, and a correlation of residuals is no evidence of drift.
 const ORDERED: f64 = 0.5;
 
-/// Correlation of the residuals of one target in consecutive rows, if it is significant and no joint follows the order of the rows. In
+/// Correlation of the residuals of one subject in consecutive rows, if it is significant and no joint follows the order of the rows. In
 /// white noise the correlation of m components has the standard deviation `1/√m` (theory.md §9, *Order*).
 pub(crate) fn correlation(view: &View<'_>) -> Option<f64> {
     let mut rows = view.rows.to_vec();
@@ -19,12 +21,11 @@ pub(crate) fn correlation(view: &View<'_>) -> Option<f64> {
         return None;
     }
     let errors = view.session.errors(&rows, view.estimate);
-    let mut last: Vec<Option<(usize, u32)>> = vec![None; view.session.data.targets.len()];
+    let mut last: BTreeMap<(usize, Option<usize>), (usize, u32)> = BTreeMap::new();
     let (mut products, mut squares, mut components) = (0.0, 0.0, 0usize);
     for (at, &row) in rows.iter().enumerate() {
         let observation = view.session.observation(row);
-        let Some(last) = last.get_mut(observation.target) else { continue };
-        let before = last.replace((at, observation.source.file));
+        let before = last.insert(view.session.data.subject(row), (at, observation.source.file));
         let Some((before, file)) = before else { continue };
         // Rows of one configuration share the robot's error.
         let is_elsewhere =

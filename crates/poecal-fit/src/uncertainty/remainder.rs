@@ -23,6 +23,8 @@ const FEW: usize = 300;
 const UNMEASURED_M: f64 = 1e9;
 /// Largest share of what is left that counts as the rounding of the readings.
 const ROUNDED: f64 = 0.5;
+/// Configurations that the belief counts for that they err alike.
+const BELIEVED: f64 = 2.0;
 /// Residuals below this (metres, radians) are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -33,6 +35,8 @@ pub struct Part {
     pub mean_square: f64,
     /// Its degrees of freedom.
     pub freedom: f64,
+    /// Those of configurations: what all numbers of one are off by varies together where it is the robot's.
+    pub of_configurations: f64,
     /// Mean square of a component within configurations, and its degrees of freedom; both zero without repeated rows.
     pub within: (f64, f64),
     /// Mean number of rows of a configuration.
@@ -107,7 +111,7 @@ impl Part {
                 robot: (variance - rounded).max(0.0).sqrt(),
                 instrument: (instrument + rounded).sqrt(),
                 attribution: Attribution::Robot,
-                freedom: self.freedom,
+                freedom: self.of_configurations,
             }
         };
         if self.mean_square.sqrt() < ROUNDING {
@@ -155,7 +159,7 @@ pub struct Remainder {
     pub variance: f64,
     /// Effective number of unknowns that the measurements determine (theory.md §6 (34)).
     pub effective_unknowns: f64,
-    /// Numbers measured, those of one target in one configuration counted once.
+    /// Numbers measured, those that were measured again in one configuration counted once.
     pub numbers: usize,
 }
 
@@ -177,10 +181,11 @@ struct ResidualSums {
     variances: f64,
     components: usize,
     groups: usize,
+    configurations: usize,
 }
 
 impl ResidualSums {
-    /// Adds the rows of one target in one configuration.
+    /// Adds the rows of one subject ([`Dataset::subject`](poecal_model::measurement::Dataset::subject)) in one configuration.
     fn add(&mut self, quantity: Quantity, rows: &[Deviation]) {
         let mut rows: Vec<&Deviation> =
             rows.iter().filter(|row| !row.error.part(quantity).is_empty()).collect();
@@ -228,9 +233,11 @@ impl ResidualSums {
             self.squares / freedom
         };
         let variance = self.variances / self.components.max(1) as f64;
+        let share = self.configurations as f64 / self.groups.max(1) as f64;
         Part {
             mean_square,
             freedom,
+            of_configurations: (share * freedom + BELIEVED).min(freedom),
             within: (if is_repeated { self.within / within_freedom } else { 0.0 }, within_freedom),
             repeats,
             // Of all rows: noise alone explains those within configurations as well as the others.
@@ -259,9 +266,10 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     let place = |row: u32| sample.binary_search(&row).ok().and_then(|at| errors.get(at));
     for rows in &configurations {
         let mut rows: Vec<u32> = rows.clone();
-        rows.sort_by_key(|&row| (view.session.observation(row).target, row));
-        let target = |row: &u32| view.session.observation(*row).target;
-        for same in rows.chunk_by(|a, b| target(a) == target(b)) {
+        let subject = |row: &u32| view.session.data.subject(*row);
+        rows.sort_by_key(|row| (subject(row), *row));
+        let before = sums.map(|sums| sums.groups);
+        for same in rows.chunk_by(|a, b| subject(a) == subject(b)) {
             let of = |row: u32| {
                 let (observation, error) = (view.session.observation(row), *place(row)?);
                 let noise = view.session.noise_of(observation, view.noise);
@@ -269,6 +277,9 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
             };
             let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
             sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));
+        }
+        for (quantity, sums) in sums.values_mut() {
+            sums.configurations += usize::from(sums.groups > before[quantity]);
         }
     }
     let numbers: usize = sums.iter().map(|(_, sums)| sums.groups).sum();
@@ -362,5 +373,24 @@ fn determined_by_rotations(
     match factor(&normal.gram, n, view.prior, if view.prior.is_fitted { 1.0 } else { 0.0 }) {
         Some(factor) if !stated => linalg::trace_of_quotient(&factor, &part.gram, n).min(determined),
         _ => in_proportion,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twenty places and thirty unknowns: thirty numbers are left, which are off by what ten configurations are off by, and two are believed.
+    #[test]
+    fn what_is_the_robots_varies_with_the_configuration() {
+        let sums = ResidualSums {
+            squares: 60.0,
+            components: 60,
+            groups: 60,
+            configurations: 20,
+            ..ResidualSums::default()
+        };
+        let part = sums.part(30.0, false);
+        assert_eq!((part.freedom, part.settled(false).freedom), (30.0, 12.0));
     }
 }

@@ -1,6 +1,6 @@
 //! Rows measured in the same configuration.
 
-use super::Dataset;
+use super::{Dataset, Quantity};
 use poecal_numerics::threads;
 
 /// An odd number whose bits look random: the golden ratio's.
@@ -15,6 +15,15 @@ pub const MANY: usize = 100_000;
 const CHUNK: usize = 4096;
 
 impl Dataset {
+    /// What rows of one configuration measure again where it is the same of them: the target; of a distance, a height and all else that is neither a place
+    /// nor an orientation also the station, since each sees another part of the target's error.
+    #[must_use]
+    pub fn subject(&self, row: u32) -> (usize, Option<usize>) {
+        let Some(seen) = self.observations.get(row as usize) else { return (0, None) };
+        let is_of_pose = [Quantity::Position, Quantity::Rotation].iter().any(|it| seen.measurement.has(*it));
+        (seen.target, Some(seen.station).filter(|_| !is_of_pose))
+    }
+
     /// Configurations of two rows or more among these, groups and their rows in the order of the data. Readings of one configuration differ
     /// by no more than 0.001 rad or 1 mm.
     pub fn grouped(&self, rows: &[u32]) -> Vec<Vec<u32>> {
@@ -114,7 +123,7 @@ impl Dataset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Measurement;
+    use crate::measurement::{Measurement, Observation};
     use nalgebra::Vector3;
 
     #[test]
@@ -126,6 +135,19 @@ mod tests {
         }
         assert_eq!(data.configurations(&data.all_rows()), [vec![0, 2], vec![1, 4], vec![3]]);
         assert_eq!(data.configurations(&[4, 2, 3]), [vec![2], vec![3], vec![4]]);
+    }
+
+    #[test]
+    fn distances_from_two_stations_are_no_repeats() {
+        let mut data = Dataset::new(vec!["a".to_owned()]);
+        for seen in [Measurement::point(Vector3::zeros()), Measurement::distance(1.0)] {
+            for station in 0..2 {
+                let row = Observation { station, ..Observation::new(0, seen) };
+                data.push_observation(&[0.0], row).unwrap();
+            }
+        }
+        assert_eq!(data.subject(0), data.subject(1));
+        assert_ne!(data.subject(2), data.subject(3));
     }
 
     #[test]

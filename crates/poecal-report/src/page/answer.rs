@@ -9,7 +9,7 @@ use super::html::{figure, list, quoted};
 use super::joints;
 use super::lead::spaced;
 use crate::summary::{
-    ModelRow, Place, Point, SEE_ROBUST, expected, judged_on, leading, look_at, reasons, why_larger,
+    Leading, ModelRow, Place, Point, SEE_ROBUST, expected, judged_on, look_at, reasons, why_larger,
 };
 use crate::table::joints_words;
 use poecal_calibrate::{Decision, Event, Level};
@@ -69,9 +69,8 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
 
 /// The errors before and after on the same rows, and the error to expect, all RMS and in one unit.
 fn before_after(file: &CalibrationFile) -> Markup {
-    let (set, rows) = leading(file);
-    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
-    let (Some(before), Some(after)) = (models.next(), models.next_back()) else { return Markup::default() };
+    let leading = Leading::of(file);
+    let (Some([before, after]), set) = (leading.ends(), leading.set) else { return Markup::default() };
     let has_length = set.calibrated.leading().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
     let measured = |(_, model, key): &ModelRow<'_>| {
         if let Some(pixels) = model.of_pictures(set.count) {

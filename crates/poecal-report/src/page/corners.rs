@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use super::html::{HtmlTable, figure};
-use crate::summary::{ModelRow, leading};
+use crate::summary::{Leading, ModelRow};
 use poecal_calibrate::{PixelAccuracy, SetAccuracy};
 use poecal_results::calibration_file::CalibrationFile;
 
@@ -43,9 +43,8 @@ pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
 
 /// Errors of the corners of pictures that were held out, or if there are none of those fitted.
 pub(crate) fn fact(file: &CalibrationFile) -> Option<Markup> {
-    let (_, rows) = leading(file);
-    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
-    let (before, after) = (models.next()?, models.next_back()?);
+    let leading = Leading::of(file);
+    let [before, after] = leading.ends()?;
     let (Some(was), Some(is)) = (before.1.pixels, after.1.pixels) else { return None };
     let [of_before, of_after] = [&before.2, &after.2];
     Some(html! {

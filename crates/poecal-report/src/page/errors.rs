@@ -7,7 +7,7 @@ use super::html::{HtmlTable, capital, count, facts, figure, figure_or, path, plo
 use super::lead::{kinds_words, sign, spaced};
 use super::{corners, figures};
 use crate::found::found_words;
-use crate::summary::{ModelRow, cross_validated, delivered, has_terms, leading, none_held_out};
+use crate::summary::{Leading, ModelRow, cross_validated, delivered, has_terms, none_held_out};
 use crate::table::{STATISTICS, further_words, models};
 use poecal_calibrate::{Improvements, ModelAccuracy, NoiseSource, SetAccuracy};
 use poecal_model::measurement::{Device, Quantity};
@@ -29,24 +29,27 @@ pub(crate) fn error_words(quantity: Quantity, of: &str) -> String {
 /// Errors of the rows that were held out, or if there are none of those fitted, by each model, and what was measured.
 pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
-    let (of, key) = match held_out {
-        Some(_) => ("rows held out", "accuracy.held_out.count"),
-        None => ("the fitted rows, since none was held out", "accuracy.training.count"),
+    let (all, of, key) = match held_out {
+        Some(set) => (set, "rows held out", "accuracy.held_out.count"),
+        None => {
+            (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
+        }
     };
-    let (set, mut rows) = leading(file);
-    rows.retain(|(.., key)| key.starts_with("accuracy"));
-    let rest = without_suspected(file, &rows);
-    let on = format!("on {of}");
+    let Leading { set, models: rows, without, beside } = Leading::of(file);
+    let on = match held_out {
+        Some(_) => format!("on {of}"),
+        None => format!("on the fitted rows{without}, since none was held out"),
+    };
     let tables = set.calibrated.iter().flat_map(|(quantity, _)| {
-        let words = error_words(quantity, &on);
-        let all = lead_table(&words, &rows, quantity, set.improvement.as_ref());
-        let rest = rest.as_ref().map(|(suspected, rows)| {
-            lead_table(&format!("{words}, without {suspected} suspected"), rows, quantity, None)
+        let all = lead_table(&error_words(quantity, &on), &rows, quantity, set.improvement.as_ref());
+        let beside = beside.as_ref().map(|(other, rows)| {
+            let words = error_words(quantity, &format!("on {of}"));
+            lead_table(&format!("{words}, {other}"), rows, quantity, None)
         });
-        std::iter::once(all).chain(rest)
+        std::iter::once(all).chain(beside)
     });
     let tables: Vec<HtmlTable> = corners::table(&rows, &on).into_iter().chain(tables).collect();
-    let caption = html! { (count(set.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
+    let caption = html! { (count(all.count, key)) " " (of) ". Registered: your model, with only tool and device located." };
     let content = html! {
         div.first {
             div {
@@ -72,25 +75,6 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         }
     };
     titled("before-after", "Errors before and after", &content)
-}
-
-/// The same models without the suspected rows, and how many these are; nothing without suspected rows.
-fn without_suspected<'a>(
-    file: &'a CalibrationFile,
-    rows: &[ModelRow<'a>],
-) -> Option<(usize, Vec<ModelRow<'a>>)> {
-    let robust = &file.robust;
-    let (set, suspected, key) = match file.accuracy.held_out {
-        Some(_) => (&robust.held_out_without_suspected, robust.suspected_held_out, "held_out"),
-        None => (&robust.training_without_suspected, robust.suspected_fit, "training"),
-    };
-    let set = set.as_ref()?;
-    let own = rows.iter().filter_map(|(name, _, path)| {
-        let word = path.rsplit('.').next()?;
-        let (_, model) = models(set).into_iter().find(|(own, _)| *own == word)?;
-        Some((name.clone(), model(set)?, format!("robust.{key}_without_suspected.{word}")))
-    });
-    Some((suspected, own.collect()))
 }
 
 /// Errors before and after, of the rows held out or, if there are none, of those fitted; of the former also how many times smaller they are.

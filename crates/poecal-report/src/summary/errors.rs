@@ -19,13 +19,60 @@ const WIDTHS: [usize; 2] = [38, 10];
 /// The errors of a model: its words, the errors, and their key in `calibration.json`.
 pub(crate) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
 
-/// The rows that a calibration is judged by, those held out or if there are none those fitted, and the errors of the models on them.
-pub(crate) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<ModelRow<'_>>) {
-    let (accuracy, robust) = (&file.accuracy, &file.robust);
-    let (set, key, rest, suspected) = match &accuracy.held_out {
-        Some(set) => (set, "held_out", &robust.held_out_without_suspected, robust.suspected_held_out),
-        None => (&accuracy.training, "training", &robust.training_without_suspected, robust.suspected_fit),
-    };
+/// The rows that a calibration is judged by, and the errors of the models on them.
+pub(crate) struct Leading<'a> {
+    pub(crate) set: &'a SetAccuracy,
+    pub(crate) models: Vec<ModelRow<'a>>,
+    /// Behind the name of the rows: which of them are left out.
+    pub(crate) without: String,
+    /// Which other rows are shown beside them, and the errors of the same models on these.
+    pub(crate) beside: Option<(String, Vec<ModelRow<'a>>)>,
+}
+
+impl<'a> Leading<'a> {
+    /// Of rows held out all, with those that are not suspected beside them; of fitted rows, where none was held out, those that are not suspected, as in
+    /// cross-validation, with all beside them.
+    pub(crate) fn of(file: &'a CalibrationFile) -> Self {
+        let (accuracy, robust) = (&file.accuracy, &file.robust);
+        let training = (&accuracy.training, "accuracy.training");
+        let rest = robust.training_without_suspected.as_ref();
+        let rest = rest.map(|rest| (rest, "robust.training_without_suspected"));
+        let all = String::new();
+        let ((set, key), without, beside) = match &accuracy.held_out {
+            Some(set) => {
+                let rest = robust.held_out_without_suspected.as_ref();
+                let words = format!("without {} suspected", robust.suspected_held_out);
+                let beside = rest.map(|rest| (words, (rest, "robust.held_out_without_suspected")));
+                ((set, "accuracy.held_out"), all, beside)
+            }
+            None => rest.map_or((training, all, None), |rest| {
+                let [without, with] =
+                    [" without", "with"].map(|it| format!("{it} {} suspected", robust.suspected_fit));
+                (rest, without, Some((with, training)))
+            }),
+        };
+        let beside = beside.map(|(words, (set, key))| (words, models_of(file, set, key)));
+        Leading { set, models: models_of(file, set, key), without, beside }
+    }
+
+    /// Before and after: the first and the last model.
+    pub(crate) fn ends(&self) -> Option<[&ModelRow<'a>; 2]> {
+        let [before, .., after] = self.models.as_slice() else { return None };
+        Some([before, after])
+    }
+
+    /// All models, and the calibrated one on the rows beside.
+    pub(crate) fn rows(&self) -> Vec<ModelRow<'a>> {
+        let beside = self.beside.iter().filter_map(|(words, models)| {
+            let (name, model, key) = models.get(1)?;
+            Some((format!("{name}, {words}"), *model, key.clone()))
+        });
+        self.models.iter().cloned().chain(beside).collect()
+    }
+}
+
+/// The errors of the models that are shown, of a set by its key.
+fn models_of<'a>(file: &CalibrationFile, set: &'a SetAccuracy, key: &str) -> Vec<ModelRow<'a>> {
     let holds = |kind: &str| {
         let is_of = |name: &String| name == kind || name.starts_with(&format!("{kind}."));
         file.blocks.as_ref().is_some_and(|blocks| blocks.held.iter().any(is_of))
@@ -37,18 +84,16 @@ pub(crate) fn leading(file: &CalibrationFile) -> (&SetAccuracy, Vec<ModelRow<'_>
         DeviceFrameKnowledge::Unknown => "your model, tool and device located",
         DeviceFrameKnowledge::Base => "your model, tool located",
     };
-    let mut rows = vec![
-        (nominal.to_owned(), &set.registered, format!("accuracy.{key}.registered")),
-        ("calibrated".to_owned(), &set.calibrated, format!("accuracy.{key}.calibrated")),
+    let corrected = set.corrected.as_ref().filter(|_| has_terms(file));
+    let models = [
+        (nominal, "registered", Some(&set.registered)),
+        ("calibrated", "calibrated", Some(&set.calibrated)),
+        ("corrected", "corrected", corrected),
     ];
-    if let Some(corrected) = set.corrected.as_ref().filter(|_| has_terms(file)) {
-        rows.push(("corrected".to_owned(), corrected, format!("accuracy.{key}.corrected")));
-    }
-    rows.extend(rest.as_ref().map(|rest| {
-        let words = format!("calibrated, without {suspected} suspected");
-        (words, &rest.calibrated, format!("robust.{key}_without_suspected.calibrated"))
-    }));
-    (set, rows)
+    let row = |(name, word, model): (&str, &str, Option<&'a ModelAccuracy>)| {
+        Some((name.to_owned(), model?, format!("{key}.{word}")))
+    };
+    models.into_iter().filter_map(row).collect()
 }
 
 /// Whether the corrected model has terms: otherwise it is the calibrated one.
@@ -57,14 +102,13 @@ pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
 }
 
 /// The rows on which the errors before and after were measured.
-pub(crate) fn judged_on(file: &CalibrationFile) -> &'static str {
-    let (set, _) = leading(file);
-    let are_pictures = set.calibrated.of_pictures(set.count).is_some();
-    match (file.accuracy.held_out.is_some(), are_pictures) {
-        (true, false) => "rows held out",
-        (true, true) => "pictures held out",
-        (false, false) => "fitted rows",
-        (false, true) => "fitted pictures",
+pub(crate) fn judged_on(file: &CalibrationFile) -> String {
+    let Leading { set, without, .. } = Leading::of(file);
+    let rows = if set.calibrated.of_pictures(set.count).is_some() { "pictures" } else { "rows" };
+    if file.accuracy.held_out.is_some() {
+        format!("{rows} held out")
+    } else {
+        format!("fitted {rows}{without}")
     }
 }
 
@@ -89,8 +133,8 @@ pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> 
 
 /// Why the error to expect is larger than the one measured, where it is.
 pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
-    let (_, rows) = leading(file);
-    let (_, after, _) = rows.iter().rfind(|(.., key)| key.starts_with("accuracy"))?;
+    let leading = Leading::of(file);
+    let [_, (_, after, _)] = leading.ends()?;
     let measured_mm = after.get(Quantity::Position)?.rms;
     (expected(file)?.error_mm > measured_mm).then_some(
         "The expected error is larger than the measured one: it counts every residual that no stated noise explains as robot error, and it \
@@ -100,9 +144,8 @@ pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
 
 /// Errors before and after on the same rows, the error to expect, and where that is valid.
 pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
-    let (set, rows) = leading(file);
-    let mut models = rows.iter().filter(|(.., key)| key.starts_with("accuracy"));
-    let (Some(before), Some(after)) = (models.next(), models.next_back()) else { return };
+    let leading = Leading::of(file);
+    let (Some([before, after]), set) = (leading.ends(), leading.set) else { return };
     let held_out = file.accuracy.held_out.is_some();
     let judging = if held_out { "held out" } else { "fitted" };
     let words = |model: &ModelAccuracy| {
@@ -124,17 +167,18 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
         .1
         .leading()
         .map(|(quantity, error)| format!(", at most {} {}", number(error.max), quantity.unit().symbol()));
-    let rest = rows.iter().find(|(.., key)| key.starts_with("robust")).map(|(name, model, _)| {
-        format!("; {}: {}", name.split_once(", ").map_or(name.as_str(), |it| it.1), words(model))
+    let beside = leading.beside.as_ref().and_then(|(of, models)| {
+        let (_, model, _) = models.get(1)?;
+        Some(format!("; {of}: {}", words(model)))
     });
-    let rest = rest.unwrap_or_default();
+    let beside = beside.unwrap_or_default();
     match after.1.of_pictures(set.count) {
         Some(pixels) => {
-            line(out, judging, &format!("{}{rest}", pictures_words(&pixels)));
+            line(out, judging, &format!("{}{beside}", pictures_words(&pixels)));
         }
         None => {
             let largest = largest.unwrap_or_default();
-            line(out, judging, &format!("{} rows{largest}{rest}", set.count));
+            line(out, judging, &format!("{} rows{largest}{beside}", set.count));
         }
     }
     if let (Some(before), Some(after), None) =
@@ -202,7 +246,8 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
 pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
-    let (set, rows) = leading(file);
+    let leading = Leading::of(file);
+    let (set, rows) = (leading.set, leading.rows());
     let name = if file.accuracy.held_out.is_some() { "held out" } else { "fitted" };
     for (quantity, _) in set.calibrated.iter() {
         let title = format!("{name} ({}), {} in {}", set.count, quantity.name(), quantity.unit().symbol());
@@ -214,5 +259,35 @@ pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
     }
     if file.accuracy.held_out.is_none() {
         line(out, "", "no row was held out: these errors are of fitted rows");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::{Detail, summary};
+    use super::*;
+    use poecal_calibrate::{CalibrationOptions, calibrate};
+    use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
+    use poecal_results::calibration_file::Inputs;
+
+    /// Of thirty poses all are fitted: what is said before and after is without the one of them that is far off.
+    #[test]
+    fn suspected_rows_do_not_count_where_none_is_held_out() {
+        let mut made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
+        let gross = Gross { share: 0.04, ..Gross::default() }.spoil(&mut made.data).len();
+        let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+        let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+        assert!(file.accuracy.held_out.is_none() && (gross, file.robust.suspected_fit) == (1, 1));
+        let leading = Leading::of(&file);
+        let [before, after] = leading.ends().unwrap();
+        let rms = |model: &ModelAccuracy| model.get(Quantity::Position).unwrap().rms;
+        let all = &file.accuracy.training;
+        assert!(leading.set.count == 29 && rms(&all.calibrated) > 50.0 * rms(after.1), "{after:?}");
+        assert!(rms(before.1) < rms(&all.registered));
+        let text = summary(&file, Detail::Short);
+        assert!(text.contains("(RMS) on fitted rows without 1 suspected:"), "{text}");
+        assert!(text.contains("29 rows, at most") && text.contains("; with 1 suspected:"), "{text}");
     }
 }

@@ -8,7 +8,7 @@ mod names;
 use std::mem::discriminant;
 
 pub(crate) use errors::{
-    ModelRow, cross_validated, has_terms, judged_on, leading, none_held_out, why_larger,
+    Leading, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger,
 };
 pub(crate) use look::{Place, Point, SEE_ROBUST, look_at, reasons, unknowns_words};
 pub(crate) use names::{MOST, names};

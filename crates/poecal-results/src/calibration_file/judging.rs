@@ -60,7 +60,7 @@ impl CalibrationFile {
     }
 
     /// Root mean square error of a model's leading quantity, of poses and points the position, on held-out rows, otherwise in cross-validation,
-    /// otherwise on training rows; millimetres or degrees.
+    /// otherwise on training rows, without suspected ones; millimetres or degrees.
     #[must_use]
     pub fn own_rms(&self, model: AcceptedModel) -> f64 {
         self.own_error(model).0
@@ -69,9 +69,10 @@ impl CalibrationFile {
     /// The same with which rows these are, in the words of files.
     #[must_use]
     pub fn own_error(&self, model: AcceptedModel) -> (f64, &'static str) {
-        let (set, rows) = match &self.accuracy.held_out {
-            Some(set) => (set, "held_out"),
-            None => (&self.accuracy.training, "training"),
+        let (accuracy, robust) = (&self.accuracy, &self.robust);
+        let (set, rows) = match &accuracy.held_out {
+            Some(set) => (robust.held_out_without_suspected.as_ref().unwrap_or(set), "held_out"),
+            None => (robust.training_without_suspected.as_ref().unwrap_or(&accuracy.training), "training"),
         };
         let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
         let errors = corrected.unwrap_or(&set.calibrated);

@@ -1,8 +1,12 @@
 //! Outliers in `calibration.json`.
 
+use std::collections::BTreeSet;
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::CalibrationFile;
 use super::keyed::{Keyed, ResidualKeys, shown};
 use poecal_calibrate::{Calibration, Loss, RowError, SetAccuracy, row_influence};
 use poecal_model::measurement::Dataset;
@@ -66,6 +70,21 @@ impl RobustEntry {
             training_without_suspected: robustness.training_rest,
             held_out_without_suspected: robustness.held_out_rest,
         }
+    }
+}
+
+impl CalibrationFile {
+    /// The rows that are not suspected, of data that the calibration was made of: files are told apart by their names without folders.
+    pub(crate) fn kept_rows(&self, data: &Dataset) -> Vec<u32> {
+        let place = |file: &Path, line: u32| Some((file.file_name()?.to_owned(), line));
+        let suspected: BTreeSet<_> =
+            self.outliers.iter().filter_map(|it| place(Path::new(&it.file), it.row)).collect();
+        let is_kept = |row: &u32| {
+            let source = data.observations[*row as usize].source;
+            let file = data.files.get(source.file as usize);
+            file.and_then(|file| place(file, source.line)).is_none_or(|it| !suspected.contains(&it))
+        };
+        data.all_rows().into_iter().filter(is_kept).collect()
     }
 }
 

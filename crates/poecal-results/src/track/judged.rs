@@ -1,5 +1,7 @@
 //! A visit with what its rows are judged by.
 
+use std::borrow::Cow;
+
 use super::explain::{Evidence, Level};
 use super::hypotheses::free;
 use super::model::Model;
@@ -23,6 +25,15 @@ pub struct Earlier<'a> {
     pub data: &'a Dataset,
     /// Whether they are those that the calibration was made of: before joints were calibrated anew.
     pub is_own: bool,
+}
+
+impl<'a> Earlier<'a> {
+    /// The rows, of the calibration's own but for those that it suspects.
+    #[must_use]
+    pub fn kept(&self, file: &CalibrationFile) -> Cow<'a, Dataset> {
+        let rows = self.is_own.then(|| file.kept_rows(self.data)).filter(|rows| rows.len() < self.data.len());
+        rows.map_or(Cow::Borrowed(self.data), |rows| Cow::Owned(self.data.only(&rows)))
+    }
 }
 
 /// A visit about the model, its changes, and the level of their noise.
@@ -89,7 +100,7 @@ fn before(
     earlier: Earlier<'_>,
     options: &TrackOptions,
 ) -> Result<(Visit, Dataset)> {
-    let data = file.at_stage(earlier.data, file.stages()).into_owned();
+    let data = file.at_stage(&earlier.kept(file), file.stages()).into_owned();
     let same_tool = TrackOptions { tool_is_anew: false, ..*options };
     if !earlier.is_own || file.recalibrated.is_empty() {
         return Ok((earlier_visit(model, &data, &same_tool)?, data));

@@ -6,7 +6,7 @@ use poecal_calibrate::{CalibrationOptions, calibrate};
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::Robot;
-use poecal_model::simulate::{Kind, Simulation, elbow, random, scara, seven_axis};
+use poecal_model::simulate::{Gross, Kind, Simulation, elbow, random, scara, seven_axis};
 use poecal_results::calibration_file::{CalibrationFile, Inputs, RecalibrationSources, RepairedPart};
 use poecal_results::track::{Earlier, State, TrackOptions, Unseen, Witnesses, recalibrate, track, witnesses};
 use rand_chacha::ChaCha8Rng;
@@ -27,11 +27,19 @@ struct Cell {
 
 impl Cell {
     fn new(robot: &Robot, seed: u64) -> Self {
+        Cell::spoilt(robot, seed, 0.0)
+    }
+
+    /// The same with gross errors in a share of the rows of the first visit.
+    fn spoilt(robot: &Robot, seed: u64, share: f64) -> Self {
         let mut robot = robot.clone();
         // A reflector 100 mm beside the tip, so that the last joint moves it.
         robot.home = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.0));
         let simulation = Simulation { count: 60, seed, noise_position_m: NOISE_M, ..Simulation::default() };
-        let made = simulation.run(&robot, Kind::POINT).unwrap();
+        let mut made = simulation.run(&robot, Kind::POINT).unwrap();
+        made.data.files.push("first.csv".into());
+        (2..).zip(&mut made.data.observations).for_each(|(line, row)| row.source.line = line);
+        Gross { share, ..Gross::default() }.spoil(&mut made.data);
         let calibration = calibrate(&made.nominal, &made.data, &geometry()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         Cell { file, actual: made.actual, first: made.data, device_from_base: made.device_from_base }
@@ -295,6 +303,31 @@ fn other_configurations_are_judged_by_the_model() {
         (State::Unchanged, poecal_results::track::JudgedBy::Model, 0)
     );
     assert!(found.notes.iter().any(|note| note.contains("none of the rows repeats")), "{:?}", found.notes);
+}
+
+/// Rows that the calibration suspects are none that a visit is compared with, and no part of what its errors are taken to be.
+#[test]
+fn suspected_rows_of_the_calibration_do_not_count() {
+    let [clean, spoilt] = [0.0, 0.1].map(|share| Cell::spoilt(&elbow(), 5, share));
+    let other = Cell::new(&elbow(), 6);
+    let repeated = 60 - spoilt.file.outliers.len();
+    assert_eq!(repeated, 54);
+    let found = |cell: &Cell, configurations: &Dataset, options: &TrackOptions| {
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let mut data = Dataset::new(cell.first.reading_names().to_vec());
+        for row in 0..configurations.len() {
+            let readings = configurations.readings(row);
+            let place = (cell.device_from_base * cell.actual.forward_kinematics(readings)).translation;
+            let noise = random::normal_vector(&mut generator) * NOISE_M;
+            data.push(readings, None, Measurement::point(place + noise)).unwrap();
+        }
+        track(&cell.file, &data, Some(Earlier { data: &cell.first, is_own: true }), options).unwrap()
+    };
+    let by_repeats = found(&spoilt, &spoilt.first, &spoilt.options(false));
+    assert_eq!((by_repeats.state, by_repeats.repeated), (State::Unchanged, repeated));
+    let [clean, spoilt] = [&clean, &spoilt].map(|cell| found(cell, &other.first, &TrackOptions::default()));
+    println!("noise {:.6} m, of a clean calibration {:.6} m", spoilt.noise_m, clean.noise_m);
+    assert!(spoilt.state == State::Unchanged && spoilt.noise_m < 1.5 * clean.noise_m);
 }
 
 /// Places of a visit are compared with the places of poses.

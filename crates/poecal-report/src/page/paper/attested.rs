@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::{self as paper, LISTED};
 use crate::acceptance::plain;
-use crate::summary::{delivered, expected, judged_on, leading, why_larger};
+use crate::summary::{Leading, delivered, expected, judged_on, why_larger};
 use crate::table::number;
 use poecal_calibrate::{Acceptance, AcceptedLimit, DeviceFrameKnowledge, Level};
 use poecal_fit::analysis::JointCoverage;
@@ -99,7 +99,7 @@ fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Marku
 
 /// Errors before and after, and the uncertainty.
 fn result(file: &CalibrationFile) -> Markup {
-    let (set, rows) = leading(file);
+    let Leading { set, models, without, .. } = Leading::of(file);
     let lead = set.calibrated.leading().map(|(quantity, _)| quantity);
     let unit = match lead.map(Quantity::unit) {
         Some(Unit::Radian) => "°",
@@ -107,7 +107,7 @@ fn result(file: &CalibrationFile) -> Markup {
         Some(Unit::Metre) | None => " mm",
     };
     let of = |key: &str| {
-        let model = rows.iter().find(|(.., path)| path.starts_with("accuracy") && path.ends_with(key))?.1;
+        let model = models.iter().find(|(.., path)| path.ends_with(key))?.1;
         lead.and_then(|quantity| model.get(quantity)).map(|it| it.rms)
     };
     let after = of(delivered(file));
@@ -115,7 +115,7 @@ fn result(file: &CalibrationFile) -> Markup {
     let count = if file.accuracy.held_out.is_some() {
         format!("{} rows held out of the fit", set.count)
     } else {
-        format!("the {} fitted rows, since none was held out", set.count)
+        format!("the {} fitted rows{without}, since none was held out", set.count)
     };
     let name = lead.map_or("position", Quantity::name);
     html! {

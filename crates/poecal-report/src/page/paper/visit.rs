@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::super::html::{HtmlTable, coded, decimal};
 use super::{self as paper, LISTED};
-use crate::summary::{delivered, expected, judged_on, leading};
+use crate::summary::{Leading, delivered, expected, judged_on};
 use crate::table::number;
 use crate::track::Track;
 use crate::track_entries::{SightEntry, sampled};
@@ -105,8 +105,8 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
         let now = text(&told.record, key).or(today);
         table.cells([label.to_owned(), text(&file.record, key).unwrap_or_default(), now.unwrap_or_default()]);
     }
-    let (set, rows) = leading(file);
-    let then = rows.iter().rfind(|(.., key)| key.starts_with("accuracy"));
+    let leading = Leading::of(file);
+    let (set, then) = (leading.set, leading.models.last());
     let then = then.and_then(|(_, model, _)| model.get(Quantity::Position));
     let then = then.map(|it| format!("{} mm (RMS), on {} {}", number(it.rms), set.count, judged_on(file)));
     let now = format!("{} mm (RMS), on {} rows", number(told.error_mm), told.rows);
