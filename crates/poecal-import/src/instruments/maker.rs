@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::words::number;
+use crate::table::number::number_of;
 use crate::table::places::{Places, Sheet};
 use crate::table::text::{Blocks, Said};
 use poecal_numerics::error::{Error, ErrorKind};
@@ -103,7 +103,7 @@ impl<'a> Value<'a> {
     /// Its number, if it is one.
     pub(crate) fn number(self) -> Option<f64> {
         match self {
-            Value::Text(text) => number(text),
+            Value::Text(text) => number_of(text),
             Value::Number(number) => Some(number),
             Value::Empty => None,
         }

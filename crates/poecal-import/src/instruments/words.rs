@@ -8,18 +8,7 @@ use crate::table::cells::{Separator, split};
 use crate::table::header::bracketed;
 use poecal_numerics::error::first_few;
 
-/// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
-pub(crate) fn number(text: &str) -> Option<f64> {
-    let text = text.trim();
-    let is_plain = text.bytes().all(|it| it.is_ascii_digit() || b"+-.eE,".contains(&it));
-    if !is_plain || text.is_empty() {
-        return None;
-    }
-    let is_comma = text.contains(',') && !text.contains('.');
-    let found =
-        if is_comma { fast_float2::parse(text.replacen(',', ".", 1)) } else { fast_float2::parse(text) };
-    found.ok().filter(|it: &f64| it.is_finite())
-}
+pub(crate) use crate::table::number::number_of as number;
 
 /// Lines with text, with their numbers from 1.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {

@@ -80,6 +80,19 @@ impl Numbers {
     }
 }
 
+/// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
+pub(crate) fn number_of(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let is_plain = text.bytes().all(|it| it.is_ascii_digit() || b"+-.eE,".contains(&it));
+    if !is_plain || text.is_empty() {
+        return None;
+    }
+    let is_comma = text.contains(',') && !text.contains('.');
+    let found =
+        if is_comma { fast_float2::parse(text.replacen(',', ".", 1)) } else { fast_float2::parse(text) };
+    found.ok().filter(|it: &f64| it.is_finite())
+}
+
 const NO_GROUPS: &str = "a number with one decimal sign and no thousands separators";
 
 /// Whether a text is digits in groups, as `1 234,5` or `1'234.5`.

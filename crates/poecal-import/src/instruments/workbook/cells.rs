@@ -1,11 +1,11 @@
 //! The cells of a sheet as a range, once it is known that the range can be held.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io::Cursor;
 
 use calamine::{Cell, Data, Range, Reader as _, Sheets};
 
-use super::Formulas;
 use poecal_storage::limits::Limit;
 
 /// A workbook of bytes.
@@ -113,6 +113,9 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
     }
     Ok(found.range(left))
 }
+
+/// Formulas of a sheet by row and column.
+pub(crate) type Formulas = BTreeMap<(u32, u32), String>;
 
 /// Formulas of a sheet within a range, by row and column; none of a form of workbook whose formulas cannot be read.
 pub(crate) fn formulas(book: &mut Book<'_>, name: &str, within: &Range<Data>) -> Formulas {

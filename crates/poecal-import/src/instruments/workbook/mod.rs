@@ -10,13 +10,12 @@ mod container;
 mod numbers;
 mod old;
 
-use std::collections::BTreeMap;
 use std::io::Cursor;
 
 use calamine::{Data, Ods, Range, Reader as _, Sheets, Xlsx};
 
 use self::archive::Parts;
-use self::cells::{Book, Left, ReadSheet};
+use self::cells::{Book, Formulas, Left, ReadSheet};
 use super::Opening;
 use super::maker::{Made, Refused, Value};
 use super::words::{number, quoted};
@@ -35,9 +34,6 @@ const DAY_S: f64 = 86_400.0;
 pub(crate) fn is_one(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04") || head.starts_with(b"\xd0\xcf\x11\xe0")
 }
-
-/// Formulas of a sheet by row and column.
-type Formulas = BTreeMap<(u32, u32), String>;
 
 /// A workbook whose sheets are read one by one.
 enum Workbook<'b> {
