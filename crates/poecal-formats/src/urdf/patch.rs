@@ -57,15 +57,7 @@ impl UrdfDocument {
             });
         }
         let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
-        let (mut links, mut notes) = (Vec::new(), Vec::new());
-        let moving = self.parts.iter().filter(|it| it.axis.is_some()).zip(&calibrated.joints);
-        let endless = moving.filter(|(part, joint)| is_made_continuous(part, joint));
-        notes.extend(endless.map(|(part, _)| {
-            format!("joint `{}` has no `lower` and `upper`, and was written as continuous", part.name)
-        }));
-        let scaled = self.parts.iter().filter(|it| !it.has_unit_axis());
-        notes
-            .extend(scaled.map(|it| format!("the axis of joint `{}` was written as a unit vector", it.name)));
+        let (mut links, mut notes) = (Vec::new(), self.changed_kinds(calibrated));
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
             // What is on the base itself, and not on a link that it is joined to, is where it is.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
@@ -100,6 +92,17 @@ impl UrdfDocument {
         let selection = ChainSelection::of(&self.robot, &links);
         let tip_link = selection.tip_link.clone().unwrap_or_default();
         Ok(PatchedUrdf { text: splice.apply(), tip_link, selection, notes })
+    }
+
+    /// Notes on joints that other readers would understand differently, and that are written otherwise.
+    fn changed_kinds(&self, calibrated: &Robot) -> Vec<String> {
+        let moving = self.parts.iter().filter(|it| it.axis.is_some()).zip(&calibrated.joints);
+        let endless = moving.filter(|(part, joint)| is_made_continuous(part, joint)).map(|(part, _)| {
+            format!("joint `{}` has no `lower` and `upper`, and was written as continuous", part.name)
+        });
+        let scaled = self.parts.iter().filter(|it| !it.has_unit_axis());
+        let scaled = scaled.map(|it| format!("the axis of joint `{}` was written as a unit vector", it.name));
+        endless.chain(scaled).collect()
     }
 
     /// `base_from_link` of each end at zero joint values.

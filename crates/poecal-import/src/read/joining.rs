@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         understood.others = BTreeMap::from([("joint readings", table_rows.rows)]);
         self.found.understood.push(understood);
         let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
-        let mut rows = JointRows {
+        let rows = JointRows {
             path: path.to_path_buf(),
             readings: table_rows.readings,
             ids: table_rows.ids.iter().map(|id| id.trim().to_owned()).collect(),
@@ -114,6 +114,11 @@ impl<'a> Reader<'a> {
             no_stands: NoStands::Listed,
             controller: layout.controller.clone(),
         };
+        self.stands(rows)
+    }
+
+    /// The stands of rows of joint readings that are a stream; else the rows.
+    fn stands(&mut self, mut rows: JointRows) -> Result<JointRows> {
         // A stream has no names of rows.
         let is_listed =
             !rows.ids.is_empty() || matches!(self.options.join, Some(Join::Rows | Join::Name | Join::Motion));
@@ -126,7 +131,7 @@ impl<'a> Reader<'a> {
             Ok(found) => found,
             Err(why) => {
                 let why = NoStands::of(why, &rows.times, |row| rows.lines.get(row).copied());
-                refuse_backwards(path, &why)?;
+                refuse_backwards(&rows.path, &why)?;
                 if self.options.join == Some(Join::Motion) {
                     rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
                 }
@@ -134,12 +139,12 @@ impl<'a> Reader<'a> {
             }
         };
         if found.len() < FEWEST_PAIRS {
-            return Err(no_stands(path, "joint readings", found.len()));
+            return Err(no_stands(&rows.path, "joint readings", found.len()));
         }
         let lines = found.iter().filter_map(|(it, _)| rows.lines.get(it.rows.start)).copied();
         self.found.notes.push(format!(
             "{}: took the {} stands of the robot in its stream of joint readings",
-            path.display(),
+            rows.path.display(),
             found.len()
         ));
         Ok(JointRows {

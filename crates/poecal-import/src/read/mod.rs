@@ -1,11 +1,14 @@
 //! Reads measurement files.
 
+pub(crate) mod instrument_noise;
 pub(crate) mod joining;
 pub(crate) mod joints;
+pub(crate) mod socket_distance;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use self::socket_distance::Sockets;
 use super::messages::are_messages;
 use super::table::Table;
 use super::{FitWhere, Frames, MeasurementFile, ReadOptions};
@@ -20,7 +23,6 @@ use crate::table::layout::ColumnLayout;
 use crate::table::lost;
 use crate::table::mapping::ColumnMap;
 use crate::table::naming::Names;
-use crate::table::socket_distance::Sockets;
 use crate::table::text::{Blocks, Said};
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
 use poecal_fit::input_doubts::{lengths, spread};
