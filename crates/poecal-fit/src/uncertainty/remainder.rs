@@ -257,31 +257,10 @@ impl ResidualSums {
 /// position (m²) and rotation (rad²) with the unknowns of each taken off (theory.md §6 (34)).
 #[must_use]
 pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
-    let mut sums: ByQuantity<ResidualSums> = ByQuantity::default();
     // A sample of so many rows gives the same variances.
     let sample = sample_rows(view.rows, MANY_ROWS);
     let share = sample.len() as f64 / view.rows.len().max(1) as f64;
-    let errors = view.session.errors(&sample, view.estimate);
-    let configurations = view.session.data.configurations(&sample);
-    let place = |row: u32| sample.binary_search(&row).ok().and_then(|at| errors.get(at));
-    for rows in &configurations {
-        let mut rows: Vec<u32> = rows.clone();
-        let subject = |row: &u32| view.session.data.subject(*row);
-        rows.sort_by_key(|row| (subject(row), *row));
-        let before = sums.map(|sums| sums.groups);
-        for same in rows.chunk_by(|a, b| subject(a) == subject(b)) {
-            let of = |row: u32| {
-                let (observation, error) = (view.session.observation(row), *place(row)?);
-                let noise = view.session.noise_of(observation, view.noise);
-                Some(Deviation { error, alike: view.session.alike(observation, error), noise })
-            };
-            let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
-            sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));
-        }
-        for (quantity, sums) in sums.values_mut() {
-            sums.configurations += usize::from(sums.groups > before[quantity]);
-        }
-    }
+    let sums = residual_sums(view, &sample);
     let numbers: usize = sums.iter().map(|(_, sums)| sums.groups).sum();
     let total = numbers as f64;
     let effective_unknowns = effective_unknowns(view, normal);
@@ -319,6 +298,33 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     };
     let variance = if parts.iter().all(is_explained) { 1.0 } else { variance };
     Remainder { parts, variance, effective_unknowns, numbers }
+}
+
+/// Counts and squares of the residuals of some rows, in their order.
+fn residual_sums(view: &View<'_>, sample: &[u32]) -> ByQuantity<ResidualSums> {
+    let mut sums: ByQuantity<ResidualSums> = ByQuantity::default();
+    let errors = view.session.errors(sample, view.estimate);
+    let configurations = view.session.data.configurations(sample);
+    let place = |row: u32| sample.binary_search(&row).ok().and_then(|at| errors.get(at));
+    for rows in &configurations {
+        let mut rows: Vec<u32> = rows.clone();
+        let subject = |row: &u32| view.session.data.subject(*row);
+        rows.sort_by_key(|row| (subject(row), *row));
+        let before = sums.map(|sums| sums.groups);
+        for same in rows.chunk_by(|a, b| subject(a) == subject(b)) {
+            let of = |row: u32| {
+                let (observation, error) = (view.session.observation(row), *place(row)?);
+                let noise = view.session.noise_of(observation, view.noise);
+                Some(Deviation { error, alike: view.session.alike(observation, error), noise })
+            };
+            let seen: Vec<_> = same.iter().filter_map(|&row| of(row)).collect();
+            sums.values_mut().for_each(|(quantity, sums)| sums.add(quantity, &seen));
+        }
+        for (quantity, sums) in sums.values_mut() {
+            sums.configurations += usize::from(sums.groups > before[quantity]);
+        }
+    }
+    sums
 }
 
 /// Counts and squares of all quantities of a unit.
