@@ -3,10 +3,11 @@
 #
 # Expected: wrap(f) takes derivatives of f by differences: for a joint at 1e-9 rad as for one at 0 or at 0.1 rad, with
 # some digits less.
-# What happens: the step is 1.5e-8 of the value, and 1.5e-8 where the value is exactly 0. For a joint at 6e-17 rad, which
-# is what a cosine of 90 degrees leaves, or up to 1e-9 rad, f does not change by such a step, and the uncertainty is
-# exactly 0, or, where rounding makes f change, up to 89 times the true one. At 1e-7 rad it is 3 % off. Exactly
-# 0 is right, so that a first test shows nothing. Nothing is said; the documentation of wrap speaks of no scale.
+# What happens: the step is 1.5e-8 of the value, and 1.5e-8 where the value is exactly 0. For a joint at 6e-17 rad,
+# which is what a cosine of 90 degrees leaves, or up to 1e-9 rad, f does not change by such a step, and the
+# uncertainty is exactly 0, or, where rounding makes f change, up to 89 times the true one. At 1e-7 rad it is 3 %
+# off. Exactly 0 is right, so that a first test shows nothing. Nothing is said; the documentation of wrap speaks of
+# no scale.
 # Whom it hurts: whoever propagates errors of joints, offsets or corrections through a forward kinematics by it: at
 # zero positions, and of corrections, which are small beside the lengths of an arm. Give derivatives, or wrap
 # a function of the value plus one, which takes the one off again.
