@@ -9,7 +9,8 @@
 # 20, as in micrometres; sd_beta is right in both. With weights of the true noise all agree.
 # Whom it hurts: whoever takes errors of sums, distances or predictions from the matrix, for which it is there, and
 # those of single parameters from the vector: the first are off by any factor.
-# poecal: the covariance of its results has the standard errors that it states in its diagonal.
+# poecal: the covariance of its results has the noise in it that was found: ten times the noise makes it a hundred
+# times as large.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT
 python3 -m venv "$here/venv"

@@ -9,8 +9,8 @@
 # centre of gravity 0.2 m from where it is. In metres, with frames at joints, all is right. There is no warning.
 # Whom it hurts: whoever takes a robot from a USD stage to a calibration, to ROS or to a controller: torques and the
 # sag of links are computed with wrong levers, while the picture is right.
-# poecal: reads no USD. `poecal check` prints through which points, in millimetres, axes go, and the sum of masses;
-# centres of gravity it takes as the URDF states them.
+# poecal: reads no USD. What it writes is in metres, states that, and has the frames of links at their joints, which
+# the converter reads right.
 set -euo pipefail
 here=$(mktemp -d); trap 'rm -rf "$here"' EXIT
 python3 -m venv "$here/venv"
