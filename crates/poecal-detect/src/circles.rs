@@ -21,6 +21,8 @@ const FOR_EACH: usize = 3;
 const LATTICES: usize = 5;
 /// One dot of so many may be beyond the board: something else that looks like one.
 const BEYOND: usize = 12;
+/// Fewest pixels of a dot.
+const FEWEST_PX: u32 = 12;
 /// Difference of middles, pixels, and of shapes, as a part, up to which two parts are one.
 const SAME: (f64, f64) = (0.3, 0.03);
 
@@ -52,7 +54,7 @@ pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rej
     // What is no dot is a part of several windows, too.
     let mut refused: Vec<(Vector2<f64>, Matrix2<f64>)> = Vec::new();
     for half in [longest / 110, longest / 36, longest / 12].map(|it| it.max(7)) {
-        for blob in shades.dark_parts(half).blobs() {
+        for blob in shades.dark_parts(half).blobs(FEWEST_PX) {
             let Some(to_circle) = round(&blob) else { continue };
             let known = |it: &Dot| (it.to_circle * (it.place - blob.middle)).norm() < 0.5;
             let same = |it: &(Vector2<f64>, Matrix2<f64>)| {
@@ -79,7 +81,7 @@ fn round(blob: &Blob) -> Option<Matrix2<f64>> {
     let area = 4.0 * std::f64::consts::PI * blob.spread.determinant().sqrt();
     let axes = blob.spread.symmetric_eigen();
     let (least, most) = (axes.eigenvalues.min(), axes.eigenvalues.max());
-    let is_round = blob.area >= 12.0 && (0.85..1.15).contains(&(blob.area / area)) && most < 25.0 * least;
+    let is_round = (0.85..1.15).contains(&(blob.area / area)) && most < 25.0 * least;
     if !is_round || least <= 0.0 {
         return None;
     }

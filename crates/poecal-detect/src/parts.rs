@@ -117,6 +117,9 @@ fn next(levels: &[bool], from: usize, dark: bool) -> Option<usize> {
     rest[skipped..].iter().position(|it| *it == dark).map(|it| from + skipped + it)
 }
 
+/// What stands for the number of a part that is too small.
+const NO_PART: u32 = u32::MAX;
+
 /// Connected dark pixels, as runs in rows.
 pub(crate) struct Parts {
     /// First and last column, row.
@@ -174,14 +177,35 @@ impl Parts {
         at
     }
 
-    /// Ends of the runs of each part that is neither small nor at the border.
-    pub(crate) fn outlines(mut self, least: u32) -> Vec<Vec<Vector2<f64>>> {
-        let mut boxes: Vec<Option<[u32; 4]>> = vec![None; self.runs.len()];
+    /// The number of the part of each first run, of parts of such a size, and how many there are: of pictures of noise most are small, and what is
+    /// kept of each part would take many times the memory of the picture.
+    fn large(&mut self, least: u32, size_of: impl Fn([u32; 3]) -> u32) -> (Vec<u32>, usize) {
+        let mut numbers = vec![0_u32; self.runs.len()];
         for at in 0..self.runs.len() {
             let root = self.find(at as u32) as usize;
+            numbers[root] += size_of(self.runs[at]);
+        }
+        let mut count = 0;
+        for number in &mut numbers {
+            if *number >= least.max(1) {
+                (*number, count) = (count as u32, count + 1);
+            } else {
+                *number = NO_PART;
+            }
+        }
+        (numbers, count)
+    }
+
+    /// Ends of the runs of each part that is neither small nor at the border.
+    pub(crate) fn outlines(mut self, least: u32) -> Vec<Vec<Vector2<f64>>> {
+        // A part has a run or more in each of its rows.
+        let (numbers, count) = self.large(least / 2, |_| 1);
+        let mut boxes = vec![[u32::MAX, 0, u32::MAX, 0]; count];
+        for at in 0..self.runs.len() {
+            let number = numbers[self.find(at as u32) as usize];
             let [left, right, row] = self.runs[at];
-            let own = boxes[root].get_or_insert([left, right, row, row]);
-            *own = [own[0].min(left), own[1].max(right), own[2], row];
+            let Some(own) = boxes.get_mut(number as usize) else { continue };
+            *own = [own[0].min(left), own[1].max(right), own[2].min(row), row];
         }
         let [width, height] = self.size.map(|it| it as u32);
         let fits = |[left, right, top, bottom]: [u32; 4]| {
@@ -195,41 +219,43 @@ impl Parts {
                 && bottom + 1 < height
         };
         let mut outlines: Vec<Vec<Vector2<f64>>> = Vec::new();
-        let mut place = vec![usize::MAX; self.runs.len()];
+        let mut place = vec![usize::MAX; count];
         for at in 0..self.runs.len() {
-            let root = self.find(at as u32) as usize;
-            if !boxes[root].is_some_and(fits) {
+            let number = numbers[self.find(at as u32) as usize] as usize;
+            if !boxes.get(number).is_some_and(|it| fits(*it)) {
                 continue;
             }
-            if place[root] == usize::MAX {
-                place[root] = outlines.len();
+            if place[number] == usize::MAX {
+                place[number] = outlines.len();
                 outlines.push(Vec::new());
             }
             let [left, right, row] = self.runs[at].map(f64::from);
-            outlines[place[root]].extend([Vector2::new(left, row), Vector2::new(right, row)]);
+            outlines[place[number]].extend([Vector2::new(left, row), Vector2::new(right, row)]);
         }
         outlines
     }
 
-    /// The moments of each part.
-    pub(crate) fn blobs(mut self) -> Vec<Blob> {
+    /// The moments of each part of so many pixels.
+    pub(crate) fn blobs(mut self, least: u32) -> Vec<Blob> {
+        let (numbers, count) = self.large(least, |[left, right, _]| right - left + 1);
         // Area, first and second moments.
-        let mut sums: Vec<[f64; 6]> = vec![[0.0; 6]; self.runs.len()];
+        let mut sums: Vec<[f64; 6]> = vec![[0.0; 6]; count];
         for at in 0..self.runs.len() {
-            let root = self.find(at as u32) as usize;
+            let number = numbers[self.find(at as u32) as usize];
             let [left, right, row] = self.runs[at].map(f64::from);
             let count = right - left + 1.0;
             let middle = 0.5 * (left + right);
             let square = count * (middle * middle + (count * count - 1.0) / 12.0);
             let own = [count, count * middle, count * row, square, count * middle * row, count * row * row];
-            sums[root].iter_mut().zip(own).for_each(|(sum, it)| *sum += it);
+            let Some(sums) = sums.get_mut(number as usize) else { continue };
+            sums.iter_mut().zip(own).for_each(|(sum, it)| *sum += it);
         }
         let blob = |[area, x, y, xx, xy, yy]: [f64; 6]| {
             let middle = Vector2::new(x, y) / area;
             let spread = Matrix2::new(xx, xy, xy, yy) / area - middle * middle.transpose();
             Blob { middle, spread: spread + Matrix2::identity() / 12.0, area }
         };
-        sums.into_iter().filter(|it| it[0] > 0.0).map(blob).collect()
+        sums.into_iter().map(blob).collect()
     }
 }
 
