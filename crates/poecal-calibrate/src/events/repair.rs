@@ -65,7 +65,10 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         let is_better = match happened {
             // Rows that are wrong have errors of their own in any case: they matter by what they do to the others.
             Happened::Wrong(_) => kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out),
-            Happened::Step(_) => after <= BETTER * before,
+            Happened::Step(_) => {
+                let [before, after] = compared(best, &other);
+                after <= BETTER * before
+            }
         };
         if !is_better {
             if !happened.is_suspected(&best.fit) {
@@ -117,6 +120,23 @@ fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
         return (Some(Happened::Wrong(wrong)), early);
     }
     (step.map(Happened::Step), early)
+}
+
+/// Errors of two sessions in cross-validation by models of one kind: terms that one of them alone has are no merit of a repair.
+fn compared(best: &Found<'_>, other: &Found<'_>) -> [f64; 2] {
+    let of = if has_terms(best) == has_terms(other) { error_of } else { of_geometry };
+    [of(best), of(other)]
+}
+
+/// Whether the model of a session has terms.
+fn has_terms(found: &Found<'_>) -> bool {
+    found.corrected.as_ref().is_some_and(|it| it.has_terms())
+}
+
+/// Error of geometry alone in cross-validation, millimetres or degrees; not a number without one.
+fn of_geometry(found: &Found<'_>) -> f64 {
+    let random = found.cross_validation.as_ref().and_then(|it| it.random.rms.leading());
+    random.map_or(f64::NAN, |(_, rms)| rms)
 }
 
 /// Error of the delivered model in cross-validation, millimetres or degrees; at least that of the fitted rows that are not left out.
