@@ -92,7 +92,7 @@ impl PicturesEntry {
     /// Cameras and boards of the calibration for pictures that are read with none.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`] if a camera is none.
+    /// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if a camera is none.
     pub fn complete(&self, options: &mut ReadOptions) -> Result<()> {
         if options.cameras.is_empty() {
             options.cameras = self.cameras.iter().map(CameraEntry::camera).collect::<Result<_>>()?;
