@@ -24,7 +24,7 @@ pub const SHARE: f64 = 0.1;
 pub struct ReadColumn<'a> {
     /// Its name in a header of ours.
     pub name: &'a str,
-    /// Its unit, and what says it.
+    /// Its unit.
     pub unit: NamedUnit,
     /// What says the unit.
     pub unit_from: UnitSource,

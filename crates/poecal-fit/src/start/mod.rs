@@ -20,8 +20,8 @@ pub use markers::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};
 pub use pairing::{
     Agreement, Aligned, AtLag, Channels as StreamChannels, EVIDENT, FEWEST_PAIRS, InMotion, JointStream,
     Lagged, MeasuredStands, Motion, MotionEntry, MovingRow, NoLag, NoStream, Order, Pair, Sampled, Span,
-    Stand, Stream, Unpaired, motion_of_points, motion_of_target, smoothed, stands_of_measured,
-    stands_of_readings,
+    Stand, Stream, Unpaired, mm, motion_of_points, motion_of_target, numbered, numbered_as, smoothed,
+    stands_of_measured, stands_of_readings,
 };
 pub use pictures::{SettledPictures, predicted_pose, settle_pictures};
 pub use registration::{

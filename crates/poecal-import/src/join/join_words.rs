@@ -1,12 +1,8 @@
 //! What is said of pairs.
 
 use poecal_fit::start::Order;
+pub(crate) use poecal_fit::start::{mm, numbered, numbered_as};
 use poecal_numerics::error::first_few;
-
-/// A length in words.
-pub(crate) fn mm(metres: f64) -> String {
-    format!("{:.3} mm", 1e3 * metres)
-}
 
 /// What is said of lags at which measurements fit alike, the best first.
 pub(crate) fn several_lags(listed: &[String], best_s: f64) -> String {
@@ -23,16 +19,6 @@ pub(crate) fn counted(configurations: usize) -> String {
     } else {
         format!("{configurations} configurations")
     }
-}
-
-/// Lines in words.
-pub(crate) fn numbered(lines: &[String]) -> String {
-    numbered_as("line", lines)
-}
-
-/// The same as rows of a sheet.
-pub(crate) fn numbered_as(word: &str, lines: &[String]) -> String {
-    format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))
 }
 
 /// An order in words.

@@ -102,12 +102,6 @@ impl Reader<'_> {
         self.understand_pictures(&table, &inputs, (first, rows, own))
     }
 
-    /// Adds what was found in a file to the warnings.
-    pub(crate) fn warn(&mut self, path: &Path, words: impl IntoIterator<Item = String>) {
-        let own = words.into_iter().map(|words| format!("{}: {words}", path.display()));
-        self.found.warnings.extend(own);
-    }
-
     /// The columns of the joints beside those of the corners, and what is ignored.
     fn layout_of_corners(
         &self,

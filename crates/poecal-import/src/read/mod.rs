@@ -184,6 +184,12 @@ impl<'a> Reader<'a> {
         self.found.warnings.extend(said.warnings);
     }
 
+    /// Adds what was found in a file to the warnings.
+    pub(crate) fn warn(&mut self, path: &Path, words: impl IntoIterator<Item = String>) {
+        let own = words.into_iter().map(|words| format!("{}: {words}", path.display()));
+        self.found.warnings.extend(own);
+    }
+
     pub(crate) fn file<'p>(&mut self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<()> {
         blocks.begin()?;
         if are_messages(path, blocks.text())? {
@@ -223,9 +229,8 @@ impl<'a> Reader<'a> {
                 "found no position in any row, expected at least one that is neither empty nor zero";
             return Err(ErrorKind::Measurement.error(message).at_line(path, table.header.line));
         }
-        let skipped = lost::lost_words(&lost).into_iter();
-        let skipped = skipped.map(|it| format!("{}: skipped {it}; --strict refuses them", path.display()));
-        self.found.warnings.extend(skipped);
+        let skipped = lost::lost_words(&lost);
+        self.warn(path, skipped.map(|it| format!("skipped {it}; --strict refuses them")));
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
         self.found.warnings.extend(incomplete(path, new_rows));
         self.judge(&table, &cursor, first)?;

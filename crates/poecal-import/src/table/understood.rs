@@ -43,12 +43,9 @@ impl Reader<'_> {
             self.found.data.ids.resize(self.found.data.len(), String::new());
         }
         self.warn_of_ignored(path, layout);
-        self.found
-            .warnings
-            .extend(layout.joint_words().into_iter().map(|words| format!("{}: {words}", path.display())));
+        self.warn(path, layout.joint_words());
         self.take_controller(path, layout)?;
-        let turns = turns::warning(&table.header, layout, self.map);
-        self.found.warnings.extend(turns.map(|warning| format!("{}: {warning}", path.display())));
+        self.warn(path, turns::warning(&table.header, layout, self.map));
         self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
         let mut own =
             FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
@@ -91,7 +88,7 @@ impl Reader<'_> {
             more => format!(" and {more} more"),
         };
         let columns = columns.join(", ");
-        self.found.warnings.push(format!("{}: ignored the columns {columns}{more}", path.display()));
+        self.warn(path, [format!("ignored the columns {columns}{more}")]);
         self.warn_of_joints_beyond(path, layout);
     }
 

@@ -8,9 +8,9 @@ use super::super::averaging::mean_rotation;
 use super::lags::Span;
 use super::stand_means::{Spread, kept, kept_values};
 use super::stands::{Channels, NoStream, Stand, Stream};
+use super::words::numbered;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
-use poecal_numerics::error::first_few;
 
 /// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
@@ -155,8 +155,7 @@ pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStand
     }
     found.scatter_m = Spread::of_all(&spreads);
     found.warnings = Spread::warnings(&spreads, |some| {
-        let named: Vec<&str> = some.iter().filter_map(|at| starts.get(*at)).map(String::as_str).collect();
-        format!("line{} {}", if named.len() == 1 { "" } else { "s" }, first_few(&named))
+        numbered(&some.iter().filter_map(|at| starts.get(*at)).cloned().collect::<Vec<_>>())
     });
     Ok(found)
 }

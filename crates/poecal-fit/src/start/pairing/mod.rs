@@ -15,6 +15,7 @@ mod speeds;
 mod stand_means;
 mod stands;
 mod uneven;
+mod words;
 
 pub use agreement::{Agreement, Order};
 pub use joint_stream::{JointStream, smoothed};
@@ -24,6 +25,7 @@ pub use motion::{AtLag, InMotion, Motion, MovingRow, NoLag};
 pub use sampled::{MotionEntry, Sampled, motion_of_points, motion_of_target};
 pub use stands::{Channels, NoStream, Stand, Stream};
 pub use uneven::Aligned;
+pub use words::{mm, numbered, numbered_as};
 
 use std::collections::BTreeSet;
 

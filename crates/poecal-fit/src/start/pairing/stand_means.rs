@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::words::mm;
 use poecal_numerics::distributions::{median, median_point};
 
 /// Times the usual distance from the middle beyond which a row is none of its stand.
@@ -10,11 +11,6 @@ const FAR: f64 = 10.0;
 const WIDE: f64 = 8.0;
 /// Scatter of a stand that is never named, metres.
 const NARROW_M: f64 = 1e-4;
-
-/// A length in words.
-fn mm(metres: f64) -> String {
-    format!("{:.3} mm", 1e3 * metres)
-}
 
 /// Values that are near their median, by their usual distance from it and a change that is none.
 pub(crate) fn kept_values(values: &[f64], floor: f64) -> Vec<f64> {
