@@ -184,11 +184,20 @@ def options_of(command: list[str]) -> set[str]:
     return found - {"--help", "--version"}
 
 
+def options_in(cell: str) -> list[str]:
+    """Options that a row of the guide is for: each option behind the colon, of each command before it."""
+    commands, _, options = cell.rpartition(": ")
+    named = re.findall(r"`([^`]+)`", options)
+    return [f"`{command} {option}`" for command in re.findall(r"`([^`]+)`", commands) for option in named] if commands else [f"`{option}`" for option in named]
+
+
 def test_the_guide_has_a_place_for_every_option():
     """Each command and each of its options stands in the table of docs/python.md, with what it is in Python or why it is not."""
     guide = GUIDE.read_text().split("## The program in Python\n")[1]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in guide.splitlines() if line.startswith("| `")]
-    table = {row[0]: row[1] for row in rows}
+    named = [(option, row[1]) for row in rows for option in options_in(row[0])]
+    table = dict(named)
+    assert len(named) == len(table), "an option stands twice"
     commands = re.findall(r"^  ([a-z-]+) ", program("--help").split("<COMMAND>")[1].split("Options:")[0], re.MULTILINE)
     commands.remove("help")
     everywhere = {"--quiet", "--threads", "--limit", "--wait"}
