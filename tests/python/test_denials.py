@@ -45,7 +45,6 @@ SHOWN = {
     "It does not talk to the tracker or drive the robot": HERE + "test_nothing_can_talk_to_a_network",
     "it does not read the tracker's own project files": HERE + "test_no_pictures_are_read",
     "only their order can be mistaken": "crates/poecal-calibrate/tests/it/forensics.rs",
-    "If the model has no fixed joint before the tip": "crates/poecal-formats/tests/it/urdf_patch.rs::random_robots_read_back_as_they_were_calibrated",
     "poecal does not write `<calibration rising": HERE + "test_a_urdf_keeps_the_drivers_calibration_as_it_is",
     "prints what your rows determine, and names what they do not": "tests/python/test_docs.py::test_every_block_does_what_the_page_says",
     "It is the only length here": ELSEWHERE,
