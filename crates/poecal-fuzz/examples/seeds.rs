@@ -260,7 +260,6 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
         ("workbooks", "xlsx", xlsx),
         ("workbooks", "ods", ods),
         ("workbooks", "xls", old_workbook(&rows)),
-        ("workbooks", "xlsb", binary_workbook(&rows)),
         ("bags", "joints", bag),
         ("pictures", "png", poecal_detect::preview(&gray(60, 40), &[]).unwrap()),
         ("pictures", "jpeg", include_bytes!("../../poecal-detect/tests/it/pictures/gray.jpg").to_vec()),
@@ -270,40 +269,6 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
             include_bytes!("../../poecal-detect/tests/it/pictures/progressive.jpg").to_vec(),
         ),
     ]
-}
-
-/// The parts of a binary workbook (.xlsb) of these rows.
-fn binary_workbook(rows: &[Vec<String>]) -> Vec<u8> {
-    let record = |kind: u8, data: &[u8]| {
-        // Kinds and sizes have seven bits a byte.
-        let kind = if kind < 0x80 { vec![kind] } else { vec![kind, 1] };
-        [&kind[..], &[data.len() as u8 | 0x80, (data.len() >> 7) as u8], data].concat()
-    };
-    let counted = |text: &str| {
-        let units: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        [&(units.len() as u32 / 2).to_le_bytes()[..], &units].concat()
-    };
-    let mut sheet = Vec::new();
-    for (row, cells) in (0_u32..).zip(rows) {
-        sheet.extend(record(0x00, &row.to_le_bytes()));
-        for (column, text) in (0_u32..).zip(cells) {
-            let (kind, value) = match text.parse::<f64>() {
-                Ok(number) => (0x05, number.to_le_bytes().to_vec()),
-                Err(_) => (0x06, counted(text)),
-            };
-            sheet.extend(record(kind, &[&column.to_le_bytes()[..], &[0; 4], &value].concat()));
-        }
-    }
-    sheet.extend(record(0x92, &[]));
-    let named = [vec![0; 8], counted("rId1"), counted("A")].concat();
-    let links: &[u8] =
-        b"<Relationships><Relationship Id=\"rId1\" Target=\"worksheets/sheet1.bin\"/></Relationships>";
-    let parts = [
-        [&b"xl/workbook.bin\n"[..], &record(0x9C, &named)].concat(),
-        [&b"xl/_rels/workbook.bin.rels\n"[..], links].concat(),
-        [&b"xl/worksheets/sheet1.bin\n"[..], &sheet].concat(),
-    ];
-    parts.join(&format!("\n{BETWEEN}\n").into_bytes()[..])
 }
 
 /// An old workbook (.xls) of these rows.

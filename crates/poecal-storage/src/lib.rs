@@ -10,6 +10,8 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(any(feature = "bags", feature = "workbooks"))]
+pub mod containers;
 pub mod csv_text;
 pub mod disk;
 pub mod document;

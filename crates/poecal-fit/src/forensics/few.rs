@@ -12,7 +12,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Dataset, Observation};
 
 /// Most targets that are all fitted together: each adds unknowns, and a subsample has few rows of each.
-pub(crate) const TARGETS: usize = 12;
+const TARGETS: usize = 12;
 /// Most targets that are fitted together where fewer have too few rows for a subsample.
 const MOST_TARGETS: usize = 24;
 
@@ -25,9 +25,14 @@ pub(crate) struct FewTargets<'a, 'd> {
 }
 
 impl<'a, 'd> FewTargets<'a, 'd> {
+    /// Whether all targets are fitted together.
+    pub(crate) fn are_all(data: &Dataset) -> bool {
+        data.targets.len() <= TARGETS
+    }
+
     /// The targets with the most rows; all of them if they are few.
     pub(crate) fn of(fitter: &'d Fitter<'a>, all: &'d Dataset) -> Self {
-        if all.targets.len() <= TARGETS {
+        if FewTargets::are_all(all) {
             return FewTargets { fitter: Cow::Borrowed(fitter), data: Cow::Borrowed(all), kept: None };
         }
         FewTargets::with(fitter, all, &[])

@@ -320,5 +320,10 @@ pub(crate) fn taken(data: &Dataset, rows: &[u32]) -> Dataset {
 
 /// The subsample of a data set.
 pub(crate) fn sampled(data: &Dataset) -> Dataset {
-    taken(data, &sample_rows(&data.all_rows(), SAMPLE))
+    sample_of(data, &data.all_rows())
+}
+
+/// The subsample of some rows.
+pub(crate) fn sample_of(data: &Dataset, rows: &[u32]) -> Dataset {
+    taken(data, &sample_rows(rows, SAMPLE))
 }

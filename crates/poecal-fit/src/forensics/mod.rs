@@ -23,9 +23,11 @@ mod zero;
 
 pub use diagnosis::{Diagnosis, DiagnosisKind};
 
+use std::cell::LazyCell;
+
 use crate::state::{Estimate, sample_rows};
 use few::FewTargets;
-use fitter::{Fitter, sampled, taken};
+use fitter::{Fitter, sample_of, sampled, taken};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use repeats::Repeats;
@@ -150,13 +152,18 @@ fn of_rows(
     {
         return targets::names(fitter, data, estimate).or_else(of_lengths);
     }
-    let all = taken(data, rows);
-    let few = FewTargets::of(fitter, &all);
-    let (estimate, base) = few.fitter.judged(&sampled(&few.data));
-    let placed = few.placed(fitter, &all, &estimate);
+    // A copy of all rows costs more than the fits.
+    let all = LazyCell::new(|| taken(data, rows));
+    let many = (!FewTargets::are_all(data)).then(|| FewTargets::of(fitter, &all));
+    let (estimate, base) = match &many {
+        Some(few) => few.fitter.judged(&sampled(&few.data)),
+        None => fitter.judged(&sample_of(data, rows)),
+    };
+    let placed = many.as_ref().map_or_else(|| estimate.clone(), |few| few.placed(fitter, &all, &estimate));
     if fitter.is_sound(&whole, &placed) {
         return targets::names(fitter, data, &placed).or_else(of_lengths);
     }
+    let few = many.unwrap_or_else(|| FewTargets::of(fitter, &all));
     targets::rows(fitter, data, &all, rows, &base)
         .or_else(|| places::names(fitter, data, &all, rows, &placed, &base))
         .or_else(|| places::known_length(fitter, data, &all))

@@ -1,7 +1,7 @@
 //! A mistake of a part of the rows: half a file that another program wrote, or wrote otherwise.
 
 use super::few::FewTargets;
-use super::fitter::{Fitter, sampled, taken};
+use super::fitter::{Fitter, sample_of, sampled, taken};
 use super::{Diagnosis, DiagnosisOptions, WHOLE, of_rows};
 use crate::state::sample_rows;
 use poecal_model::measurement::Dataset;
@@ -46,6 +46,9 @@ fn is_explained(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32], options: &Dia
 
 /// Error of the nominal robot on some rows, metres.
 fn registered_m(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> f64 {
+    if FewTargets::are_all(data) {
+        return fitter.registered(&sample_of(data, rows)).1.total_m;
+    }
     let all = taken(data, rows);
     let few = FewTargets::of(fitter, &all);
     few.fitter.registered(&sampled(&few.data)).1.total_m

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::diagnosis::short;
 use super::exchange::{Names, exchanged, starts};
-use super::few::{FewTargets, TARGETS, for_links};
+use super::few::{FewTargets, for_links};
 use super::fitter::{Fitter, Score, sampled, taken};
 use super::{Diagnosis, DiagnosisKind};
 use crate::state::Estimate;
@@ -71,7 +71,7 @@ pub(crate) fn rows(
     base: &Score,
 ) -> Option<Diagnosis> {
     let found = pairs(fitter, all).into_iter().filter_map(|pair| {
-        if all.targets.len() <= TARGETS {
+        if FewTargets::are_all(all) {
             return exchanged(fitter, all, Names::Targets(pair.0, pair.1), base);
         }
         let few = FewTargets::with(fitter, all, &[pair.0, pair.1]);

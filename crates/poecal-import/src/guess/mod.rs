@@ -1,6 +1,7 @@
 //! Which columns of a file are the joints' readings and what was measured: a guess for a person to look over and correct, and the mapping file
 //! that it makes.
 
+mod choices;
 mod fields;
 mod names;
 mod text;
@@ -9,7 +10,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use self::fields::{MOST_RADIANS, UNITS, UnitField, WAYS};
+use self::choices::{choose_unit, refused};
+use self::fields::{MOST_RADIANS, UNITS, UnitField};
 pub use self::fields::{MappedChoice, MappedField};
 use self::names::Names;
 use super::ReadOptions;
@@ -22,7 +24,7 @@ use crate::table::number::Numbers;
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::Angles;
 use poecal_model::robot::{ReadingKind, Robot};
-use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
@@ -133,7 +135,7 @@ fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
 
 impl<'h> Sample<'h> {
     fn new(header: &'h Header<'h>, cells: Vec<Vec<String>>, largest: Vec<f64>) -> Self {
-        let name = |(at, cell): (usize, &crate::table::header::HeaderCell)| {
+        let name = |(at, cell): (usize, &crate::table::header_cells::HeaderCell)| {
             let is_own = !cell.text.is_empty() && header.second(&cell.text).is_none();
             if is_own { cell.text.clone() } else { numbered_column(at + 1) }
         };
@@ -229,45 +231,6 @@ impl<'h> Sample<'h> {
         columns.iter().filter_map(|it| self.largest.get(*it)).fold(0.0, |most: f64, it| most.max(*it))
     }
 
-    /// Takes a column or a word in place of what was guessed.
-    fn choose(&self, fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-        if key == "pose" {
-            let expected = WAYS.join(" or ");
-            let field = fields.iter_mut().find(|it| it.key == key && !it.choices.is_empty());
-            field.into_iter().for_each(|it| value.clone_into(&mut it.chosen));
-            return if WAYS.contains(&value) {
-                Ok(())
-            } else {
-                ErrorKind::Option.refuse(format!(
-                    "--column: found `{value}` for the way of the poses, expected {expected}"
-                ))
-            };
-        }
-        let chosen = if value.is_empty() { String::new() } else { self.known(value, key)? };
-        let keys: Vec<&str> = fields.iter().map(|it| it.key.as_str()).collect();
-        let Some(at) = keys.iter().position(|it| *it == key) else {
-            let hint = nearest_or_all(key, &keys);
-            return ErrorKind::Option
-                .refuse(format!("--column: found `{key}`, expected what a column is for, {hint}"));
-        };
-        if let Some(field) = fields.get_mut(at) {
-            field.chosen = chosen;
-        }
-        Ok(())
-    }
-
-    /// A column of the file by its name, with or without its unit.
-    fn known(&self, name: &str, key: &str) -> Result<String> {
-        let known: Vec<&str> = self.columns.iter().map(|it| it.name.as_str()).collect();
-        let found = self.index(name).or_else(|| self.names.named(name)).and_then(|it| self.name(it));
-        found.ok_or_else(|| {
-            ErrorKind::Option.error(format!(
-                "--column: found no column `{name}` for `{key}`, expected one of the file, {}",
-                nearest_or_all(name, &known)
-            ))
-        })
-    }
-
     /// Units of columns that state none.
     fn guess_units(&self, fields: &mut [MappedField]) {
         for unit in UNITS {
@@ -318,25 +281,4 @@ impl<'h> Sample<'h> {
         let mapping = text::mapping(&fields, way, &self.left_out(&fields), &file);
         ColumnGuess { mapping, columns: self.columns, fields, ignored, missing }
     }
-}
-
-fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-    let unit = UNITS.iter().find(|it| it.key == key);
-    let of = unit.map_or(Unit::Radian, |it| it.of);
-    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, of));
-    let stated = stated.transpose().map_err(refused)?;
-    if unit.is_none() {
-        return ErrorKind::Option.refuse(format!(
-            "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
-        ));
-    }
-    if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
-        field.chosen = stated.map_or("", NamedUnit::symbol).to_owned();
-    }
-    Ok(())
-}
-
-/// An error of a value that was chosen.
-fn refused(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
-    ErrorKind::Option.error(format!("--column: {}", error.message()))
 }

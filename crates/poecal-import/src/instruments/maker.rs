@@ -4,10 +4,10 @@ use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use super::refusal::{At, Refused};
 use crate::table::number::number_of;
 use crate::table::places::{Places, Sheet};
 use crate::table::text::{Blocks, Said};
-use poecal_numerics::error::{Error, ErrorKind};
 use poecal_storage::csv_text::cell;
 use poecal_storage::numbers::push_number;
 
@@ -274,51 +274,6 @@ impl io::Read for Text {
         let count = rest.read(into)?;
         self.read += count;
         Ok(count)
-    }
-}
-
-/// Why a file of a known form is not read, and in which line.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Refused {
-    line: Option<usize>,
-    message: String,
-}
-
-impl<T: Into<String>> From<T> for Refused {
-    fn from(message: T) -> Self {
-        Refused { line: None, message: message.into() }
-    }
-}
-
-/// A line of a file.
-#[derive(Clone, Copy)]
-pub(crate) struct At(pub(crate) usize);
-
-impl At {
-    /// A file that is not read because of the line.
-    pub(crate) fn refuse<T>(self, message: impl Into<String>) -> Result<T, Refused> {
-        Err(Refused { line: Some(self.0), message: message.into() })
-    }
-}
-
-impl Refused {
-    /// A file that is not read as a whole.
-    pub(crate) fn whole<T>(message: impl Into<String>) -> Result<T, Self> {
-        Err(message.into().into())
-    }
-
-    /// Of an error without a file.
-    pub(crate) fn of(error: &Error) -> Self {
-        Refused { line: error.place().and_then(|it| it.line), message: error.message().to_owned() }
-    }
-
-    /// The error.
-    pub(crate) fn error(self, path: &Path) -> Error {
-        let error = ErrorKind::Measurement.error(self.message);
-        match self.line {
-            Some(line) => error.at_line(path, line),
-            None => error.in_file(path),
-        }
     }
 }
 

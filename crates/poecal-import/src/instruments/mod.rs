@@ -9,8 +9,6 @@ mod auto_id;
 #[cfg(feature = "bags")]
 mod bags;
 mod bodies;
-#[cfg(any(feature = "bags", feature = "workbooks"))]
-mod fields;
 mod figaroh;
 pub(crate) mod headerless;
 mod leica;
@@ -21,6 +19,7 @@ mod ndi;
 mod programs;
 mod qualisys;
 mod recording;
+mod refusal;
 mod refused;
 mod robodk;
 mod spatial_analyzer;

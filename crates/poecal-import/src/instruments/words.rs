@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::maker::{At, Refused};
 use crate::join::join_words::numbered;
 use crate::table::cells::{Separator, split};
-use crate::table::header::bracketed;
+use crate::table::header_cells::bracketed;
 use poecal_numerics::error::first_few;
 
 pub(crate) use crate::table::number::number_of as number;

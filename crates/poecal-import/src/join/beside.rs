@@ -8,7 +8,7 @@ use crate::pictures::corner_columns::{are_corners, are_readings_of_pictures};
 use crate::pictures::picture_files::NO_CAMERA;
 use crate::table::Table;
 use crate::table::configurations::advice;
-use crate::table::header::HeaderCell;
+use crate::table::header_cells::HeaderCell;
 use crate::table::mapping::ColumnMap;
 use crate::table::text::Blocks;
 use poecal_model::robot::Robot;

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::table::cells::{Separator, split};
-use crate::table::header::{Header, header_cells, is_number, unit_in_name};
+use crate::table::header::Header;
+use crate::table::header_cells::{header_cells, is_number, unit_in_name};
 use poecal_numerics::error::{Error, ErrorKind, MissingColumn, Result, first_few, nearest};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;

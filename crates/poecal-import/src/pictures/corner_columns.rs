@@ -1,7 +1,8 @@
 //! The columns of files of pictures: what each means, and what HALCON, OpenCV and scripts around them call it.
 
 use super::boards::Coordinate;
-use crate::table::header::{Header, HeaderCell, unit_in_name};
+use crate::table::header::Header;
+use crate::table::header_cells::{HeaderCell, unit_in_name};
 use crate::table::inputs::Range;
 use crate::table::kinds;
 use crate::table::mapping::ColumnMap;

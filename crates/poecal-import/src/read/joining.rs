@@ -1,8 +1,9 @@
 //! Files of joint readings and files of measurements, joined row with row (docs/file-formats.md, *Two files*).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::joined_stands::{Unmeasured, no_stands, refuse_backwards, take_stands};
 use super::joints::rows_of;
 use crate::Join;
 use crate::instruments::MEASURED;
@@ -17,11 +18,11 @@ use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;
 use crate::table::understanding::FileUnderstanding;
 use poecal_fit::start::{
-    FEWEST_PAIRS, JointStream, MeasuredStands, Sampled, Span, Unpaired, motion_of_points, motion_of_target,
+    FEWEST_PAIRS, JointStream, Sampled, Span, Unpaired, motion_of_points, motion_of_target,
     stands_of_measured, stands_of_readings,
 };
 use poecal_model::measurement::Dataset;
-use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::UnitSource;
 use poecal_numerics::unit::Unit;
 
@@ -258,54 +259,6 @@ impl<'a> Reader<'a> {
         reader.rows_alone(planned.path, planned.blocks(self.opening(), MEASURED)?)?;
         Ok((reader.found.data, reader.times.unwrap_or_default()))
     }
-}
-
-/// Joint readings at which no file so far has a measurement.
-#[derive(Clone, Debug, Default)]
-struct Unmeasured {
-    rows: Option<BTreeSet<usize>>,
-    /// Where the warning of these is among all.
-    at: usize,
-}
-
-impl Unmeasured {
-    /// Adds a file of measurements.
-    fn include(&mut self, rows: Vec<usize>, at: usize) {
-        let rows: BTreeSet<usize> = rows.into_iter().collect();
-        match &mut self.rows {
-            Some(known) => known.retain(|it| rows.contains(it)),
-            None => (self.rows, self.at) = (Some(rows), at),
-        }
-    }
-}
-
-/// Takes the means of stands, and says how their rows scatter.
-fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
-    found.notes.push(format!(
-        "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
-        path.display(),
-        1e3 * stands.scatter_m
-    ));
-    found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
-    found.readings.means = stands.means;
-}
-
-/// Refuses a recording whose times go back.
-fn refuse_backwards(path: &Path, why: &NoStands) -> Result<()> {
-    let NoStands::Recorded { why, back: Some(line) } = why else { return Ok(()) };
-    let message = format!(
-        "found {why}, expected rows in the order of their times: sort them, or leave out those of another recording"
-    );
-    Err(ErrorKind::Measurement.error(message).at_line(path, *line))
-}
-
-/// The error of a stream in which the robot hardly stands.
-fn no_stands(path: &Path, what: &str, count: usize) -> Error {
-    ErrorKind::Measurement
-        .error(format!(
-            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_PAIRS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
-        ))
-        .in_file(path)
 }
 
 /// When each configuration was measured, where rows are points.

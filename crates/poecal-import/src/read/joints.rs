@@ -10,7 +10,6 @@ use crate::table::configurations::in_its_file;
 use crate::table::cursor::Cursor;
 use crate::table::layout::{ColumnLayout, SetRule};
 use crate::table::mapping::ColumnMap;
-use crate::table::text::Blocks;
 use poecal_model::measurement::Set;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
@@ -56,10 +55,19 @@ impl JointsTable {
 /// As [`crate::read`], of what concerns joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
-    document::reading(|| {
+    let no_map = ColumnMap::default();
+    let map = options.mapping.as_ref().unwrap_or(&no_map);
+    let rows = |blocks| {
+        let mut table = Table::open(path, blocks, map)?;
+        let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
+        rows_of(&mut table, &mut Cursor::new(layout, robot, map.decimal))
+    };
+    let joints = document::reading(|| {
         let blocks = Opening { robot, options }.joint_blocks(path, "a file of joint readings (CSV)")?;
-        of_blocks(path, blocks, robot, options).map_err(|error| in_its_file(error, path))
-    })
+        rows(blocks).map_err(|error| in_its_file(error, path))
+    })?;
+    let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
+    Ok(JointsTable { warnings, ..joints })
 }
 
 /// Reads the text of such a file; `path` is what messages call it.
@@ -74,21 +82,6 @@ pub fn parse_joints(
 ) -> Result<JointsTable> {
     let path = path.as_ref();
     document::reading_text(path, text, || read_joints(path, robot, options))
-}
-
-fn of_blocks<'p>(
-    path: &'p Path,
-    blocks: Blocks<'p>,
-    robot: &Robot,
-    options: &ReadOptions,
-) -> Result<JointsTable> {
-    let no_map = ColumnMap::default();
-    let map = options.mapping.as_ref().unwrap_or(&no_map);
-    let mut table = Table::open(path, blocks, map)?;
-    let layout = ColumnLayout::joints(&table.header, robot, options, map)?;
-    let joints = rows_of(&mut table, &mut Cursor::new(layout, robot, map.decimal))?;
-    let warnings = joints.warnings.iter().map(|warning| visible(warning).into_owned()).collect();
-    Ok(JointsTable { warnings, ..joints })
 }
 
 /// All rows of a table of joint readings.

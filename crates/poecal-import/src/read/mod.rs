@@ -1,13 +1,15 @@
 //! Reads measurement files.
 
-pub(crate) mod instrument_noise;
+mod joined_stands;
 pub(crate) mod joining;
 pub(crate) mod joints;
+mod judging;
 pub(crate) mod socket_distance;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use self::judging::incomplete;
 use self::socket_distance::Sockets;
 use super::messages::are_messages;
 use super::table::Table;
@@ -25,10 +27,9 @@ use crate::table::mapping::ColumnMap;
 use crate::table::naming::Names;
 use crate::table::text::{Blocks, Said};
 use poecal_fit::input_doubts::boards::refuse_wrong_boards;
-use poecal_fit::input_doubts::{lengths, spread};
 use poecal_fit::start::{settle_faces, settle_pictures};
 use poecal_model::camera::{Board, Camera};
-use poecal_model::measurement::{Dataset, Observation};
+use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::{NamedLines, visible};
@@ -92,25 +93,6 @@ pub fn parse(
 ) -> Result<MeasurementFile> {
     let path = path.as_ref();
     document::reading_text(path, text, || read_all(&[path], robot, options))
-}
-
-/// The warning of rows that have some components of a position beside rows that have all.
-fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
-    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
-    let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
-    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
-    (has_whole && lines.count > 0).then(|| {
-        format!(
-            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
-            path.display(),
-            counted(lines.count),
-            lines.words()
-        )
-    })
-}
-
-fn counted(rows: usize) -> String {
-    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
 }
 
 pub(crate) struct Reader<'a> {
@@ -274,37 +256,6 @@ impl<'a> Reader<'a> {
             Ok(())
         })?;
         Ok((rows, lost))
-    }
-
-    /// Judges the scale of the readings and of what was measured.
-    fn judge(&mut self, table: &Table<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
-        let header = &table.header;
-        self.found.warnings.extend(cursor.joint_warnings(header)?);
-        cursor.check_orientations(header)?;
-        let slides_m = cursor.unlimited_slides_m();
-        self.refuse_far_positions(table, cursor, slides_m, first)?;
-        let data = &self.found.data;
-        let new_rows = data.observations.get(first..).unwrap_or_default();
-        cursor.refuse(header, lengths::of_ranges(self.robot, slides_m, new_rows))?;
-        let x = cursor.layout.targets.first().and_then(|target| Some(target.position?[0]));
-        let columns = cursor.columns();
-        cursor.refuse(header, x.and_then(|x| spread::of_positions(self.robot, &columns, x, data, first)))
-    }
-
-    /// Refuses positions of the rows from `first` on that only another unit explains.
-    fn refuse_far_positions(
-        &self,
-        table: &Table<'_>,
-        cursor: &Cursor<'_>,
-        slides_m: f64,
-        first: usize,
-    ) -> Result<()> {
-        let columns = cursor.columns();
-        let position = cursor.layout.targets.first().and_then(|target| target.position);
-        let of = |at: usize| columns.get(at).copied();
-        let Some([Some(x), Some(y), Some(z)]) = position.map(|at| at.map(of)) else { return Ok(()) };
-        let rows = self.found.data.observations.get(first..).unwrap_or_default();
-        cursor.refuse(&table.header, lengths::of_positions(self.robot, [x, y, z], slides_m, rows))
     }
 
     fn finish(self) -> Result<MeasurementFile> {

@@ -1,5 +1,9 @@
 //! Texts that are not UTF-8: UTF-16, and Windows-1252 with Latin-1, as programs of instruments write them.
 
+use std::path::Path;
+
+use poecal_numerics::error::{Error, ErrorKind, position};
+
 /// Characters of the bytes from 0x80 to 0x9F; those that are none are `\0`.
 const WINDOWS: [char; 32] = [
     '€', '\0', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\0', 'Ž', '\0', '\0', '‘', '’', '“',
@@ -45,6 +49,21 @@ pub(crate) fn of_windows_1252(bytes: &[u8]) -> Result<String, usize> {
         text.push(character);
     }
     Ok(text)
+}
+
+/// The error for bytes that are no text, after so many lines.
+pub(crate) fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
+    let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
+    let found = match bytes.get(valid) {
+        None | Some(0) => "a NUL byte".to_owned(),
+        Some(found) => format!("the byte 0x{found:02X}"),
+    };
+    let (line, column) = position(&before, before.len());
+    ErrorKind::Syntax.error(format!("found {found}, expected text; save the file as `CSV UTF-8`")).at(
+        path,
+        lines + line,
+        column,
+    )
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A file as a table: header and rows with their places.
 
-pub(crate) mod builder;
+mod beginning;
 pub(crate) mod cells;
 mod columns;
 pub(crate) mod configurations;
@@ -9,9 +9,11 @@ pub(crate) mod cursor;
 pub(crate) mod encodings;
 pub(crate) mod fit_where;
 pub(crate) mod header;
+pub(crate) mod header_cells;
 pub(crate) mod inputs;
 pub(crate) mod kinds;
 pub(crate) mod layout;
+mod lines;
 pub(crate) mod lost;
 pub(crate) mod naming;
 pub(crate) mod number;
@@ -22,30 +24,28 @@ pub(crate) mod places;
 pub(crate) mod roles;
 pub(crate) mod row;
 pub(crate) mod rows;
-pub(crate) mod targets;
 pub(crate) mod text;
 pub(crate) mod times;
 pub(crate) mod understanding;
 pub(crate) mod understood;
 
-pub(crate) use columns::{column_names, column_spec, mapping, mapping_values};
+pub(crate) use columns::{builder, column_names, column_spec, mapping, mapping_values, targets};
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::table::cells::{Cell, Separator, character_column, split, split_line};
-use crate::table::header::{Header, are_units, is_number};
+use crate::table::beginning::{lines_above, next_line, stated_separator};
+use crate::table::cells::{Cell, Separator, character_column, split};
+use crate::table::header::Header;
+use crate::table::header_cells::are_units;
+use crate::table::lines::Lines;
 use crate::table::mapping::ColumnMap;
 use crate::table::places::Places;
-use crate::table::text::{Blocks, Lines, Said};
+use crate::table::text::{Blocks, Said};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::limits::Limit;
 use poecal_storage::looks_like::model_for_table;
 
-/// Most lines in which the header is sought.
-const LINES_ABOVE: usize = 40;
-/// Lines below the first row that show whether all rows have another number of cells than the header.
-const NEAR: usize = 10;
 /// Most lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
@@ -196,160 +196,6 @@ impl<'a> Table<'a> {
             cells: Vec::new(),
             is_first,
         }))
-    }
-}
-
-impl TableRows<'_> {
-    /// The next row that is not empty.
-    pub(crate) fn next(&mut self) -> Result<Option<Row<'_>>> {
-        let Header { path, line: header_line, .. } = *self.header;
-        loop {
-            let Some((line, text)) = self.lines.next() else { return Ok(None) };
-            split_line(path, line, text, self.separator, &mut self.cells)?;
-            let (found, expected) = (self.cells.len(), self.header.cells.len());
-            if self.cells.iter().all(|cell| cell.raw.is_empty()) {
-                continue;
-            }
-            if self.is_ended_otherwise(expected) {
-                self.cells.resize(expected, Cell::EMPTY);
-            } else if found != expected {
-                let place = match self.cells.get(expected) {
-                    Some(extra) => character_column(text, extra.offset),
-                    None => text.trim_end().chars().count() + 1,
-                };
-                return Err(ErrorKind::Syntax
-                    .error(format!(
-                        "found {found} cell{}, expected {expected} as in the header (line {header_line}){}",
-                        if found == 1 { "" } else { "s" },
-                        self.count_hint(text)
-                    ))
-                    .at(path, line, place));
-            }
-            for (at, name) in &self.header.names {
-                if let Some(cell) = self.cells.get(*at).filter(|cell| cell.text().trim() != name) {
-                    let message = format!(
-                        "found the joint `{}` in column `{}`, expected `{name}` as in the first row: write the rows of each order into a file of their own",
-                        cell.text(),
-                        self.header.cells.get(*at).map_or("", |it| it.text.as_str())
-                    );
-                    let place = character_column(text, cell.offset);
-                    return Err(ErrorKind::Measurement.error(message).at(path, line, place));
-                }
-            }
-            self.is_first = false;
-            let line = self.places.map_or(line, |places| places.line(line));
-            return Ok(Some(Row { path, line, text, cells: &self.cells, places: self.places }));
-        }
-    }
-
-    /// Whether a row has only another number of empty cells at its end than the header.
-    fn is_ended_otherwise(&self, expected: usize) -> bool {
-        let found = self.cells.len();
-        let more = self.cells.get(expected..).unwrap_or_default();
-        let missing = self.header.cells.get(found..).unwrap_or_default();
-        found != expected
-            && more.iter().all(|cell| cell.raw.is_empty())
-            && missing.iter().all(|cell| cell.text.is_empty())
-    }
-
-    /// Advice for a row with another number of cells than the header.
-    fn count_hint(&self, text: &str) -> String {
-        let (found, expected) = (self.cells.len(), self.header.cells.len());
-        let mut cells = Vec::new();
-        let is_alike = |line: &str| {
-            let mut cells = Vec::new();
-            split(line, self.separator, &mut cells).is_ok() && cells.len() == found
-        };
-        // The first row, and all others near it.
-        let near: Vec<(usize, &str)> = self.lines.clone().take(NEAR).collect();
-        let is_of_all = self.is_first && near.len() > 1 && near.iter().all(|it| is_alike(it.1));
-        if is_of_all && found.abs_diff(expected) == 1 {
-            return if found > expected {
-                "; all rows have one more: the header has one name too few, as where row numbers have none, put a name in front".to_owned()
-            } else {
-                "; all rows have one fewer: the header has one name too many, take out that of the column that the rows do not have".to_owned()
-            };
-        }
-        let others = [Separator::Comma, Separator::Semicolon, Separator::Tab];
-        let other = others.into_iter().find(|&other| {
-            other != self.separator && split(text, other, &mut cells).is_ok() && cells.len() == expected
-        });
-        if let Some(other) = other {
-            format!("; separated by {} there are {expected}: separate header and rows alike", other.symbol())
-        } else if found > expected && self.separator == Separator::Comma {
-            "; numbers with a decimal comma need another separator, such as `;`, or quotes".to_owned()
-        } else if found < expected {
-            "; add the missing cells (they may be empty), or put `#` in front of a line that is no row"
-                .to_owned()
-        } else {
-            String::new()
-        }
-    }
-}
-
-/// Number of lines above the header of a table that begins with other lines: the first line that names columns and has rows of numbers below it, or
-/// below a line of units, if the lines before are no table.
-fn lines_above(blocks: &Blocks<'_>, map: &ColumnMap) -> usize {
-    let some: Vec<(usize, &str)> = blocks.lines(0).take(LINES_ABOVE).collect();
-    let separator = |text: &str| map.separator.unwrap_or_else(|| Separator::recognised(text));
-    // Numbers of cells with a text and with a number, but for empty ones.
-    let counts = |text: &str, by: Separator| {
-        let mut cells = Vec::new();
-        if split(text, by, &mut cells).is_err() {
-            return (0, 0);
-        }
-        let numbers = cells.iter().filter(|cell| is_number(cell.raw)).count();
-        (cells.iter().filter(|cell| !cell.raw.is_empty()).count() - numbers, numbers)
-    };
-    let is_header = |at: usize| {
-        let Some((_, text)) = some.get(at) else { return false };
-        let by = separator(text);
-        let (names, numbers) = counts(text, by);
-        let is_row = |row: usize| some.get(row).is_some_and(|it| 2 * counts(it.1, by).1 >= names);
-        let is_units = |row: usize| some.get(row).is_some_and(|it| counts(it.1, by).1 == 0);
-        let first = if is_units(at + 1) { at + 2 } else { at + 1 };
-        let is_second = some.get(first + 1).is_none() || is_row(first + 1);
-        names >= 3 && numbers == 0 && is_row(first) && is_second
-    };
-    let is_stated =
-        some.first().is_some_and(|it| it.1.trim_start_matches('"').to_lowercase().starts_with("sep="));
-    if is_stated || is_header(0) {
-        return 0;
-    }
-    // Lines with as many cells are of one table.
-    let width = |at: usize| some.get(at).map(|it| counts(it.1, separator(it.1))).map_or(0, |it| it.0 + it.1);
-    (1..some.len())
-        .find(|at| is_header(*at) && width(*at) != width(0))
-        .and_then(|at| some.get(at))
-        .map_or(0, |it| it.0 - 1)
-}
-
-/// The first line after line `skip` that is neither blank nor a comment.
-fn next_line(blocks: &mut Blocks<'_>, skip: usize) -> Result<Option<(usize, String)>> {
-    loop {
-        if let Some((line, text)) = blocks.lines(skip).next() {
-            return Ok(Some((line, text.to_owned())));
-        }
-        if !blocks.advance()? {
-            return Ok(None);
-        }
-    }
-}
-
-/// The separator stated by a line `sep=;`, as spreadsheets write it.
-fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separator>> {
-    let text = text.strip_prefix('"').and_then(|text| text.trim_end().strip_suffix('"')).unwrap_or(text);
-    let Some(stated) = text.get(..4).filter(|start| start.eq_ignore_ascii_case("sep=")) else {
-        return Ok(None);
-    };
-    let stated = text.get(stated.len()..).unwrap_or_default();
-    let mut characters = stated.chars();
-    let separator = characters.next().and_then(Separator::of);
-    match separator {
-        Some(separator) if characters.all(|c| separator.matches(c) || c == ' ') => Ok(Some(separator)),
-        _ => Err(ErrorKind::Syntax
-            .error(format!("found the separator `{stated}`, expected `,`, `;`, a tab or a blank"))
-            .at(path, line, 1)),
     }
 }
 

@@ -11,6 +11,8 @@ use poecal_numerics::error::Result;
 pub(crate) struct Names {
     first: BTreeMap<&'static str, (bool, PathBuf, usize)>,
     indices: BTreeMap<String, usize>,
+    /// The last name with its index, since most rows have that of the row before.
+    last: Option<(&'static str, Option<String>, usize)>,
 }
 
 impl Names {
@@ -22,14 +24,20 @@ impl Names {
         what: &'static str,
         name: Option<&str>,
     ) -> Result<usize> {
-        self.check(row, column, what, name)?;
-        let name = name.unwrap_or_default();
-        if let Some(&index) = self.indices.get(name) {
-            return Ok(index);
+        if let Some((last_what, last, index)) = &self.last
+            && *last_what == what
+            && last.as_deref() == name
+        {
+            return Ok(*index);
         }
-        let next = self.indices.len();
-        self.indices.insert(name.to_owned(), next);
-        Ok(next)
+        self.check(row, column, what, name)?;
+        let (key, next) = (name.unwrap_or_default(), self.indices.len());
+        let index = self.indices.get(key).copied().unwrap_or_else(|| {
+            self.indices.insert(key.to_owned(), next);
+            next
+        });
+        self.last = Some((what, name.map(str::to_owned), index));
+        Ok(index)
     }
 
     /// Refuses a row that names it where the first did not, or the reverse.

@@ -1,12 +1,13 @@
-//! Text of a file and its lines.
+//! Text of a file.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
 use super::configurations::{self, Configurations};
-use super::encodings::{is_utf16, of_utf16, of_windows_1252};
+use super::encodings::{is_utf16, not_utf8, of_utf16, of_windows_1252};
+use super::lines::Lines;
 use super::places::Places;
-use poecal_numerics::error::{Error, ErrorKind, Result, position};
+use poecal_numerics::error::{ErrorKind, Result, position};
 use poecal_storage::hashes::Hashing;
 use poecal_storage::limits::Limit;
 use poecal_storage::source::{self, Input, unreadable};
@@ -298,68 +299,6 @@ impl<'a> Blocks<'a> {
     pub(crate) fn lines(&self, skip: usize) -> Lines<'_> {
         Lines { rest: Some(&self.text), newline: self.newline.unwrap_or(b'\n'), number: self.lines, skip }
     }
-}
-
-/// The error for bytes that are no text, after so many lines.
-fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
-    let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
-    let found = match bytes.get(valid) {
-        None | Some(0) => "a NUL byte".to_owned(),
-        Some(found) => format!("the byte 0x{found:02X}"),
-    };
-    let (line, column) = position(&before, before.len());
-    ErrorKind::Syntax.error(format!("found {found}, expected text; save the file as `CSV UTF-8`")).at(
-        path,
-        lines + line,
-        column,
-    )
-}
-
-/// Lines with their number (from 1) that are neither blank nor a comment (`#`).
-#[derive(Clone)]
-pub(crate) struct Lines<'a> {
-    rest: Option<&'a str>,
-    newline: u8,
-    number: usize,
-    skip: usize,
-}
-
-impl<'a> Lines<'a> {
-    /// The next line, comments and blank ones too.
-    fn line(&mut self) -> Option<&'a str> {
-        let rest = self.rest?;
-        let end = memchr::memchr(self.newline, rest.as_bytes());
-        self.rest = end.and_then(|end| rest.get(end + 1..));
-        Some(end.and_then(|end| rest.get(..end)).unwrap_or(rest))
-    }
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = (usize, &'a str);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            let line = self.line()?;
-            self.number += 1;
-            let line = line.strip_suffix('\r').unwrap_or(line);
-            let content = line.trim_start();
-            if self.number > self.skip && !content.is_empty() && !is_comment(content) {
-                return Some((self.number, line));
-            }
-        }
-    }
-}
-
-/// Error values of spreadsheets; other lines that begin with `#` are comments.
-const SPREADSHEET_ERRORS: [&str; 7] = ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
-
-/// Whether a line is blank or a comment.
-fn is_comment(content: &str) -> bool {
-    let is_cell = |error: &str| {
-        let rest = content.strip_prefix(error);
-        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with([',', ';', '\t']))
-    };
-    content.starts_with('#') && !SPREADSHEET_ERRORS.into_iter().any(is_cell)
 }
 
 #[cfg(test)]

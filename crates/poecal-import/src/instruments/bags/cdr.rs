@@ -1,10 +1,9 @@
 //! Numbers and texts of messages of ROS 2: CDR (XCDR1), of either byte order.
 
+use poecal_storage::containers::mcap::LONGEST_NAME;
+
 /// Bytes before the first value, from behind which values are aligned.
 const HEAD: usize = 4;
-
-/// Longest name, bytes: those of frames are held.
-pub(crate) const LONGEST_NAME: usize = 4096;
 
 /// A message, read from its beginning on.
 #[derive(Clone, Debug)]

@@ -4,24 +4,22 @@ mod bodies;
 mod cdr;
 mod choice;
 mod clock;
-mod container;
 mod joints;
 mod messages;
 mod parts;
 #[cfg(test)]
 mod tests;
 mod topics;
-mod unpack;
 
 use std::io;
 use std::path::Path;
 
 use self::clock::SECOND;
-use self::container::Damage;
 use self::topics::{Topic, Topics};
 use super::{BAG, Made, Opening, Recording};
 use crate::GivenBag;
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::containers::mcap::{self, Damage};
 use poecal_storage::disk::is_file;
 use poecal_storage::hashes::Hashing;
 use poecal_storage::limits::{Limit, amount};
@@ -46,10 +44,10 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
             true => source::open_streamed(part, EXPECTED, Limit::Bag)?,
             false => source::open_any(part, EXPECTED, Limit::Bag)?,
         };
-        unpacked = unpacked.saturating_add(container::stated_size(&mut input).map_err(unreadable)?);
+        unpacked = unpacked.saturating_add(mcap::stated_size(&mut input).map_err(unreadable)?);
         refuse_large(unpacked, path)?;
         let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
-        if !head.starts_with(container::MAGIC) {
+        if !head.starts_with(mcap::MAGIC) {
             let message = format!("found a file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));
         }
@@ -69,7 +67,7 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
 pub(crate) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Recording> {
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
-    let stated = container::stated_size(&mut given.mcap.as_ref());
+    let stated = mcap::stated_size(&mut given.mcap.as_ref());
     refuse_large(stated.map_err(|error| source::unreadable(&given.path, &error, EXPECTED))?, &given.path)?;
     let warned = take(&mut given.mcap.as_ref(), &mut topics, &given.path, None)?;
     Ok(recording(&topics, opening, &given.sha256, warned))
@@ -83,7 +81,7 @@ fn take(
     name: Option<&Path>,
 ) -> Result<Vec<String>> {
     topics.begin_file();
-    let damage = container::read(&mut input, topics);
+    let damage = mcap::read(&mut input, topics);
     let damage = damage.map_err(|error| source::unreadable(path, &error, EXPECTED))?;
     match &topics.refused {
         Some(sentence) => Err(ErrorKind::Measurement.error(sentence.clone()).in_file(path)),

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::EXPECTED;
-use super::container::MAGIC;
 use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
 use poecal_numerics::error::{ErrorKind, Result};
+use poecal_storage::containers::mcap::MAGIC;
 use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::limits::Limit;
 use poecal_storage::source;

@@ -5,14 +5,13 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use super::container::{self, MAGIC, op};
 use super::messages::tests::Writer as Cdr;
 use super::topics::Topics;
-use super::unpack::unpack;
 use crate::{MeasurementFile, ReadOptions, read};
 use poecal_arm::lie::rotation;
 use poecal_model::robot::Robot;
 use poecal_model::simulate::elbow;
+use poecal_storage::containers::mcap::{self, MAGIC, Records as _, op};
 use poecal_storage::limits::{self, Limit};
 
 const JOINTS: &str = "sensor_msgs/msg/JointState";
@@ -357,7 +356,7 @@ fn no_bytes_end_in_a_panic() {
     let whole = bag(&messages);
     let try_bytes = |bytes: &[u8]| {
         let mut topics = Topics::new(&names);
-        let damage = container::read(&mut Cursor::new(bytes), &mut topics).unwrap();
+        let damage = mcap::read(&mut Cursor::new(bytes), &mut topics).unwrap();
         let read: u64 = topics.all.iter().map(|it| it.count).sum();
         assert!(read <= 120);
         (damage.end.is_some() || !damage.chunks.is_empty(), read)
@@ -403,33 +402,9 @@ fn what_ends_a_file_is_said() {
         ([&begun[..], &record(op::FOOTER, &[&[0; 20]])].concat(), None),
     ] {
         let mut topics = Topics::new(&[]);
-        let damage = container::read(&mut Cursor::new(bytes), &mut topics).unwrap();
+        let damage = mcap::read(&mut Cursor::new(bytes), &mut topics).unwrap();
         assert_eq!(damage.end, expected.map(|(at, why)| (at, why.to_owned())));
     }
-}
-
-#[test]
-fn chunks_are_unpacked_and_damaged_ones_are_errors() {
-    let bytes: Vec<u8> = (0..100_000_u32).flat_map(|it| (it / 7).to_le_bytes()).collect();
-    let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
-    let mut lz4 = lz4_flex::frame::FrameEncoder::new(Vec::new());
-    std::io::Write::write_all(&mut lz4, &bytes).unwrap();
-    let lz4 = lz4.finish().unwrap();
-    let mut into = Vec::new();
-    // Two frames are one after the other.
-    unpack(&[zstd.clone(), zstd.clone()].concat(), "zstd", 2 * bytes.len() as u64, &mut into).unwrap();
-    assert_eq!(into, [bytes.clone(), bytes.clone()].concat());
-    for (packed, how) in [(&zstd, "zstd"), (&lz4, "lz4")] {
-        unpack(packed, how, bytes.len() as u64, &mut into).unwrap();
-        assert_eq!(into, bytes);
-        for at in (0..packed.len()).step_by(packed.len() / 200 + 1) {
-            let _ = unpack(&packed[..at], how, 400_000, &mut into);
-            let mut flipped = packed.clone();
-            flipped[at] ^= 0x41;
-            let _ = unpack(&flipped, how, 400_000, &mut into);
-        }
-    }
-    assert!(unpack(&zstd, "brotli", 400_000, &mut into).unwrap_err().contains("the compression `brotli`"));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::bodies::Bodies;
 use super::joints::Readings;
 use super::messages::{Kind, joint_state, poses};
 use poecal_numerics::error::shown;
+use poecal_storage::containers::mcap::Records;
 use poecal_storage::limits::Limit;
 
 /// Most topics in a list.
@@ -134,13 +135,28 @@ impl<'a> Topics<'a> {
         self.channels.clear();
     }
 
-    /// Takes a type of messages.
-    pub(crate) fn schema(&mut self, id: u16, name: &str) {
+    /// Seconds of a time in the log since the first message.
+    pub(crate) fn since_first_s(&self, log_ns: u64) -> f64 {
+        log_ns.saturating_sub(self.span_ns.map_or(0, |it| it.0)) as f64 / 1e9
+    }
+
+    /// All topics in words.
+    pub(crate) fn words(&self) -> String {
+        let words: Vec<String> = self.all.iter().take(LISTED).map(Topic::words).collect();
+        match self.all.len().saturating_sub(LISTED) {
+            _ if words.is_empty() => "no topic".to_owned(),
+            0 => words.join(", "),
+            more => format!("{} and {more} more", words.join(", ")),
+        }
+    }
+}
+
+impl Records for Topics<'_> {
+    fn schema(&mut self, id: u16, name: &str) {
         self.schemas.insert(id, name.to_owned());
     }
 
-    /// Takes a channel.
-    pub(crate) fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str) {
+    fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str) {
         let of = self.schemas.get(&schema).map_or("no type", String::as_str);
         let is_cdr = encoding == "cdr";
         let title = if is_cdr { of.to_owned() } else { format!("{of} in {encoding}") };
@@ -163,8 +179,7 @@ impl<'a> Topics<'a> {
         self.channels.insert(id, at);
     }
 
-    /// Takes a message.
-    pub(crate) fn message(&mut self, channel: u16, log_ns: u64, message: &[u8]) {
+    fn message(&mut self, channel: u16, log_ns: u64, message: &[u8]) {
         let (first, last) = self.span_ns.unwrap_or((log_ns, log_ns));
         self.span_ns = Some((first.min(log_ns), last.max(log_ns)));
         match self.channels.get(&channel).and_then(|at| self.all.get_mut(*at)) {
@@ -182,18 +197,7 @@ impl<'a> Topics<'a> {
         }
     }
 
-    /// Seconds of a time in the log since the first message.
-    pub(crate) fn since_first_s(&self, log_ns: u64) -> f64 {
-        log_ns.saturating_sub(self.span_ns.map_or(0, |it| it.0)) as f64 / 1e9
-    }
-
-    /// All topics in words.
-    pub(crate) fn words(&self) -> String {
-        let words: Vec<String> = self.all.iter().take(LISTED).map(Topic::words).collect();
-        match self.all.len().saturating_sub(LISTED) {
-            _ if words.is_empty() => "no topic".to_owned(),
-            0 => words.join(", "),
-            more => format!("{} and {more} more", words.join(", ")),
-        }
+    fn is_full(&self) -> bool {
+        self.refused.is_some()
     }
 }

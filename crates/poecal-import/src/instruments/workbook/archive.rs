@@ -8,6 +8,8 @@ use zip::ZipArchive;
 
 use poecal_storage::limits::{Limit, amount};
 
+/// The part that names the sheets of a binary workbook (.xlsb), whose reader does not check lengths.
+const BINARY: &str = "xl/workbook.bin";
 /// The part of .ods that holds all sheets.
 const CONTENT: &str = "content.xml";
 /// Most columns of a row in .ods: the others are left out by its reader.
@@ -27,13 +29,19 @@ impl Parts {
     /// Unpacks all parts without holding them.
     ///
     /// # Errors
-    /// The sentence of the limit that is exceeded. An archive that cannot be read is no matter of limits.
+    /// A binary workbook, or the sentence of the limit that is exceeded. An archive that cannot be read is no matter of limits.
     pub(crate) fn of(bytes: &[u8]) -> Result<Self, String> {
         let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Parts::default()) };
         let most = Limit::Unpacked.most();
         let (mut sum, mut parts) = (0_u64, Parts::default());
         for at in 0..archive.len() {
             let Ok(part) = archive.by_index(at) else { continue };
+            if part.name().eq_ignore_ascii_case(BINARY) {
+                return Err(
+                    "found a binary workbook (.xlsb), expected .xlsx, .xls or .ods: save it as .xlsx"
+                        .to_owned(),
+                );
+            }
             let is_content = part.name() == CONTENT;
             let mut counted = Counted { inner: part.take(most - sum + 1), count: 0 };
             let cells = if is_content { cells_of_ods(&mut counted) } else { Ok(()) };
@@ -223,6 +231,14 @@ mod tests {
             "<office:spreadsheet><table:table table:name='A'>{rows}</table:table></office:spreadsheet>"
         );
         limits::on(limits::here().with(Limit::Cells, most), || cells_of_ods(content.as_bytes()).err())
+    }
+
+    #[test]
+    fn a_binary_workbook_is_refused_by_name() {
+        let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        archive.start_file(BINARY, zip::write::SimpleFileOptions::default()).unwrap();
+        let error = Parts::of(&archive.finish().unwrap().into_inner()).unwrap_err();
+        assert!(error.starts_with("found a binary workbook (.xlsb)"), "{error}");
     }
 
     #[test]

@@ -1,12 +1,10 @@
-//! Workbooks of spreadsheets (.xlsx, .xlsm, .xlsb, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
+//! Workbooks of spreadsheets (.xlsx, .xlsm, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
 //!
 //! The sizes of an archive are bounded before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read here
-//! (`old.rs`, from their container, `container.rs`), and binary ones (`binary.rs`), since no other reader bounds them.
+//! (`old.rs`), since no other reader bounds them.
 
 mod archive;
-mod binary;
 mod cells;
-mod container;
 mod numbers;
 mod old;
 
@@ -22,6 +20,7 @@ use super::words::{number, quoted};
 use super::workbook_cells::{no_number, refuse_uncomputed};
 use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
+use poecal_storage::containers::office;
 
 /// Rows in which the header is sought.
 const FIRST: usize = 60;
@@ -43,13 +42,10 @@ enum Workbook<'b> {
 
 impl<'b> Workbook<'b> {
     fn open(bytes: &'b [u8]) -> Result<Self, String> {
-        if bytes.starts_with(container::MAGIC) {
+        if bytes.starts_with(office::MAGIC) {
             return old::sheets(bytes).map(Workbook::Read);
         }
         let parts = Parts::of(bytes)?;
-        if let Some(sheets) = binary::sheets(bytes, parts)? {
-            return Ok(Workbook::Read(sheets));
-        }
         let cursor = Cursor::new(bytes);
         let book = Xlsx::new(cursor.clone()).map(Sheets::Xlsx).or_else(|_| Ods::new(cursor).map(Sheets::Ods)).map_err(|_| {
             "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \

@@ -1,8 +1,7 @@
 //! Cells of workbooks that are read here: how numbers are stored, and what cells share: texts, and the styles that say which are dates.
 
 use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
-
-use super::super::fields::Fields;
+use poecal_storage::containers::fields::Fields;
 
 /// What the cells of a workbook share.
 #[derive(Default)]

@@ -2,10 +2,10 @@
 
 use calamine::Data;
 
-use super::super::fields::Fields;
 use super::cells::{Found, Left, ReadSheet};
-use super::container::workbook;
 use super::numbers::{Shared, long, short, wide};
+use poecal_storage::containers::fields::Fields;
+use poecal_storage::containers::office::workbook;
 
 /// Kinds of records.
 mod kind {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::super::builder::Builder;
-use super::super::header::unit_in_name;
+use super::super::header_cells::unit_in_name;
 use super::super::inputs::{Input, InputSource};
 use super::super::kinds::{is_our_name, our_names};
+use super::builder::Builder;
 use poecal_numerics::error::{Error, ErrorKind, Result, distance_within};
 
 impl Builder<'_> {

@@ -1,7 +1,9 @@
 //! Joint readings that are made of what a controller counts: columns as a calibration kept them, and third axes that count from the level.
 
-use crate::table::builder::Builder;
-use crate::table::inputs::{Input, Term};
+use std::collections::BTreeMap;
+
+use super::builder::Builder;
+use crate::table::inputs::{Input, InputSource, Term};
 use poecal_model::robot::{Controller, ControllerColumn, ControllerReading, Robot, ThirdAxis, level};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
@@ -82,6 +84,54 @@ impl Builder<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Adds a sum of columns.
+    pub(crate) fn sum_input(
+        &mut self,
+        name: &str,
+        columns: &BTreeMap<String, f64>,
+        quantity: Unit,
+        unit: Option<NamedUnit>,
+        purpose: &str,
+    ) -> Result<usize> {
+        if !self.readings.contains(name) {
+            return Err(ErrorKind::Measurement
+                .error(format!(
+                    "found `columns` {purpose}, expected one column: only joints are sums of columns"
+                ))
+                .in_file(&self.map.path));
+        }
+        let columns: Vec<_> =
+            columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();
+        self.joined_input(name, &columns, quantity, unit, purpose)
+    }
+
+    /// Adds a sum of columns, each with its factor, and its unit where it states none.
+    pub(crate) fn joined_input(
+        &mut self,
+        name: &str,
+        columns: &[(String, f64, Option<NamedUnit>)],
+        quantity: Unit,
+        unit: Option<NamedUnit>,
+        purpose: &str,
+    ) -> Result<usize> {
+        let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
+        let at = self.inputs.len();
+        for (column, _, unstated) in columns {
+            let unstated = unstated.map(|unit| (unit, UnitSource::Mapping));
+            self.column_or(name, column, quantity, (unit, unstated), purpose)?;
+        }
+        let parts = self.inputs.split_off(at);
+        for (part, (_, factor, _)) in parts.iter().zip(columns) {
+            if let InputSource::Column(column) = part.source {
+                sum.push(Term { column, unit: part.unit, factor: *factor });
+            }
+        }
+        let label = self.label(&sum);
+        // If unit and place are unique, the first column represents all.
+        self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
+        Ok(at)
     }
 
     /// How the readings of the joints, the first inputs, are made of columns; `None` where each is one column and nothing is stated.

@@ -1,7 +1,8 @@
 //! Robot makers' columns of orientations without a unique meaning.
 
 use crate::table::conventions::{AMBIGUOUS, CONVENTIONS};
-use crate::table::header::{Header, HeaderCell};
+use crate::table::header::Header;
+use crate::table::header_cells::HeaderCell;
 use crate::table::inputs::InputSource;
 use crate::table::layout::ColumnLayout;
 use crate::table::mapping::ColumnMap;

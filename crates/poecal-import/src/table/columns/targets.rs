@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use super::super::conventions::Convention;
+use super::super::inputs::{InputSource, Term};
+use super::super::kinds::{self, Kind, KindColumns};
+use super::super::orientation::OrientationForm;
 use super::builder::Builder;
-use super::cells::{Separator, split};
 use super::column_spec::ColumnSpec;
-use super::conventions::{CONVENTIONS, Convention};
-use super::inputs::{InputSource, Term};
-use super::kinds::{self, Kind, KindColumns};
 use super::mapping::{OrientationSpec, PositionSpec, TargetSpec};
-use super::orientation::OrientationForm;
 use poecal_numerics::error::{ErrorKind, MissingColumn, Result};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
@@ -102,14 +101,8 @@ impl Builder<'_> {
         })
     }
 
-    /// Whether the position is in columns X, Y, Z, in large letters.
-    fn has_large_axes(&self) -> bool {
-        !["x", "y", "z"].iter().any(|name| self.has(name))
-            && ["X", "Y", "Z"].iter().all(|name| self.has(name))
-    }
-
     /// Whether the header has a column of this name that is not used otherwise.
-    fn has(&self, name: &str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.header.count(name) > 0 && !self.readings.contains(name)
     }
 
@@ -195,57 +188,6 @@ impl Builder<'_> {
     /// The unit of a maker, where nothing states one; with a line of units, an empty cell in it may have been forgotten.
     fn usual(&self, unit: Option<NamedUnit>) -> Option<(NamedUnit, UnitSource)> {
         unit.filter(|_| self.header.units_line.is_none()).map(|unit| (unit, UnitSource::Maker))
-    }
-
-    /// The convention of a maker whose columns the header has beside its X, Y, Z, and these: all with units or none, and numbers in the first row.
-    fn convention(&self) -> Option<(&'static Convention, Vec<String>)> {
-        let has_mapped_position = self.map.position.is_some();
-        let first: Vec<Option<f64>> =
-            self.first_numbers().filter(|_| self.has_large_axes() && !has_mapped_position)?;
-        let is_stated = |at: usize, quantity| Some(self.header.unit(at, quantity, "").ok()?.is_some());
-        let is_placed = is_stated(self.header.find("X").ok()??, Unit::Metre)?;
-        CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
-            let quantity = it.form.quantity();
-            let at =
-                it.columns.iter().map(|name| self.makers_column(name)).collect::<Option<Vec<usize>>>()?;
-            let are_stated = at.iter().map(|at| is_stated(*at, quantity)).collect::<Option<Vec<bool>>>()?;
-            let numbers = at.iter().map(|at| *first.get(*at)?).collect::<Option<Vec<f64>>>()?;
-            let is_alike = quantity == Unit::One || are_stated.iter().all(|it| *it == is_placed);
-            let is_known = is_placed || self.header.units_line.is_none();
-            (is_alike && is_known && it.form.rotation(&numbers).is_ok()).then(|| {
-                (
-                    it,
-                    at.iter()
-                        .filter_map(|at| self.header.cells.get(*at))
-                        .map(|cell| cell.name.clone())
-                        .collect(),
-                )
-            })
-        })
-    }
-
-    /// The unused column of a maker: letters as the maker writes them, but for those of quaternions, of which there are no more.
-    fn makers_column(&self, name: &str) -> Option<usize> {
-        let letter = name.strip_suffix(|it: char| it.is_ascii_digit());
-        let is_it = |text: &str| text == name || letter.is_some() && text.eq_ignore_ascii_case(name);
-        // Joints may be called q1 to q6.
-        let numbers = letter.map(|letter| {
-            let of = |text: &str| {
-                text.to_lowercase().strip_prefix(letter).is_some_and(|it| it.parse::<u32>().is_ok())
-            };
-            self.header.cells.iter().filter(|cell| of(&cell.name)).count()
-        });
-        let mut cells = self.header.cells.iter().enumerate();
-        let (at, cell) = cells.find(|(at, cell)| is_it(&cell.name) && !self.is_used(*at))?;
-        (!self.readings.contains(&cell.name) && numbers.is_none_or(|it| it == 4)).then_some(at)
-    }
-
-    /// The numbers of the first row.
-    fn first_numbers(&self) -> Option<Vec<Option<f64>>> {
-        let row = self.header.first_row()?;
-        let mut cells = Vec::new();
-        split(&row, Separator::recognised(&row), &mut cells).ok()?;
-        Some(cells.iter().map(|cell| cell.raw.replace(',', ".").parse().ok()).collect())
     }
 
     /// The form of the orientation columns with our own names: all of one form, or none.

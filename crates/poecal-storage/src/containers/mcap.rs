@@ -2,33 +2,45 @@
 
 use std::io::{self, BufReader, Read};
 
-use super::super::fields::Fields;
-use super::cdr::LONGEST_NAME;
-use super::topics::Topics;
+use super::fields::Fields;
 use super::unpack::unpack;
-use poecal_storage::limits::{Limit, amount};
+use crate::limits::{Limit, amount};
 
 /// Bytes that files begin with.
-pub(crate) const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
+pub const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
+/// Longest name, bytes: those of topics and types are held.
+pub const LONGEST_NAME: usize = 4096;
 /// Bytes that are read at a time.
 const STEP: usize = 1 << 18;
 /// Bytes of a record before what it holds: its kind, and its length.
 const HEAD: usize = 9;
 
 /// Kinds of records, <https://mcap.dev/spec#opcodes>.
-pub(crate) mod op {
+pub mod op {
     /// The last record: where the summary is.
-    pub(crate) const FOOTER: u8 = 0x02;
+    pub const FOOTER: u8 = 0x02;
     /// A type of messages.
-    pub(crate) const SCHEMA: u8 = 0x03;
+    pub const SCHEMA: u8 = 0x03;
     /// A topic.
-    pub(crate) const CHANNEL: u8 = 0x04;
+    pub const CHANNEL: u8 = 0x04;
     /// A message.
-    pub(crate) const MESSAGE: u8 = 0x05;
+    pub const MESSAGE: u8 = 0x05;
     /// Records, maybe packed.
-    pub(crate) const CHUNK: u8 = 0x06;
+    pub const CHUNK: u8 = 0x06;
     /// The end of the messages.
-    pub(crate) const DATA_END: u8 = 0x0F;
+    pub const DATA_END: u8 = 0x0F;
+}
+
+/// Takes the records of a file.
+pub trait Records {
+    /// A type of messages by its number.
+    fn schema(&mut self, id: u16, name: &str);
+    /// A topic by its number, with that of its type and its encoding.
+    fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str);
+    /// A message of a topic, with its time in the log, nanoseconds.
+    fn message(&mut self, channel: u16, log_ns: u64, data: &[u8]);
+    /// Whether no more is taken.
+    fn is_full(&self) -> bool;
 }
 
 /// Why a file ends.
@@ -36,13 +48,13 @@ const CUT: &str = "it is cut off";
 
 /// What is wrong with a file.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Damage {
+pub struct Damage {
     /// Where it ends before its end, or from where on nothing can be read, and why.
-    pub(crate) end: Option<(u64, String)>,
+    pub end: Option<(u64, String)>,
     /// The first chunks that were left out: where each begins, why, and the times of its messages.
-    pub(crate) chunks: Vec<(u64, String, (u64, u64))>,
+    pub chunks: Vec<(u64, String, (u64, u64))>,
     /// Number of the others.
-    pub(crate) others: usize,
+    pub others: usize,
 }
 
 /// Most damaged places that are named.
@@ -60,7 +72,7 @@ impl Damage {
 }
 
 /// Bytes that the records of a file have after they are unpacked, as their heads state: nothing is unpacked, and a chunk is held to it later.
-pub(crate) fn stated_size(input: &mut impl Read) -> io::Result<u64> {
+pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
     let mut input = BufReader::with_capacity(STEP, input);
     let mut data = Vec::new();
     let mut sum = 0_u64;
@@ -91,7 +103,7 @@ pub(crate) fn stated_size(input: &mut impl Read) -> io::Result<u64> {
 }
 
 /// Reads a file up to the end of its messages, or as far as that goes.
-pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result<Damage> {
+pub fn read(input: &mut impl Read, taker: &mut impl Records) -> io::Result<Damage> {
     let mut input = BufReader::with_capacity(STEP, input);
     let (mut damage, mut data, mut unpacked) = (Damage::default(), Vec::new(), Vec::new());
     let mut at = MAGIC.len() as u64;
@@ -100,7 +112,7 @@ pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
         damage.end = Some((at, if is_whole { "Bad magic number" } else { CUT }.to_owned()));
         return Ok(damage);
     }
-    while topics.refused.is_none() {
+    while !taker.is_full() {
         let mut times = (0, 0);
         let taken = match next(&mut input, &mut data)? {
             Err(why) => {
@@ -109,8 +121,8 @@ pub(crate) fn read(input: &mut impl Read, topics: &mut Topics<'_>) -> io::Result
             }
             Ok(op::DATA_END | op::FOOTER) => break,
             // Chunks are unpacked here: one that is damaged is left out as a whole.
-            Ok(op::CHUNK) => chunk(&data, &mut unpacked, topics, &mut times),
-            Ok(opcode) => record(opcode, &data, topics),
+            Ok(op::CHUNK) => chunk(&data, &mut unpacked, taker, &mut times),
+            Ok(opcode) => record(opcode, &data, taker),
         };
         if let Err(why) = taken {
             damage.add(at, why, times);
@@ -158,7 +170,7 @@ fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bo
 fn chunk(
     data: &[u8],
     unpacked: &mut Vec<u8>,
-    topics: &mut Topics<'_>,
+    taker: &mut impl Records,
     times: &mut (u64, u64),
 ) -> Result<(), String> {
     let mut fields = Fields(data);
@@ -181,26 +193,26 @@ fn chunk(
         return Err("another checksum than stated".to_owned());
     }
     let mut rest = Fields(records);
-    while !rest.0.is_empty() && topics.refused.is_none() {
+    while !rest.0.is_empty() && !taker.is_full() {
         let (opcode, own) = rest.u8().zip(rest.counted()).ok_or(SHORT)?;
-        record(opcode, own, topics)?;
+        record(opcode, own, taker)?;
     }
     Ok(())
 }
 
 /// Takes a record that is no chunk.
-fn record(opcode: u8, data: &[u8], topics: &mut Topics<'_>) -> Result<(), String> {
+fn record(opcode: u8, data: &[u8], taker: &mut impl Records) -> Result<(), String> {
     let mut fields = Fields(data);
     let mut take = || -> Option<()> {
         match opcode {
-            op::SCHEMA => topics.schema(fields.u16()?, name(&mut fields)?),
+            op::SCHEMA => taker.schema(fields.u16()?, name(&mut fields)?),
             op::CHANNEL => {
                 let (id, schema) = (fields.u16()?, fields.u16()?);
-                topics.channel(id, schema, name(&mut fields)?, name(&mut fields)?);
+                taker.channel(id, schema, name(&mut fields)?, name(&mut fields)?);
             }
             op::MESSAGE => {
                 let (channel, _, log_ns, _) = (fields.u16()?, fields.u32()?, fields.u64()?, fields.u64()?);
-                topics.message(channel, log_ns, fields.0);
+                taker.message(channel, log_ns, fields.0);
             }
             _ => {}
         }

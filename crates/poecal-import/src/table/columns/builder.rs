@@ -2,13 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::super::header::Header;
+use super::super::inputs::{Input, InputSource, Term};
+use super::super::kinds::is_our_name;
+use super::super::numbered::numbered;
+use super::super::times::seconds_of;
 use super::column_spec::ColumnSpec;
-use super::header::Header;
-use super::inputs::{Input, InputSource, Term};
-use super::kinds::is_our_name;
 use super::mapping::ColumnMap;
-use super::numbered::numbered;
-use super::times::seconds_of;
 use poecal_model::robot::{Controller, FactorReading, ReadingKind, Robot, sum_words};
 use poecal_numerics::error::{ErrorKind, MissingColumn, Result, first_few};
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
@@ -210,54 +210,6 @@ impl<'a> Builder<'a> {
         let (name, label, source) = (name.to_owned(), column.to_owned(), InputSource::Column(index));
         self.inputs.push(Input { name, label, source, unit, unit_from, sum: Vec::new(), offset: 0.0 });
         Ok(self.inputs.len() - 1)
-    }
-
-    /// Adds a sum of columns.
-    pub(crate) fn sum_input(
-        &mut self,
-        name: &str,
-        columns: &BTreeMap<String, f64>,
-        quantity: Unit,
-        unit: Option<NamedUnit>,
-        purpose: &str,
-    ) -> Result<usize> {
-        if !self.readings.contains(name) {
-            return Err(ErrorKind::Measurement
-                .error(format!(
-                    "found `columns` {purpose}, expected one column: only joints are sums of columns"
-                ))
-                .in_file(&self.map.path));
-        }
-        let columns: Vec<_> =
-            columns.iter().map(|(column, &factor)| (column.clone(), factor, None)).collect();
-        self.joined_input(name, &columns, quantity, unit, purpose)
-    }
-
-    /// Adds a sum of columns, each with its factor, and its unit where it states none.
-    pub(crate) fn joined_input(
-        &mut self,
-        name: &str,
-        columns: &[(String, f64, Option<NamedUnit>)],
-        quantity: Unit,
-        unit: Option<NamedUnit>,
-        purpose: &str,
-    ) -> Result<usize> {
-        let mut sum: Vec<Term> = Vec::with_capacity(columns.len());
-        let at = self.inputs.len();
-        for (column, _, unstated) in columns {
-            let unstated = unstated.map(|unit| (unit, UnitSource::Mapping));
-            self.column_or(name, column, quantity, (unit, unstated), purpose)?;
-        }
-        let parts = self.inputs.split_off(at);
-        for (part, (_, factor, _)) in parts.iter().zip(columns) {
-            if let InputSource::Column(column) = part.source {
-                sum.push(Term { column, unit: part.unit, factor: *factor });
-            }
-        }
-        let label = self.label(&sum);
-        // If unit and place are unique, the first column represents all.
-        self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
-        Ok(at)
     }
 
     /// Index of a required column.

@@ -2,11 +2,11 @@
 
 /// The bytes that are left.
 #[derive(Clone, Copy)]
-pub(crate) struct Fields<'b>(pub(crate) &'b [u8]);
+pub struct Fields<'b>(pub &'b [u8]);
 
 impl<'b> Fields<'b> {
     /// So many bytes.
-    pub(crate) fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
+    pub fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
         let (found, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(found)
@@ -14,7 +14,7 @@ impl<'b> Fields<'b> {
 
     /// Bytes with their number before them.
     #[cfg(feature = "bags")]
-    pub(crate) fn counted(&mut self) -> Option<&'b [u8]> {
+    pub fn counted(&mut self) -> Option<&'b [u8]> {
         let count = self.u64()?;
         self.bytes(usize::try_from(count).ok()?)
     }
@@ -23,24 +23,28 @@ impl<'b> Fields<'b> {
         self.bytes(N)?.try_into().ok()
     }
 
-    pub(crate) fn u8(&mut self) -> Option<u8> {
+    /// A byte.
+    pub fn u8(&mut self) -> Option<u8> {
         self.take().map(u8::from_le_bytes)
     }
 
-    pub(crate) fn u16(&mut self) -> Option<u16> {
+    /// A number of two bytes.
+    pub fn u16(&mut self) -> Option<u16> {
         self.take().map(u16::from_le_bytes)
     }
 
-    pub(crate) fn u32(&mut self) -> Option<u32> {
+    /// A number of four bytes.
+    pub fn u32(&mut self) -> Option<u32> {
         self.take().map(u32::from_le_bytes)
     }
 
-    pub(crate) fn u64(&mut self) -> Option<u64> {
+    /// A number of eight bytes.
+    pub fn u64(&mut self) -> Option<u64> {
         self.take().map(u64::from_le_bytes)
     }
 
     /// A number and its place.
-    pub(crate) fn index(&mut self) -> Option<usize> {
+    pub fn index(&mut self) -> Option<usize> {
         usize::try_from(self.u32()?).ok()
     }
 }

@@ -1,9 +1,9 @@
 //! The container of old workbooks (.xls), MS-CFB: streams in chains of sectors.
 
-use super::super::fields::Fields;
+use super::fields::Fields;
 
 /// How a container begins.
-pub(crate) const MAGIC: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
+pub const MAGIC: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
 /// Names of the stream that is a workbook.
 const WORKBOOK: [&str; 4] = ["Workbook", "Book", "WORKBOOK", "BOOK"];
 /// Sectors from here on are marks.
@@ -24,7 +24,7 @@ struct Container<'b> {
 }
 
 /// The stream of the workbook; `None` of a container that is damaged or has none.
-pub(crate) fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
+pub fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
     let shift = Fields(bytes.get(30..)?).u16()?;
     if !bytes.starts_with(MAGIC) || !matches!(shift, 9 | 12) {
         return None;

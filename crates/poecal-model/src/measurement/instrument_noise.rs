@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use nalgebra::Vector3;
 
-use poecal_model::measurement::{Dataset, Measurement, NoiseShape, Quantity};
+use super::{Dataset, Measurement, NoiseShape, Quantity};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_numerics::named_unit::positive_length_m;
 
@@ -51,7 +51,7 @@ fn bad(text: &str) -> Error {
 
 impl InstrumentNoise {
     /// States the noise of the rows of its instrument that state none.
-    pub(crate) fn state(&self, data: &mut Dataset) -> Result<()> {
+    pub fn state(&self, data: &mut Dataset) -> Result<()> {
         let station = match &self.name {
             None => None,
             Some(name) => match data.stations.iter().position(|it| it.as_ref() == Some(name)) {

@@ -1,0 +1,57 @@
+//! Stands of two files that are joined, and readings at which nothing was measured.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::join::join_pairs::Joined;
+use crate::join::no_stands::NoStands;
+use poecal_fit::start::{FEWEST_PAIRS, MeasuredStands};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+
+/// Joint readings at which no file so far has a measurement.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Unmeasured {
+    pub(super) rows: Option<BTreeSet<usize>>,
+    /// Where the warning of these is among all.
+    pub(super) at: usize,
+}
+
+impl Unmeasured {
+    /// Adds a file of measurements.
+    pub(super) fn include(&mut self, rows: Vec<usize>, at: usize) {
+        let rows: BTreeSet<usize> = rows.into_iter().collect();
+        match &mut self.rows {
+            Some(known) => known.retain(|it| rows.contains(it)),
+            None => (self.rows, self.at) = (Some(rows), at),
+        }
+    }
+}
+
+/// Takes the means of stands, and says how their rows scatter.
+pub(super) fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
+    found.notes.push(format!(
+        "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
+        path.display(),
+        1e3 * stands.scatter_m
+    ));
+    found.warnings.extend(stands.warnings.iter().map(|it| format!("{}: {it}", path.display())));
+    found.readings.means = stands.means;
+}
+
+/// Refuses a recording whose times go back.
+pub(super) fn refuse_backwards(path: &Path, why: &NoStands) -> Result<()> {
+    let NoStands::Recorded { why, back: Some(line) } = why else { return Ok(()) };
+    let message = format!(
+        "found {why}, expected rows in the order of their times: sort them, or leave out those of another recording"
+    );
+    Err(ErrorKind::Measurement.error(message).at_line(path, *line))
+}
+
+/// The error of a stream in which the robot hardly stands.
+pub(super) fn no_stands(path: &Path, what: &str, count: usize) -> Error {
+    ErrorKind::Measurement
+        .error(format!(
+            "found a stream of {what} with {count} times in which nothing moves for 0.3 s or longer, expected at least {FEWEST_PAIRS} stands: let the robot stop at each configuration, or join the recordings in motion (--join motion), or rows of the same time (--join rows)"
+        ))
+        .in_file(path)
+}

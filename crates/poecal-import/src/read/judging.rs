@@ -1,0 +1,63 @@
+//! Judges what was read: units, spread, and components that are missing.
+
+use std::path::Path;
+
+use super::Reader;
+use crate::table::Table;
+use crate::table::cursor::Cursor;
+use poecal_fit::input_doubts::{lengths, spread};
+use poecal_model::measurement::Observation;
+use poecal_numerics::error::Result;
+use poecal_numerics::text::NamedLines;
+
+impl Reader<'_> {
+    /// Judges the scale of the readings and of what was measured.
+    pub(super) fn judge(&mut self, table: &Table<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
+        let header = &table.header;
+        self.found.warnings.extend(cursor.joint_warnings(header)?);
+        cursor.check_orientations(header)?;
+        let slides_m = cursor.unlimited_slides_m();
+        self.refuse_far_positions(table, cursor, slides_m, first)?;
+        let data = &self.found.data;
+        let new_rows = data.observations.get(first..).unwrap_or_default();
+        cursor.refuse(header, lengths::of_ranges(self.robot, slides_m, new_rows))?;
+        let x = cursor.layout.targets.first().and_then(|target| Some(target.position?[0]));
+        let columns = cursor.columns();
+        cursor.refuse(header, x.and_then(|x| spread::of_positions(self.robot, &columns, x, data, first)))
+    }
+
+    /// Refuses positions of the rows from `first` on that only another unit explains.
+    pub(super) fn refuse_far_positions(
+        &self,
+        table: &Table<'_>,
+        cursor: &Cursor<'_>,
+        slides_m: f64,
+        first: usize,
+    ) -> Result<()> {
+        let columns = cursor.columns();
+        let position = cursor.layout.targets.first().and_then(|target| target.position);
+        let of = |at: usize| columns.get(at).copied();
+        let Some([Some(x), Some(y), Some(z)]) = position.map(|at| at.map(of)) else { return Ok(()) };
+        let rows = self.found.data.observations.get(first..).unwrap_or_default();
+        cursor.refuse(&table.header, lengths::of_positions(self.robot, [x, y, z], slides_m, rows))
+    }
+}
+
+/// The warning of rows that have some components of a position beside rows that have all.
+pub(super) fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
+    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
+    let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
+    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
+    (has_whole && lines.count > 0).then(|| {
+        format!(
+            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
+            path.display(),
+            counted(lines.count),
+            lines.words()
+        )
+    })
+}
+
+fn counted(rows: usize) -> String {
+    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
+}
