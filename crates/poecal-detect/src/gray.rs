@@ -77,12 +77,14 @@ impl Gray {
     }
 
     /// Whether a place is at least so far within the centres of the outermost pixels.
+    #[inline]
     pub(crate) fn holds(&self, place: Vector2<f64>, margin_px: f64) -> bool {
         let [right, bottom] = [self.width, self.height].map(|it| it as f64 - 1.0 - margin_px);
         place.x >= margin_px && place.y >= margin_px && place.x <= right && place.y <= bottom
     }
 
     /// The level at a place between pixels, bilinear; that of the nearest border outside.
+    #[inline]
     pub(crate) fn at(&self, place: Vector2<f64>) -> f64 {
         let x = place.x.clamp(0.0, self.width as f64 - 1.0);
         let y = place.y.clamp(0.0, self.height as f64 - 1.0);

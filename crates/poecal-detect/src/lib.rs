@@ -44,6 +44,7 @@ mod saddle;
 mod spec;
 mod suggest;
 mod tags;
+mod vector;
 mod whole;
 
 use tags::{dictionary, markers, quads, tagfit};

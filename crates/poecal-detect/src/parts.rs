@@ -3,18 +3,26 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::gray::Gray;
+use crate::vector::{change, vectorized};
 
-/// A picture made ready to tell dark from light.
+/// A picture made ready to tell dark from light: levels times 16, smoothed over 3 × 3 pixels, and their means over 2 × 2.
 pub(crate) struct Shades {
     smooth: Vec<u16>,
     width: usize,
+    halved: Vec<u16>,
     offset: i32,
 }
 
+/// Most pixels of the halved picture to each side of a window: sums of its levels are below 2³¹.
+const FARTHEST: usize = 360;
+
 impl Shades {
     pub(crate) fn new(gray: &Gray, noise: f64) -> Self {
-        let smooth = smoothed(gray);
-        Shades { smooth, width: gray.width(), offset: (0.8 * noise).max(2.0) as i32 }
+        let (smooth, halved) = vectorized(
+            #[inline(always)]
+            || smoothed(gray),
+        );
+        Shades { smooth, width: gray.width(), halved, offset: (0.8 * noise).max(2.0) as i32 }
     }
 
     /// Parts darker than the mean of a window that reaches so many pixels to each side.
@@ -22,10 +30,96 @@ impl Shades {
         self.darker_parts(half, self.offset)
     }
 
-    /// Parts darker than that by so many gray levels.
+    /// Parts darker than that by so many gray levels. The mean is that of the halved picture.
     pub(crate) fn darker_parts(&self, half: usize, offset: i32) -> Parts {
-        let dark = dark(&self.smooth, self.width, half, offset);
-        Parts::new(&dark, self.width)
+        vectorized(
+            #[inline(always)]
+            || self.parts((half / 2).clamp(1, FARTHEST), offset),
+        )
+    }
+
+    #[inline(always)]
+    fn parts(&self, half: usize, offset: i32) -> Parts {
+        let (width, height) = (self.width, self.smooth.len() / self.width);
+        let mut parts = Parts { runs: Vec::new(), root: Vec::new(), size: [width, height] };
+        let mut window = Window::new(&self.halved, width.div_ceil(2), half);
+        let mut limits = vec![0_u16; 2 * width.div_ceil(2)];
+        let mut dark = vec![0_u8; width.next_multiple_of(u64::BITS as usize)];
+        let mut before = 0..0;
+        for (row, levels) in self.smooth.chunks_exact(width).enumerate() {
+            if row % 2 == 0 {
+                window.limits(row / 2, offset, &mut limits);
+            }
+            change(&mut dark, [levels, &limits], |_, [level, limit]| u8::from(level < limit));
+            let first = parts.runs.len();
+            parts.add(&dark, row as u32);
+            parts.join(before, first..parts.runs.len());
+            before = first..parts.runs.len();
+        }
+        parts
+    }
+}
+
+/// Sums of the levels in a window about each pixel of a row of a picture.
+struct Window<'a> {
+    levels: &'a [u16],
+    width: usize,
+    half: usize,
+    /// Sums of the rows of the window by columns, and of the columns before each. The latter may pass their range, which their differences do not.
+    columns: Vec<u32>,
+    before: Vec<u32>,
+}
+
+impl<'a> Window<'a> {
+    fn new(levels: &'a [u16], width: usize, half: usize) -> Self {
+        let (columns, before) = (vec![0; width], vec![0; width + 1]);
+        let mut window = Window { levels, width, half, columns, before };
+        (0..half.min(levels.len() / width)).for_each(|row| window.add(row));
+        window
+    }
+
+    fn row(&self, row: usize) -> &'a [u16] {
+        &self.levels[row * self.width..(row + 1) * self.width]
+    }
+
+    #[inline(always)]
+    fn add(&mut self, row: usize) {
+        let levels = self.row(row);
+        change(&mut self.columns, [levels], |sum, [it]| sum + u32::from(it));
+    }
+
+    /// Levels below which pixels of the next row are dark, each for two columns of the whole picture.
+    #[inline(always)]
+    fn limits(&mut self, row: usize, offset: i32, limits: &mut [u16]) {
+        let (height, half) = (self.levels.len() / self.width, self.half);
+        if row + half < height {
+            self.add(row + half);
+        }
+        if row > half {
+            let past = self.row(row - half - 1);
+            change(&mut self.columns, [past], |sum, [it]| sum - u32::from(it));
+        }
+        let mut sum = 0_u32;
+        for (place, column) in self.before[1..].iter_mut().zip(&self.columns) {
+            sum = sum.wrapping_add(*column);
+            *place = sum;
+        }
+        let rows = (row + half + 1).min(height) - row.saturating_sub(half);
+        let width = self.width;
+        let limit = |left: u32, right: u32, part: f32| {
+            let mean = right.wrapping_sub(left) as i32 as f32 * part;
+            (mean as i32 - offset * 16).max(0) as u16
+        };
+        let inner = half.min(width)..width.saturating_sub(half).max(half.min(width));
+        for column in (0..inner.start).chain(inner.end..width) {
+            let (left, right) = (column.saturating_sub(half), (column + half + 1).min(width));
+            let part = 1.0 / (rows * (right - left)) as f32;
+            limits[2 * column..2 * column + 2].fill(limit(self.before[left], self.before[right], part));
+        }
+        let part = 1.0 / (rows * (2 * half + 1)) as f32;
+        let ends = [self.before.as_slice(), &self.before[(2 * half + 1).min(width)..]];
+        let inner = &mut limits[2 * inner.start..2 * inner.end];
+        change(inner.as_chunks_mut().0, ends, |_, [left, right]| [limit(left, right, part); 2]);
     }
 }
 
@@ -43,78 +137,40 @@ pub(crate) struct Blob {
     pub(crate) area: f64,
 }
 
-/// Levels times 16, smoothed over 3 × 3 pixels.
-fn smoothed(gray: &Gray) -> Vec<u16> {
+/// Levels times 16, smoothed over 3 × 3 pixels, and means over 2 × 2 of them.
+#[inline(always)]
+fn smoothed(gray: &Gray) -> (Vec<u16>, Vec<u16>) {
     let (width, height) = (gray.width(), gray.height());
     let mut smooth = vec![0_u16; width * height];
-    for row in 0..height {
+    let mut halved = vec![0_u16; width.div_ceil(2) * height.div_ceil(2)];
+    let mut columns = vec![0.0_f32; width + 2];
+    for (row, target) in smooth.chunks_exact_mut(width).enumerate() {
         let above = gray.row(row.saturating_sub(1));
         let own = gray.row(row);
         let below = gray.row((row + 1).min(height - 1));
-        let columns: Vec<f32> = (0..width).map(|x| above[x] + 2.0 * own[x] + below[x]).collect();
-        let target = &mut smooth[row * width..(row + 1) * width];
-        for x in 0..width {
-            let sides = columns[x.saturating_sub(1)] + columns[(x + 1).min(width - 1)];
-            target[x] = (2.0 * columns[x] + sides) as u16;
+        change(&mut columns[1..], [above, own, below], |_, [above, own, below]| above + 2.0 * own + below);
+        (columns[0], columns[width + 1]) = (columns[1], columns[width]);
+        // Levels out of range are borne.
+        let around = [&columns[..], &columns[1..], &columns[2..]];
+        change(target, around, |_, [left, own, right]| {
+            (2.0 * own + (left + right)).clamp(0.0, 65_535.0) as i32 as u16
+        });
+    }
+    for (target, rows) in halved.chunks_exact_mut(width.div_ceil(2)).zip(smooth.chunks(2 * width)) {
+        let (upper, lower) = rows.split_at(width);
+        let lower = if lower.is_empty() { upper } else { lower };
+        let pairs = [upper.as_chunks::<2>().0, lower.as_chunks::<2>().0];
+        change(target, pairs, |_, [upper, lower]| {
+            let [a, b, c, d] = [upper[0], upper[1], lower[0], lower[1]].map(u32::from);
+            ((a + b + c + d) / 4) as u16
+        });
+        if width % 2 == 1
+            && let Some(last) = target.last_mut()
+        {
+            *last = ((u32::from(upper[width - 1]) + u32::from(lower[width - 1])) / 2) as u16;
         }
     }
-    smooth
-}
-
-/// Whether pixels are darker than the mean of a window around them.
-fn dark(smooth: &[u16], width: usize, half: usize, offset: i32) -> Vec<bool> {
-    let height = smooth.len() / width;
-    let mut dark = vec![false; smooth.len()];
-    // Sums of the rows of the window by columns, and of the columns before each: whole numbers, which are exact in either form.
-    let mut columns = vec![0_u32; width];
-    let mut before = vec![0.0; width + 1];
-    let row_of = |row: usize| &smooth[row * width..(row + 1) * width];
-    let add = |columns: &mut [u32], row: usize| {
-        columns.iter_mut().zip(row_of(row)).for_each(|(sum, it)| *sum += u32::from(*it));
-    };
-    (0..half.min(height)).for_each(|row| add(&mut columns, row));
-    for row in 0..height {
-        if row + half < height {
-            add(&mut columns, row + half);
-        }
-        if row > half {
-            let past = row_of(row - half - 1);
-            columns.iter_mut().zip(past).for_each(|(sum, it)| *sum -= u32::from(*it));
-        }
-        let mut sum = 0.0;
-        for (place, column) in before[1..].iter_mut().zip(&columns) {
-            sum += f64::from(*column);
-            *place = sum;
-        }
-        let rows = (row + half + 1).min(height) - row.saturating_sub(half);
-        let target = &mut dark[row * width..(row + 1) * width];
-        darker(row_of(row), &before, (rows, half), f64::from(offset * 16), target);
-    }
-    dark
-}
-
-/// The same of a row, by the sums of its window before each column.
-fn darker(levels: &[u16], before: &[f64], (rows, half): (usize, usize), offset: f64, target: &mut [bool]) {
-    let width = levels.len();
-    let inner = half.min(width)..width.saturating_sub(half).max(half.min(width));
-    for column in (0..inner.start).chain(inner.end..width) {
-        let (left, right) = (column.saturating_sub(half), (column + half + 1).min(width));
-        let area = (rows * (right - left)) as f64;
-        target[column] = (f64::from(levels[column]) + offset) * area < before[right] - before[left];
-    }
-    let area = (rows * (2 * half + 1)) as f64;
-    let ends = before.iter().zip(&before[(2 * half + 1).min(width)..]);
-    let all = target[inner.clone()].iter_mut().zip(&levels[inner]).zip(ends);
-    all.for_each(|((dark, level), (left, right))| *dark = (f64::from(*level) + offset) * area < right - left);
-}
-
-/// The next pixel that is dark, or not, from one on.
-fn next(levels: &[bool], from: usize, dark: bool) -> Option<usize> {
-    // Many at once, while none is.
-    const MANY: usize = 16;
-    let rest = levels.get(from..)?;
-    let skipped = rest.chunks_exact(MANY).take_while(|it| it.iter().all(|it| *it != dark)).count() * MANY;
-    rest[skipped..].iter().position(|it| *it == dark).map(|it| from + skipped + it)
+    (smooth, halved)
 }
 
 /// What stands for the number of a part that is too small.
@@ -130,25 +186,37 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    fn new(dark: &[bool], width: usize) -> Self {
-        let height = dark.len() / width;
-        let mut parts = Parts { runs: Vec::new(), root: Vec::new(), size: [width, height] };
-        let mut before = 0..0;
-        for row in 0..height {
-            let first = parts.runs.len();
-            let levels = &dark[row * width..(row + 1) * width];
-            let mut column = 0;
-            while let Some(from) = next(levels, column, true) {
-                let to = next(levels, from, false).unwrap_or(width);
-                let own = parts.runs.len() as u32;
-                parts.runs.push([from as u32, to as u32 - 1, row as u32]);
-                parts.root.push(own);
-                column = to;
+    /// Adds the runs of ones in a row, which zeros fill up to a multiple of 64.
+    #[inline(always)]
+    fn add(&mut self, dark: &[u8], row: u32) {
+        let (mut last, mut from) = (0, 0);
+        for (at, many) in dark.chunks_exact(u64::BITS as usize).enumerate() {
+            let mut word = 0_u64;
+            for (k, eight) in many.as_chunks::<8>().0.iter().enumerate() {
+                // Eight bytes of 0 or 1 as eight bits.
+                word |= (u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * k);
             }
-            parts.join(before.clone(), first..parts.runs.len());
-            before = first..parts.runs.len();
+            let mut changes = word ^ (word << 1 | last);
+            last = word >> 63;
+            while changes != 0 {
+                let column = at as u32 * u64::BITS + changes.trailing_zeros();
+                let begins = word >> (column % u64::BITS) & 1 == 1;
+                changes &= changes - 1;
+                if begins {
+                    from = column;
+                } else {
+                    self.push([from, column - 1, row]);
+                }
+            }
         }
-        parts
+        if last == 1 {
+            self.push([from, dark.len() as u32 - 1, row]);
+        }
+    }
+
+    fn push(&mut self, run: [u32; 3]) {
+        self.root.push(self.runs.len() as u32);
+        self.runs.push(run);
     }
 
     /// Joins runs of a row with those of the row above that they touch by a side.
@@ -265,28 +333,37 @@ mod tests {
 
     #[test]
     fn dark_pixels_are_below_the_mean_of_their_window() {
-        let (width, height) = (23, 9);
-        let smooth: Vec<u16> = (0..width * height).map(|k| (k * k * 37 % 4001) as u16).collect();
-        for half in [1, 4, 7, 11, 30] {
-            let found = dark(&smooth, width, half, 3);
-            for (at, is_dark) in found.iter().enumerate() {
-                let (x, y) = (at % width, at / width);
-                let inside =
-                    |it: &usize| (it % width).abs_diff(x) <= half && (it / width).abs_diff(y) <= half;
-                let window: Vec<u64> = (0..smooth.len()).filter(inside).map(|it| smooth[it].into()).collect();
-                let mean = window.iter().sum::<u64>() as f64 / window.len() as f64;
-                assert_eq!(*is_dark, f64::from(smooth[at]) + 48.0 < mean, "{half} {at}");
+        for (width, height) in [(23, 9), (64, 11), (130, 7)] {
+            let levels = (0..width * height).map(|k| (k * k * 37 % 251) as f32).collect();
+            let gray = Gray::new(width, height, levels).unwrap();
+            let shades = Shades::new(&gray, 0.0);
+            let (columns, rows) = (width.div_ceil(2), height.div_ceil(2));
+            for half in [2, 4, 7, 22, 60] {
+                let parts = shades.darker_parts(half, 3);
+                let is_dark = |x: usize, y: usize| {
+                    let holds = |it: &[u32; 3]| it[2] as usize == y && (it[0]..=it[1]).contains(&(x as u32));
+                    parts.runs.iter().filter(|it| holds(it)).count()
+                };
+                for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                    let near = |at: usize, own: usize| (at).abs_diff(own / 2) <= half / 2;
+                    let inside = |it: &usize| near(it % columns, x) && near(it / columns, y);
+                    let window: Vec<u64> =
+                        (0..columns * rows).filter(inside).map(|it| shades.halved[it].into()).collect();
+                    let mean = window.iter().sum::<u64>() / window.len() as u64;
+                    let level = u64::from(shades.smooth[y * width + x]);
+                    let (dark, light) = (level + 48 < mean, level + 48 > mean + 1);
+                    assert!(is_dark(x, y) == usize::from(dark) || !dark && !light, "{half} {x} {y}");
+                }
             }
         }
     }
 
     #[test]
     fn runs_end_where_they_end() {
-        let levels: Vec<bool> = (0..70).map(|k| (20..53).contains(&k) || k == 69).collect();
-        assert_eq!([next(&levels, 0, true), next(&levels, 20, false)], [Some(20), Some(53)]);
-        assert_eq!(
-            [next(&levels, 53, true), next(&levels, 69, false), next(&levels, 70, true)],
-            [Some(69), None, None]
-        );
+        let mut parts = Parts { runs: Vec::new(), root: Vec::new(), size: [128, 1] };
+        let dark: Vec<u8> = (0..128).map(|k| u8::from((20..53).contains(&k) || k == 63 || k > 125)).collect();
+        parts.add(&dark, 4);
+        parts.add(&[1; 64], 5);
+        assert_eq!(parts.runs, [[20, 52, 4], [63, 63, 4], [126, 127, 4], [0, 63, 5]]);
     }
 }
