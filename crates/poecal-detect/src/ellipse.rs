@@ -6,8 +6,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
-use crate::normal::Normal;
-use crate::saddle::sign_and_bell;
+use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
+use crate::vector::vectorized;
 
 /// A dot that was found.
 #[derive(Clone, Copy, Debug)]
@@ -29,11 +29,7 @@ pub(crate) struct Dot {
 }
 
 const UNKNOWNS: usize = 10;
-/// Those of the shades.
-const SHADES: usize = 4;
 type Unknowns = SVector<f64, UNKNOWNS>;
-/// A pixel and its level.
-type Pixel = (Vector2<f64>, f64);
 
 /// Largest part of the contrast that the model may leave beyond the noise.
 const MISFIT: f64 = 0.22;
@@ -52,8 +48,6 @@ const COARSE_MISFIT: f64 = 0.28;
 /// Longest last step, pixels, and what it may gain, as a part of the squares: of a first fit, and of the last one.
 const COARSE: [f64; 2] = [0.05, 0.02];
 const FINE: [f64; 2] = [2e-3, 1e-4];
-/// Distance from the edge beyond which a pixel is dark or light, standard deviations of the blur: to 1e-5 of the contrast.
-const PLAIN: f64 = 4.5;
 /// Most pixels that are fitted.
 const MOST: usize = 40_000;
 
@@ -78,7 +72,7 @@ pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noi
 }
 
 /// A fit to a part of the pixels, which goes most of the way, and tells most of what is no dot: that is most of what is tried.
-fn begun(start: Model, pixels: &[Pixel], noise: f64) -> Option<Model> {
+fn begun(start: Model, pixels: &Pixels, noise: f64) -> Option<Model> {
     // Blur takes a part of the contrast of a small dot, but not so much.
     if start.half < 0.5 * noise.max(LEAST_HALF) {
         return None;
@@ -96,14 +90,20 @@ fn is_far(start: &Model, fit: &Model) -> bool {
 }
 
 /// Pixels that are spread evenly, if there are many.
-fn thinned(pixels: &[Pixel]) -> Vec<Pixel> {
+fn thinned(pixels: &Pixels) -> Pixels {
     let step = [10, 5, 2].into_iter().find(|step| pixels.len() >= step * ENOUGH).unwrap_or(1);
-    let kept = |it: &&Pixel| (it.0.x as usize + 3 * it.0.y as usize).is_multiple_of(step);
-    pixels.iter().filter(kept).copied().collect()
+    let first = pixels.origin.x as i64 + 3 * pixels.origin.y as i64;
+    let mut kept = Pixels::new(pixels.origin);
+    for [x, y, level] in pixels.each() {
+        if (first + x as i64 + 3 * y as i64) % step as i64 == 0 {
+            kept.push(x, y, level);
+        }
+    }
+    kept
 }
 
 /// The pixels of an ellipse, and of the light around it as far as another dot is not near.
-fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option<Vec<Pixel>> {
+fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option<Pixels> {
     let axes = to_circle.try_inverse()?;
     let least = axes.symmetric_eigenvalues().min();
     if least < SHORTEST_PX {
@@ -116,39 +116,81 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
     {
         return None;
     }
-    let mut pixels = Vec::with_capacity((4.0 * reach.x * reach.y) as usize);
+    let mut pixels = Pixels::new(middle);
+    let [x, y] = pixels.offset(middle);
+    let outline = Outline::new(to_circle, [x, y]);
+    let columns = (middle.x - reach.x).ceil() as usize..(middle.x + reach.x) as usize + 1;
+    let from = columns.start as f32 - pixels.origin.x as f32;
+    let mut offs: Vec<Lanes> = vec![[0.0; LANES]; columns.len().div_ceil(LANES)];
     for row in (middle.y - reach.y).ceil() as usize..=(middle.y + reach.y) as usize {
-        let levels = gray.row(row);
-        for column in (middle.x - reach.x).ceil() as usize..=(middle.x + reach.x) as usize {
-            let place = Vector2::new(column as f64, row as f64);
-            let off = distance(to_circle, place - middle).off;
+        let y = row as f32 - pixels.origin.y as f32;
+        vectorized(
+            #[inline(always)]
+            || outline.row(from, y, &mut offs),
+        );
+        for (k, level) in gray.row(row).get(columns.clone())?.iter().enumerate() {
+            let off = offs[k / LANES][k % LANES];
             // Deep within there is nothing that tells the place.
-            if off < beyond && off > -within {
-                pixels.push((place, f64::from(*levels.get(column)?)));
+            if off < beyond as f32 && off > -within as f32 {
+                pixels.push(from + k as f32, y, *level);
             }
         }
     }
     (pixels.len() >= 3 * UNKNOWNS).then_some(pixels)
 }
 
+/// The outline of an ellipse near the origin of pixels.
+struct Outline {
+    place: [f32; 2],
+    /// What makes a unit circle of it: both of the diagonal, and the one beside it.
+    to_circle: [f32; 3],
+}
+
 /// How far a place is from an ellipse.
 struct Off {
     /// To first order, positive outside.
-    off: f64,
+    off: f32,
     /// Which way it grows.
-    outwards: Vector2<f64>,
+    outwards: [f32; 2],
     /// The way there in the circle, of length 1, and how fast the radius grows along `outwards`.
-    circle: Vector2<f64>,
-    steep: f64,
+    circle: [f32; 2],
+    steep: f32,
 }
 
-fn distance(to_circle: &Matrix2<f64>, off: Vector2<f64>) -> Off {
-    let circle = to_circle * off;
-    let radius = circle.norm().max(1e-6);
-    let circle = circle / radius;
-    let slope = to_circle * circle;
-    let steep = slope.norm().max(1e-9);
-    Off { off: (radius - 1.0) / steep, outwards: slope / steep, circle, steep }
+impl Outline {
+    fn new(to_circle: &Matrix2<f64>, place: [f32; 2]) -> Self {
+        let to_circle = [to_circle[(0, 0)], to_circle[(1, 1)], to_circle[(0, 1)]].map(|it| it as f32);
+        Outline { place, to_circle }
+    }
+
+    /// How far a place is from it, by the way there from its middle.
+    #[inline(always)]
+    fn distance(&self, dx: f32, dy: f32) -> Off {
+        let [xx, yy, xy] = self.to_circle;
+        let (x, y) = (xx * dx + xy * dy, xy * dx + yy * dy);
+        let radius = (x * x + y * y).sqrt().max(1e-6);
+        let (x, y) = (x / radius, y / radius);
+        let (slope_x, slope_y) = (xx * x + xy * y, xy * x + yy * y);
+        let steep = (slope_x * slope_x + slope_y * slope_y).sqrt().max(1e-9);
+        let scale = 1.0 / steep;
+        Off {
+            off: (radius - 1.0) * scale,
+            outwards: [slope_x * scale, slope_y * scale],
+            circle: [x, y],
+            steep,
+        }
+    }
+
+    /// How far the pixels of a row are from it.
+    #[inline(always)]
+    fn row(&self, from: f32, y: f32, offs: &mut [Lanes]) {
+        for (at, offs) in offs.iter_mut().enumerate() {
+            let first = from + (at * LANES) as f32 - self.place[0];
+            for (k, off) in offs.iter_mut().enumerate() {
+                *off = self.distance(first + k as f32, y - self.place[1]).off;
+            }
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -168,53 +210,72 @@ struct Sums {
 }
 
 impl Model {
-    fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &[Pixel]) -> Self {
-        let mean_of = |inside: bool| {
-            let side = pixels.iter().filter(|it| (distance(&to_circle, it.0 - place).off < 0.0) == inside);
-            let (sum, count) = side.fold((0.0, 0.0), |sum, it| (sum.0 + it.1, sum.1 + 1.0));
-            sum / f64::max(count, 1.0)
-        };
-        let (dark, light) = (mean_of(true), mean_of(false));
+    fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &Pixels) -> Self {
+        let outline = Outline::new(&to_circle, pixels.offset(place));
+        // Of the inside and the outside.
+        let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
+        for [x, y, level] in pixels.each() {
+            let side = outline.distance(x - outline.place[0], y - outline.place[1]).off >= 0.0;
+            sums[usize::from(side)] += f64::from(level);
+            counts[usize::from(side)] += 1.0;
+        }
+        let [dark, light] = [0, 1].map(|k| sums[k] / f64::max(counts[k], 1.0));
         let (mean, half) = (0.5 * (light + dark), 0.5 * (light - dark));
         Model { place, to_circle, blur: 1.2, mean, half, light: Vector2::zeros() }
     }
 
-    fn sums(&self, pixels: &[Pixel], middle: Vector2<f64>) -> Sums {
-        const ROOT: f64 = 0.797_884_560_802_865_4;
-        // Pixels far from the edge tell of the shades alone: the last unknowns.
-        let (mut edge, mut plain) = (Normal::<UNKNOWNS>::new(), Normal::<SHADES>::new());
-        let (plain_px, by_blur) = (PLAIN * self.blur, 1.0 / self.blur);
-        for (pixel, level) in pixels {
-            let d = pixel - self.place;
-            let Off { off, outwards, circle, steep } = distance(&self.to_circle, d);
-            let shift = pixel - middle;
-            let light = 1.0 + self.light.dot(&shift);
-            if off.abs() > plain_px {
-                let sign = 1.0_f64.copysign(off);
-                let base = self.mean + self.half * sign;
-                plain.add([light, light * sign, base * shift.x, base * shift.y], level - base * light);
-                continue;
-            }
-            let (sign, bell) = sign_and_bell(off * by_blur);
-            let base = self.mean + self.half * sign;
-            let slope = self.half * light * ROOT * bell * by_blur;
-            let along = circle * (slope / steep);
-            let row = [
-                -slope * outwards.x,
-                -slope * outwards.y,
-                along.x * d.x,
-                along.x * d.y + along.y * d.x,
-                along.y * d.y,
-                -slope * off,
-                light,
-                light * sign,
-                base * shift.x,
-                base * shift.y,
-            ];
-            edge.add(row, level - base * light);
-        }
-        let (normal, right, squares) = edge.finished_with(plain);
+    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> Sums {
+        let outline = Outline::new(&self.to_circle, pixels.offset(self.place));
+        let middle = pixels.offset(middle);
+        let (normal, right, squares) = vectorized(
+            #[inline(always)]
+            || {
+                let mut sums = Normal::<UNKNOWNS>::new();
+                for (pixels, count) in pixels.chunks() {
+                    let (mut rows, mut residuals) = self.rows(&outline, middle, pixels);
+                    sums.add(&mut rows, &mut residuals, count);
+                }
+                sums.finished()
+            },
+        );
         Sums { normal, right, squares }
+    }
+
+    /// How the levels of pixels change by the unknowns, and what is left of them.
+    #[inline(always)]
+    fn rows(
+        &self,
+        outline: &Outline,
+        middle: [f32; 2],
+        [xs, ys, levels]: &[Lanes; 3],
+    ) -> ([Lanes; UNKNOWNS], Lanes) {
+        const ROOT: f32 = 0.797_884_6;
+        let (mut rows, mut left) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
+        let [by_blur, mean, half] = [1.0 / self.blur, self.mean, self.half].map(|it| it as f32);
+        let slopes = [self.light.x as f32, self.light.y as f32];
+        for at in 0..LANES {
+            let (dx, dy) = (xs[at] - outline.place[0], ys[at] - outline.place[1]);
+            let Off { off, outwards, circle, steep } = outline.distance(dx, dy);
+            let (x, y) = (xs[at] - middle[0], ys[at] - middle[1]);
+            let light = 1.0 + slopes[0] * x + slopes[1] * y;
+            let (sign, bell) = sign_and_bell(off * by_blur);
+            let base = mean + half * sign;
+            let slope = half * light * ROOT * bell * by_blur;
+            let part = slope / steep;
+            let along = [circle[0] * part, circle[1] * part];
+            rows[0][at] = -slope * outwards[0];
+            rows[1][at] = -slope * outwards[1];
+            rows[2][at] = along[0] * dx;
+            rows[3][at] = along[0] * dy + along[1] * dx;
+            rows[4][at] = along[1] * dy;
+            rows[5][at] = -slope * off;
+            rows[6][at] = light;
+            rows[7][at] = light * sign;
+            rows[8][at] = base * x;
+            rows[9][at] = base * y;
+            left[at] = levels[at] - base * light;
+        }
+        (rows, left)
     }
 
     fn stepped(&self, step: &Unknowns) -> Self {
@@ -257,7 +318,7 @@ impl Model {
 /// Levenberg-Marquardt from a start, until a step is short and gains little.
 fn descended(
     mut model: Model,
-    pixels: &[Pixel],
+    pixels: &Pixels,
     middle: Vector2<f64>,
     [short_px, little]: [f64; 2],
 ) -> Option<(Model, Sums)> {

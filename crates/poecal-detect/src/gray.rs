@@ -60,6 +60,10 @@ impl Gray {
         &self.levels
     }
 
+    pub(crate) fn into_levels(self) -> Vec<f32> {
+        self.levels
+    }
+
     pub(crate) fn levels_mut(&mut self) -> &mut [f32] {
         &mut self.levels
     }

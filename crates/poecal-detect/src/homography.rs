@@ -86,6 +86,13 @@ impl Homography {
         (place.x.is_finite() && place.y.is_finite() && mapped.z * self.matrix[(2, 2)] > 0.0).then_some(place)
     }
 
+    /// The same from an origin, where its last row is 1: rows of the matrix.
+    pub(crate) fn around(&self, origin: Vector2<f64>) -> [[f32; 3]; 3] {
+        let moved = self.matrix * Matrix3::new_translation(&origin);
+        let scaled = moved / moved[(2, 2)];
+        [0, 1, 2].map(|row| [0, 1, 2].map(|column| scaled[(row, column)] as f32))
+    }
+
     /// How a place in the picture moves with its point: columns are by x and y of the plane.
     pub(crate) fn slope(&self, point: Vector2<f64>) -> Option<Matrix2<f64>> {
         let mapped = self.matrix * Vector3::new(point.x, point.y, 1.0);

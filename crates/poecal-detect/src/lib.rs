@@ -47,7 +47,7 @@ mod tags;
 mod vector;
 mod whole;
 
-use tags::{dictionary, markers, quads, tagfit};
+use tags::{dictionary, markers, patch, quads, tagfit, tagmodel};
 
 use picture::{decoded, exif, preview};
 

@@ -108,7 +108,7 @@ impl<'a> Window<'a> {
         let width = self.width;
         let limit = |left: u32, right: u32, part: f32| {
             let mean = right.wrapping_sub(left) as i32 as f32 * part;
-            (mean as i32 - offset * 16).max(0) as u16
+            (whole(mean) - offset * 16).max(0) as u16
         };
         let inner = half.min(width)..width.saturating_sub(half).max(half.min(width));
         for column in (0..inner.start).chain(inner.end..width) {
@@ -137,6 +137,14 @@ pub(crate) struct Blob {
     pub(crate) area: f64,
 }
 
+/// The nearest whole number of one from 0 to 65,535.
+#[inline(always)]
+fn whole(number: f32) -> i32 {
+    // One of this size has whole steps: its last bits are the number. Conversions look for what is none, one by one.
+    const WHOLE: f32 = 8_388_608.0;
+    ((number + WHOLE).to_bits() & 0xf_ffff) as i32
+}
+
 /// Levels times 16, smoothed over 3 × 3 pixels, and means over 2 × 2 of them.
 #[inline(always)]
 fn smoothed(gray: &Gray) -> (Vec<u16>, Vec<u16>) {
@@ -153,7 +161,7 @@ fn smoothed(gray: &Gray) -> (Vec<u16>, Vec<u16>) {
         // Levels out of range are borne.
         let around = [&columns[..], &columns[1..], &columns[2..]];
         change(target, around, |_, [left, own, right]| {
-            (2.0 * own + (left + right)).clamp(0.0, 65_535.0) as i32 as u16
+            whole((2.0 * own + (left + right)).clamp(0.0, 65_535.0)) as u16
         });
     }
     for (target, rows) in halved.chunks_exact_mut(width.div_ceil(2)).zip(smooth.chunks(2 * width)) {

@@ -7,6 +7,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use crate::gray::Gray;
+use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
+use crate::vector::vectorized;
 
 /// What is known of a corner before.
 #[derive(Clone, Copy, Debug)]
@@ -90,20 +92,21 @@ impl Window {
         Some(Window { inverse: sides.try_inverse()?, sides })
     }
 
-    fn pixels(&self, gray: &Gray, middle: Vector2<f64>) -> Vec<(Vector2<f64>, f64)> {
+    fn pixels(&self, gray: &Gray, middle: Vector2<f64>) -> Pixels {
         let reach = self.sides.column(0).abs() + self.sides.column(1).abs();
         let span = |middle: f64, reach: f64, size: usize| {
             let from = (middle - reach).ceil().max(0.0) as usize;
             from..((middle + reach).floor().max(-1.0) + 1.0).min(size as f64) as usize
         };
-        let mut pixels = Vec::with_capacity(400);
+        let mut pixels = Pixels::new(middle);
         for row in span(middle.y, reach.y, gray.height()) {
             let levels = gray.row(row);
+            let y = row as f64;
             for column in span(middle.x, reach.x, gray.width()) {
-                let place = Vector2::new(column as f64, row as f64);
-                let own = self.inverse * (place - middle);
+                let x = column as f64;
+                let own = self.inverse * Vector2::new(x - middle.x, y - middle.y);
                 if own.x.abs() <= 1.0 && own.y.abs() <= 1.0 {
-                    pixels.push((place, f64::from(levels[column])));
+                    pixels.push((x - pixels.origin.x) as f32, (y - pixels.origin.y) as f32, levels[column]);
                 }
             }
         }
@@ -178,91 +181,63 @@ struct Sums {
 }
 
 impl Crossing {
-    fn start(expected: &Expected, place: Vector2<f64>, pixels: &[(Vector2<f64>, f64)]) -> Self {
+    fn start(expected: &Expected, place: Vector2<f64>, pixels: &Pixels) -> Self {
         let count = pixels.len().max(1) as f64;
-        let mean = pixels.iter().map(|it| it.1).sum::<f64>() / count;
-        let spread = (pixels.iter().map(|it| (it.1 - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let levels = || pixels.each().map(|it| f64::from(it[2]));
+        let mean = levels().sum::<f64>() / count;
+        let spread = (levels().map(|it| (it - mean).powi(2)).sum::<f64>() / count).sqrt();
         let turn = |k: usize| expected.slope[(1, k)].atan2(expected.slope[(0, k)]);
         let half = if expected.dark_before { -spread } else { spread };
         Crossing { place, turns: [turn(0), turn(1)], blur: 1.3, mean, half, light: Vector2::zeros() }
     }
 
-    fn sums(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> Sums {
-        let mut sums = Sums { normal: SMatrix::zeros(), right: Unknowns::zeros(), squares: 0.0 };
-        let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
-        let rho = -(c1 * c2 + s1 * s2);
-        let scale = 1.0 / self.blur;
-        for (pixel, level) in pixels {
-            let d = pixel - self.place;
-            // Signed distances from both lines, in blurs.
-            let (h, k) = ((c1 * d.y - s1 * d.x) * scale, (s2 * d.x - c2 * d.y) * scale);
-            let (eh, gh) = sign_and_bell(h);
-            let (ek, gk) = sign_and_bell(k);
-            let both = std::f64::consts::FRAC_2_PI * gh * gk;
-            let sign = eh * ek + both * skew(rho, h, k);
-            const ROOT: f64 = 0.797_884_560_802_865_4;
-            let by_h = ROOT * gh * ek - h * both * rho;
-            let by_k = ROOT * gk * eh - k * both * rho;
-            let off = pixel - middle;
-            let light = 1.0 + self.light.dot(&off);
-            let base = self.mean + self.half * sign;
-            let slope = self.half * light;
-            let (to_h, to_k) = (slope * by_h * scale, slope * by_k * scale);
-            let row = Unknowns::from([
-                to_h * s1 - to_k * s2,
-                to_k * c2 - to_h * c1,
-                -to_h * (c1 * d.x + s1 * d.y),
-                to_k * (c2 * d.x + s2 * d.y),
-                -slope * (h * by_h + k * by_k),
-                light,
-                light * sign,
-                base * off.x,
-                base * off.y,
-            ]);
-            let residual = level - base * light;
-            for i in 0..UNKNOWNS {
-                let own = row[i];
-                sums.right[i] += own * residual;
-                for j in 0..=i {
-                    sums.normal[(i, j)] += own * row[j];
+    fn sums(&self, pixels: &Pixels, middle: Vector2<f64>) -> Sums {
+        let (normal, right, squares) = vectorized(
+            #[inline(always)]
+            || {
+                let near = Near::new(self, pixels, middle);
+                let mut sums = Normal::<UNKNOWNS>::new();
+                for (pixels, count) in pixels.chunks() {
+                    let (mut rows, mut residuals) = near.rows(pixels);
+                    sums.add(&mut rows, &mut residuals, count);
                 }
-            }
-            sums.squares += residual * residual;
-        }
-        sums.normal.fill_upper_triangle_with_lower_triangle();
-        sums
+                sums.finished()
+            },
+        );
+        Sums { normal, right, squares }
     }
 
     /// How many pixels err together, as sharpened and compressed pictures have it: 1 plus twice the correlations of what is left with that of the
     /// next pixels and those after them, in four directions.
-    fn alike(&self, pixels: &[(Vector2<f64>, f64)], middle: Vector2<f64>) -> f64 {
-        let left: Vec<(i32, i32, f64)> = pixels
-            .iter()
-            .map(|(place, level)| (place.x as i32, place.y as i32, level - self.level(*place, middle)))
-            .collect();
-        let squares: f64 = left.iter().map(|it| it.2 * it.2).sum();
-        let mut products = 0.0;
-        for (at, (x, y, own)) in left.iter().enumerate() {
-            // Row by row: those that follow in the row, and those in the next two.
-            for (other_x, other_y, other) in &left[at + 1..] {
-                if other_y - y > 2 {
-                    break;
-                }
-                if (other_x - x).abs() <= 2 {
-                    products += own * other;
+    fn alike(&self, pixels: &Pixels, middle: Vector2<f64>) -> f64 {
+        let near = Near::new(self, pixels, middle);
+        let left: Vec<f32> = pixels.chunks().flat_map(|it| near.rows(it.0).1).collect();
+        let ends = |k: usize| {
+            let places = || pixels.each().map(|it| it[k]);
+            [places().fold(f32::INFINITY, f32::min), places().fold(f32::NEG_INFINITY, f32::max)]
+        };
+        let ([left_px, right_px], [top_px, bottom_px]) = (ends(0), ends(1));
+        // Row by row, with nothing beside each row.
+        let width = (right_px - left_px) as usize + 1 + 2;
+        let size = (width * ((bottom_px - top_px) as usize + 1)).next_multiple_of(LANES);
+        let mut all = vec![0.0_f32; size + 2 * width + 2];
+        for ([x, y, _], own) in pixels.each().zip(&left) {
+            all[(y - top_px) as usize * width + (x - left_px) as usize] = *own;
+        }
+        // Those that follow in the row, and those in the next two.
+        let beside = [1, 2].into_iter().chain([width, 2 * width].into_iter().flat_map(|it| it - 2..=it + 2));
+        let product = |off: usize| {
+            let mut sums: Lanes = [0.0; LANES];
+            let (own, other) = (all.as_chunks::<LANES>().0, all[off..].as_chunks::<LANES>().0);
+            for (own, other) in own.iter().zip(other).take(size / LANES) {
+                for k in 0..LANES {
+                    sums[k] += own[k] * other[k];
                 }
             }
-        }
+            sums.iter().map(|it| f64::from(*it)).sum::<f64>()
+        };
+        let (squares, products) = (product(0), beside.map(product).sum::<f64>());
         1.0 + (2.0 * products / squares.max(1e-12)).max(0.0)
-    }
-
-    fn level(&self, pixel: Vector2<f64>, middle: Vector2<f64>) -> f64 {
-        let [(s1, c1), (s2, c2)] = self.turns.map(f64::sin_cos);
-        let (d, rho) = (pixel - self.place, -(c1 * c2 + s1 * s2));
-        let (h, k) = ((c1 * d.y - s1 * d.x) / self.blur, (s2 * d.x - c2 * d.y) / self.blur);
-        let ((eh, gh), (ek, gk)) = (sign_and_bell(h), sign_and_bell(k));
-        let sign = eh * ek + std::f64::consts::FRAC_2_PI * gh * gk * skew(rho, h, k);
-        (self.mean + self.half * sign) * (1.0 + self.light.dot(&(pixel - middle)))
     }
 
     fn stepped(&self, step: &Unknowns) -> Self {
@@ -280,20 +255,76 @@ impl Crossing {
     }
 }
 
-/// What the blur adds where both lines are not at right angles: the first terms of Mehler's series.
-fn skew(rho: f64, h: f64, k: f64) -> f64 {
-    rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))
+/// A crossing near the origin of pixels.
+struct Near {
+    place: [f32; 2],
+    middle: [f32; 2],
+    sines: [f32; 2],
+    cosines: [f32; 2],
+    /// Cosine of the angle between both lines.
+    rho: f32,
+    blur: f32,
+    mean: f32,
+    half: f32,
+    light: [f32; 2],
 }
 
-/// The mean of a sign at a distance of so many standard deviations, and exp(-x²/2): Abramowitz and Stegun 7.1.26, to 1.5e-7.
-pub(crate) fn sign_and_bell(x: f64) -> (f64, f64) {
-    let bell = (-0.5 * x * x).exp();
-    let z = x.abs() * std::f64::consts::FRAC_1_SQRT_2;
-    let t = 1.0 / (1.0 + 0.327_591_1 * z);
-    let series = t
-        * (0.254_829_592
-            + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
-    ((1.0 - series * bell).copysign(x), bell)
+impl Near {
+    fn new(crossing: &Crossing, pixels: &Pixels, middle: Vector2<f64>) -> Self {
+        let [(s1, c1), (s2, c2)] = crossing.turns.map(f64::sin_cos);
+        Near {
+            place: pixels.offset(crossing.place),
+            middle: pixels.offset(middle),
+            sines: [s1 as f32, s2 as f32],
+            cosines: [c1 as f32, c2 as f32],
+            rho: -(c1 * c2 + s1 * s2) as f32,
+            blur: crossing.blur as f32,
+            mean: crossing.mean as f32,
+            half: crossing.half as f32,
+            light: [crossing.light.x as f32, crossing.light.y as f32],
+        }
+    }
+
+    /// How the levels of pixels change by the unknowns, and what is left of them.
+    #[inline(always)]
+    fn rows(&self, [xs, ys, levels]: &[Lanes; 3]) -> ([Lanes; UNKNOWNS], Lanes) {
+        const ROOT: f32 = 0.797_884_6;
+        let (mut rows, mut left) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
+        let ([s1, s2], [c1, c2], rho, scale) = (self.sines, self.cosines, self.rho, 1.0 / self.blur);
+        for at in 0..LANES {
+            let (dx, dy) = (xs[at] - self.place[0], ys[at] - self.place[1]);
+            // Signed distances from both lines, in blurs.
+            let (h, k) = ((c1 * dy - s1 * dx) * scale, (s2 * dx - c2 * dy) * scale);
+            let (eh, gh) = sign_and_bell(h);
+            let (ek, gk) = sign_and_bell(k);
+            let both = std::f32::consts::FRAC_2_PI * gh * gk;
+            let sign = eh * ek + both * skew(rho, h, k);
+            let by_h = ROOT * gh * ek - h * both * rho;
+            let by_k = ROOT * gk * eh - k * both * rho;
+            let (x, y) = (xs[at] - self.middle[0], ys[at] - self.middle[1]);
+            let light = 1.0 + self.light[0] * x + self.light[1] * y;
+            let base = self.mean + self.half * sign;
+            let slope = self.half * light;
+            let (to_h, to_k) = (slope * by_h * scale, slope * by_k * scale);
+            rows[0][at] = to_h * s1 - to_k * s2;
+            rows[1][at] = to_k * c2 - to_h * c1;
+            rows[2][at] = -to_h * (c1 * dx + s1 * dy);
+            rows[3][at] = to_k * (c2 * dx + s2 * dy);
+            rows[4][at] = -slope * (h * by_h + k * by_k);
+            rows[5][at] = light;
+            rows[6][at] = light * sign;
+            rows[7][at] = base * x;
+            rows[8][at] = base * y;
+            left[at] = levels[at] - base * light;
+        }
+        (rows, left)
+    }
+}
+
+/// What the blur adds where both lines are not at right angles: the first terms of Mehler's series.
+#[inline(always)]
+fn skew(rho: f32, h: f32, k: f32) -> f32 {
+    rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))
 }
 
 /// Fits crossing lines in a window about a place.
@@ -339,7 +370,7 @@ fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, n
 /// Levenberg-Marquardt from a start.
 fn descended(
     mut crossing: Crossing,
-    pixels: &[(Vector2<f64>, f64)],
+    pixels: &Pixels,
     middle: Vector2<f64>,
     steps: usize,
 ) -> Option<Crossing> {
@@ -353,17 +384,14 @@ fn descended(
         let step = damped.cholesky()?.solve(&sums.right);
         let next = crossing.stepped(&step);
         let found = next.sums(pixels, middle);
+        let moved = (next.place - crossing.place).norm();
         if found.squares <= sums.squares {
-            let moved = (next.place - crossing.place).norm();
             (crossing, sums, damping) = (next, found, damping * 0.1);
-            if moved < 1e-4 {
-                break;
-            }
         } else {
             damping *= 10.0;
-            if damping > 1e6 {
-                break;
-            }
+        }
+        if moved < 1e-4 || damping > 1e6 {
+            break;
         }
     }
     Some(crossing)

@@ -2,8 +2,10 @@
 
 pub(crate) mod dictionary;
 pub(crate) mod markers;
+pub(crate) mod patch;
 pub(crate) mod quads;
 pub(crate) mod tagfit;
+pub(crate) mod tagmodel;
 
 use nalgebra::Vector2;
 
@@ -12,8 +14,9 @@ use crate::found::{Corner, Found, Kind, Rejected};
 use crate::gray::Gray;
 use crate::markers::{Marker, Reader};
 use crate::median::median;
+use crate::patch::Cells;
 use crate::quads::{Quad, quads};
-use crate::tagfit::{Cells, Fitted, fit};
+use crate::tagfit::{Fitted, fit};
 
 /// Bits below which a code with a wrong bit is none: too many quadrangles look like one.
 const FEW_BITS: usize = 6;
