@@ -3,6 +3,8 @@
 use nalgebra::Vector2;
 
 use crate::error::{Error, Result};
+use crate::normal::{LANES, lanes};
+use crate::vector::vectorized;
 
 /// A gray picture: levels from 0 (black) to 255 (white), row by row. Pictures of more than 8 bits keep their fractions.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,27 +116,50 @@ impl Gray {
         let weight = |k: usize| (-0.5 * ((k as f64 - reach as f64) / sigma_px).powi(2)).exp();
         let total: f64 = (0..=2 * reach).map(weight).sum();
         let weights: Vec<f32> = (0..=2 * reach).map(|k| (weight(k) / total) as f32).collect();
-        let (width, height) = (self.width, self.height);
+        vectorized(
+            #[inline(always)]
+            || self.weighted(&weights),
+        )
+    }
+
+    /// Sums over a row of pixels in both directions, with weights.
+    #[inline(always)]
+    fn weighted(&self, weights: &[f32]) -> Self {
+        let (width, height, reach) = (self.width, self.height, weights.len() / 2);
         let mut across = Gray::filled(width, height, 0.0);
         let mut padded = vec![0.0; width + 2 * reach];
-        for row in 0..height {
+        for (row, target) in across.levels.chunks_exact_mut(width).enumerate() {
             let levels = self.row(row);
-            for (at, place) in padded.iter_mut().enumerate() {
-                *place = levels[at.saturating_sub(reach).min(width - 1)];
-            }
-            let target = &mut across.levels[row * width..(row + 1) * width];
-            for (k, weight) in weights.iter().enumerate() {
-                target.iter_mut().zip(&padded[k..]).for_each(|(to, from)| *to += weight * from);
-            }
+            padded[..reach].fill(levels[0]);
+            padded[reach..reach + width].copy_from_slice(levels);
+            padded[reach + width..].fill(levels[width - 1]);
+            sums(target, weights, |k| &padded[k..]);
         }
         let mut whole = Gray::filled(width, height, 0.0);
-        for row in 0..height {
-            let target = &mut whole.levels[row * width..(row + 1) * width];
-            for (k, weight) in weights.iter().enumerate() {
-                let source = across.row((row + k).saturating_sub(reach).min(height - 1));
-                target.iter_mut().zip(source).for_each(|(to, from)| *to += weight * from);
-            }
+        for (row, target) in whole.levels.chunks_exact_mut(width).enumerate() {
+            sums(target, weights, |k| across.row((row + k).saturating_sub(reach).min(height - 1)));
         }
         whole
+    }
+}
+
+/// Sums of levels at the same place of some rows, with weights.
+#[inline(always)]
+fn sums<'a>(target: &mut [f32], weights: &[f32], row: impl Fn(usize) -> &'a [f32]) {
+    let (many, rest) = target.as_chunks_mut::<LANES>();
+    let count = many.len();
+    for (at, target) in many.iter_mut().enumerate() {
+        let mut own = [0.0; LANES];
+        for (k, weight) in weights.iter().enumerate() {
+            let levels = lanes(row(k), at * LANES);
+            for lane in 0..LANES {
+                own[lane] += weight * levels[lane];
+            }
+        }
+        *target = own;
+    }
+    for (at, target) in rest.iter_mut().enumerate() {
+        let level = |k: usize| row(k).get(count * LANES + at).copied().unwrap_or_default();
+        *target = weights.iter().enumerate().fold(0.0, |sum, (k, weight)| sum + weight * level(k));
     }
 }

@@ -6,6 +6,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::gray::Gray;
 use crate::growth::Node;
+use crate::normal::LANES;
+use crate::vector::vectorized;
 
 /// Corners of one grid, each with its column and row.
 pub(crate) type Grid = Vec<(Node, Vector2<f64>)>;
@@ -70,42 +72,74 @@ pub(crate) fn grids(gray: &Gray, noise: f64, blur_px: f64) -> Vec<Grid> {
     grids
 }
 
+/// Pixels to each side among which a saddle is the strongest.
+const BESIDE: usize = 3;
+/// Rows that are kept for that.
+const KEPT: usize = 2 * BESIDE + 1;
+
 /// Places where the second derivatives are those of a saddle, the strongest first.
 fn crosses(smooth: &Gray, least: f64, blur_px: f64) -> Vec<Cross> {
-    let (width, height) = (smooth.width(), smooth.height());
-    let least = least.powi(2) as f32;
-    let mut saddles = vec![0.0_f32; width * height];
-    for row in 2..height.saturating_sub(2) {
-        let rows = [row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it));
-        let target = &mut saddles[row * width..(row + 1) * width];
-        for (x, saddle) in target.iter_mut().enumerate().take(width.saturating_sub(2)).skip(2) {
-            let [xx, xy, yy] = second(&rows, x);
-            *saddle = xy * xy - xx * yy;
-        }
-    }
-    const BESIDE: usize = 3;
-    let mut found = Vec::new();
-    for row in BESIDE + 1..height.saturating_sub(BESIDE + 1) {
-        for x in BESIDE + 1..width.saturating_sub(BESIDE + 1) {
-            let own = saddles[row * width + x];
-            if own < least {
-                continue;
-            }
-            let is_peak = (row - BESIDE..=row + BESIDE).all(|other| {
-                let first = other * width + x;
-                saddles[first - BESIDE..=first + BESIDE].iter().all(|it| *it <= own)
-            });
-            if is_peak {
-                found.extend(cross_at(smooth, [x, row], own, blur_px));
-            }
-        }
-    }
+    let mut found = vectorized(
+        #[inline(always)]
+        || peaks(smooth, least.powi(2) as f32, blur_px),
+    );
     found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     found.truncate(MOST);
     found
 }
 
+/// The same, row by row.
+#[inline(always)]
+fn peaks(smooth: &Gray, least: f32, blur_px: f64) -> Vec<Cross> {
+    let (width, height) = (smooth.width(), smooth.height());
+    // The last rows of strengths in turn.
+    let mut kept = vec![0.0_f32; KEPT * width];
+    let mut found = Vec::new();
+    for row in 0..height {
+        let target = &mut kept[row % KEPT * width..(row % KEPT + 1) * width];
+        if row < 2 || row + 2 >= height {
+            target.fill(0.0);
+        } else {
+            strengths([row - 2, row - 1, row, row + 1, row + 2].map(|it| smooth.row(it)), target);
+        }
+        let middle = row.saturating_sub(BESIDE);
+        if middle <= BESIDE || row + 1 >= height || width <= 2 * (BESIDE + 1) {
+            continue;
+        }
+        let own = &kept[middle % KEPT * width..(middle % KEPT + 1) * width];
+        let inner = &own[BESIDE + 1..width - BESIDE - 1];
+        for (at, many) in inner.chunks(LANES).enumerate() {
+            if !many.iter().fold(false, |any, it| any | (*it >= least)) {
+                continue;
+            }
+            for (k, strength) in many.iter().enumerate() {
+                let x = BESIDE + 1 + at * LANES + k;
+                let is_largest = |levels: &[f32]| {
+                    levels[x - BESIDE..=x + BESIDE].iter().fold(true, |all, it| all & (it <= strength))
+                };
+                if *strength >= least && is_largest(own) && kept.chunks_exact(width).all(is_largest) {
+                    found.extend(cross_at(smooth, [x, middle], *strength, blur_px));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// How strongly the pixels of a row are saddles, by the rows around.
+#[inline(always)]
+#[allow(clippy::needless_range_loop)]
+fn strengths(rows: [&[f32]; 5], target: &mut [f32]) {
+    let width = target.len();
+    let rows = rows.map(|it| &it[..width]);
+    for x in 2..width.saturating_sub(2) {
+        let [xx, xy, yy] = second(&rows, x);
+        target[x] = xy * xy - xx * yy;
+    }
+}
+
 /// Second derivatives by x twice, by both, and by y twice: differences of differences, so that a straight edge has none across itself.
+#[inline(always)]
 fn second(rows: &[&[f32]; 5], x: usize) -> [f32; 3] {
     let middle = rows[2];
     let xx = middle[x - 2] + middle[x + 2] - 2.0 * middle[x];
