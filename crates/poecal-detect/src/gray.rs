@@ -94,15 +94,17 @@ impl Gray {
     pub(crate) fn at(&self, place: Vector2<f64>) -> f64 {
         let x = place.x.clamp(0.0, self.width as f64 - 1.0);
         let y = place.y.clamp(0.0, self.height as f64 - 1.0);
-        let column = (x as usize).min(self.width.saturating_sub(2));
-        let row = (y as usize).min(self.height.saturating_sub(2));
-        let (a, b) = (x - column as f64, y - row as f64);
-        let level = |row: usize, column: usize| {
-            let at = row.min(self.height - 1) * self.width + column.min(self.width - 1);
-            f64::from(self.levels[at])
-        };
-        let upper = level(row, column) * (1.0 - a) + level(row, column + 1) * a;
-        let lower = level(row + 1, column) * (1.0 - a) + level(row + 1, column + 1) * a;
+        // Short whole numbers are turned into others faster.
+        let (column, row) = (x as i32, y as i32);
+        let (a, b) = (x - f64::from(column), y - f64::from(row));
+        let first = row as usize * self.width + column as usize;
+        // At the last column and row the next one has no part.
+        let [right, below] =
+            [(column, self.width), (row, self.height)].map(|(at, size)| (at as usize + 1 < size) as usize);
+        let level = |at: usize| f64::from(self.levels[at]);
+        let upper = level(first) * (1.0 - a) + level(first + right) * a;
+        let first = first + below * self.width;
+        let lower = level(first) * (1.0 - a) + level(first + right) * a;
         upper * (1.0 - b) + lower * b
     }
 

@@ -11,6 +11,10 @@ pub(crate) type Quad = [Vector2<f64>; 4];
 /// Shortest side, pixels.
 const SHORTEST_PX: f64 = 9.0;
 
+/// Most half pixels to each side of a line in which an edge is sought, and how many to each side its light falls over.
+const STEPS: usize = 8;
+const ASIDE: usize = 2;
+
 /// Dark quadrangles. Windows of two sizes tell dark from light.
 pub(crate) fn quads(gray: &Gray, noise: f64) -> Vec<Quad> {
     of_limits(gray, &[(0.8 * noise).max(2.0)], noise)
@@ -131,13 +135,21 @@ fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f6
     // Into the quadrangle: it is clockwise in the picture.
     let inwards = Vector2::new(-along.y, along.x);
     let samples = (length * 0.8).clamp(6.0, 40.0) as usize;
-    let reach = (length * 0.12).clamp(2.0, 4.0);
+    let reach = (length * 0.12).clamp(2.0, 0.5 * STEPS as f64);
     let steps = (reach * 2.0).ceil() as i32;
     let mut points = Vec::with_capacity(samples);
+    let mut levels = [0.0; 2 * (STEPS + ASIDE) + 1];
+    let levels = &mut levels[..2 * (steps as usize + ASIDE) + 1];
+    let mut falls = [0.0; 2 * STEPS + 1];
+    let falls = &mut falls[..2 * steps as usize + 1];
     for k in 0..samples {
         let at = from + (to - from) * (0.1 + 0.8 * (k as f64 + 0.5) / samples as f64);
-        let level = |step: i32| gray.at(at + inwards * (f64::from(step) * 0.5));
-        let falls: Vec<f64> = (-steps..=steps).map(|step| level(step - 2) - level(step + 2)).collect();
+        for (step, level) in levels.iter_mut().enumerate() {
+            *level = gray.at(at + inwards * ((step as f64 - f64::from(steps) - ASIDE as f64) * 0.5));
+        }
+        for (step, fall) in falls.iter_mut().enumerate() {
+            *fall = levels[step] - levels[step + 2 * ASIDE];
+        }
         let (best, fall) = falls.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         if fall <= 1.0 || best == 0 || best + 1 == falls.len() {
             continue;
