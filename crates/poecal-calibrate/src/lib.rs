@@ -44,7 +44,7 @@ pub use crate::steps::accepted::accepted_by;
 pub use crate::steps::calibrate::{calibrate, calibrate_repairing};
 pub use crate::steps::found::SolverReport;
 pub use crate::steps::level::{Gain, Level, Verdict};
-pub use crate::steps::repeatability::{RepeatedPose, repeatability};
+pub use crate::steps::repeatability::{RepeatScatter, RepeatedPose, repeatability};
 pub use crate::steps::result::{Calibration, Repaired};
 pub use crate::steps::together::CommonDirection;
 pub use crate::steps::trust::Trust;

@@ -185,13 +185,22 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let each = |row: &dyn Fn(usize, &[String]) -> String| {
         rows.iter().enumerate().map(|(at, cells)| row(at, cells)).collect::<String>()
     };
-    let sheet = each(&|at, cells| {
+    let row = |at: usize, cells: &[String]| {
         let cell = |(column, text): (char, &String)| match is_number(text) {
             true => format!("<c r=\"{column}{}\"><v>{text}</v></c>", at + 1),
             false => format!("<c r=\"{column}{}\" t=\"inlineStr\"><is><t>{text}</t></is></c>", at + 1),
         };
-        format!("<row r=\"{}\">{}</row>", at + 1, ('A'..).zip(cells).map(cell).collect::<String>())
-    });
+        format!(
+            "<row r=\"{}\">{}</row>",
+            at + 1,
+            ('A'..).zip(cells).filter(|it| !it.1.is_empty()).map(cell).collect::<String>()
+        )
+    };
+    let sheet = each(&row);
+    let heads = ["Joint angles (deg),,,,,,Measured (mm),,", "1,2,3,4,5,6,X,Y,Z"];
+    let heads = heads.map(|it| it.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let under_groups: String =
+        heads.iter().chain(&rows[1..]).enumerate().map(|(at, cells)| row(at, cells)).collect();
     let office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let package = "http://schemas.openxmlformats.org/package/2006/relationships";
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
@@ -200,22 +209,25 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
             "<Relationships xmlns=\"{package}\"><Relationship Id=\"rId1\" Type=\"{office}/{kind}\" Target=\"{to}\"/></Relationships>"
         )
     };
-    let xlsx = parts(&[
-        (
-            "xl/worksheets/sheet1.xml",
-            format!(
-                "<worksheet xmlns=\"{main}\"><dimension ref=\"A1:I5\"/><sheetData>{sheet}</sheetData></worksheet>"
+    let workbook = |sheet: &str| {
+        parts(&[
+            (
+                "xl/worksheets/sheet1.xml",
+                format!(
+                    "<worksheet xmlns=\"{main}\"><dimension ref=\"A1:I5\"/><sheetData>{sheet}</sheetData></worksheet>"
+                ),
             ),
-        ),
-        (
-            "xl/workbook.xml",
-            format!(
-                "<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets><sheet name=\"A\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+            (
+                "xl/workbook.xml",
+                format!(
+                    "<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets><sheet name=\"A\" sheetId=\"1\" r:id=\"rId1\"/></sheets></workbook>"
+                ),
             ),
-        ),
-        ("xl/_rels/workbook.xml.rels", link("worksheet", "worksheets/sheet1.xml")),
-        ("_rels/.rels", link("officeDocument", "xl/workbook.xml")),
-    ]);
+            ("xl/_rels/workbook.xml.rels", link("worksheet", "worksheets/sheet1.xml")),
+            ("_rels/.rels", link("officeDocument", "xl/workbook.xml")),
+        ])
+    };
+    let (xlsx, two_heads) = (workbook(&sheet), workbook(&under_groups));
     let table = each(&|_, cells| {
         let cell = |text: &String| match is_number(text) {
             true => format!(
@@ -258,6 +270,7 @@ fn binary() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     };
     vec![
         ("workbooks", "xlsx", xlsx),
+        ("workbooks", "two_heads", two_heads),
         ("workbooks", "ods", ods),
         ("workbooks", "xls", old_workbook(&rows)),
         ("bags", "joints", bag),
@@ -302,6 +315,7 @@ fn lists() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let first = |text: &str, count: usize| {
         text.lines().take(count).map(|line| format!("{line}\n")).collect::<String>()
     };
+    let sample = |text: &str| text.repeat(3).into_bytes();
     let row = |serial: &str, exit: u8| {
         format!(
             "{{\"schema\":\"poecal-fleet-1\",\"time\":\"2026-01-01T00:00:00Z\",\"serial\":\"{serial}\",\"date\":\"2026-01-01\",\"type\":\"\",\"file\":\"a.csv\",\"results\":\"r\",\"inputs\":[{{\"file\":\"a.csv\",\"sha256\":\"00\"}}],\"poecal_version\":\"0.1.0\",\"exit\":{exit},\"reason\":null,\"verdict\":\"good\",\"accepted\":null,\"rows\":30,\"error_rms\":0.1,\"error_of\":\"held_out\",\"noise\":0.05,\"corrections\":[{{\"joint\":\"j1\",\"offset\":0.1,\"sigma_offset\":0.01,\"unit\":\"deg\",\"tilt_deg\":0.1,\"sigma_tilt_deg\":0.01,\"shift_mm\":0.1,\"sigma_shift_mm\":null}}],\"terms\":[{{\"joint\":\"j1\",\"group\":\"sag\",\"amplitude\":1.0,\"sigma\":0.1,\"found\":true}}]}}\n"
@@ -311,6 +325,9 @@ fn lists() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     let histories = ["poecal-validation-1", "poecal-track-1"].map(|it| check.replace("SCHEMA", it)).concat();
     vec![
         ("hand_eye", "pairs", first(include_str!("../../../examples/howto/hand_eye.csv"), 9).into_bytes()),
+        ("hand_eye", "moveit", sample("- effector_wrt_world: [0, -1, 0, 0.4, 1, 0, 0, -0.1, 0, 0, 1, 0.5, 0, 0, 0, 1]\n  object_wrt_sensor: [1, 0, 0, 0.1, 0, 1, 0, 0, 0, 0, 1, 0.4, 0, 0, 0, 1]\n")),
+        ("hand_eye", "easy", sample("- robot:\n    rotation: {w: 1.0, x: 0.0, y: 0.0, z: 0.0}\n    translation: {x: 0.4, y: 0.1, z: 0.5}\n  tracking:\n    rotation: {w: 0.0, x: 1.0, y: 0.0, z: 0.0}\n    translation: {x: 0.0, y: 0.1, z: 0.4}\n")),
+        ("hand_eye", "franka", format!("{},rvec_x,rvec_y,rvec_z,tvec_x,tvec_y,tvec_z\n0,1,0,0,-1,0,0,0,0,0,1,0,0.4,-0.1,0.5,1,0.1,0.2,0.3,0,0,0.4\n", (0..16).map(|at| format!("O_T_EE[{at}]")).collect::<Vec<_>>().join(",")).into_bytes()),
         ("tcp", "touches", first(include_str!("../../../examples/howto/touches.csv"), 9).into_bytes()),
         ("ledgers", "two", [row("SN1", 0), row("SN2", 1), row("SN1", 2)].concat().into_bytes()),
         ("histories", "two", histories.into_bytes()),
@@ -342,6 +359,12 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
          ,Name,A,A,A\n,ID,1,1,1\n,,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n"
         .to_owned();
     let qualisys = "NO_OF_FRAMES\t4\nNO_OF_MARKERS\t1\nFREQUENCY\t100\nDATA_INCLUDED\t3D\nMARKER_NAMES\tA\nFrame\tTime\tA X\tA Y\tA Z\n".to_owned();
+    let attributes = |it: &[f64], letter: char| -> String {
+        (1..).zip(it).map(|(at, it)| format!(" {letter}{at}=\"{:.3}\"", it * degrees)).collect()
+    };
+    let vicon = "Trajectories\n100\n,,A:A,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n".to_owned();
+    let segments =
+        "Segments\n100\n,,A:A,,,,,\nFrame,Sub Frame,RX,RY,RZ,TX,TY,TZ\n,,rad,rad,rad,mm,mm,mm\n".to_owned();
     let joints = [
         (
             "rapid",
@@ -374,6 +397,32 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
             ) + &each(&|k, it, _| format!("{k}.5 {0} {0}\n", numbers(it, degrees, " "))),
         ),
         ("bare", each(&|_, it, _| numbers(it, degrees, " ") + "\n")),
+        (
+            "fanuc_registers",
+            "[*POSREG*]$POSREG  Storage: CMOS  Access: RW  : ARRAY[1,9] OF Position Reg\n    [1,8] =   '' Uninitialized\n".to_owned()
+                + &each(&|k, it, _| {
+                    let axes: Vec<String> = (1..).zip(it).map(|(at, it)| format!("J{at} = {:.3} deg", it * degrees)).collect();
+                    format!("    [1,{k}] =   'P{k}'   Group: 1\n  {}\n  {}\n", axes[..3].join("   "), axes[3..].join("   "))
+                }),
+        ),
+        (
+            "staubli",
+            format!(
+                "<?xml version=\"1.0\" ?>\n<Database xmlns=\"http://www.staubli.com/robotics/VAL3/Data/2\">\n<Datas>\n<Data name=\"j\" type=\"jointRx\" size=\"4\">\n{}</Data>\n</Datas>\n</Database>\n",
+                each(&|k, it, _| format!("<Value key=\"{}\"{} />\n", k - 1, attributes(it, 'j')))
+            ),
+        ),
+        (
+            "rsi",
+            each(&|k, it, _| {
+                format!("<Rob Type=\"KUKA\"><AIPos{}/><EIPos E1=\"0.0\"/><IPOC>{}</IPOC></Rob>\n", attributes(it, 'A'), 12 * k)
+            }),
+        ),
+        (
+            "echo",
+            each(&|k, it, _| format!("{k},500,base,{},{}\n", made.reading_names().join(","), numbers(it, 1.0, ","))),
+        ),
+        ("letters", "S[deg],L[deg],U[deg],R[deg],B[deg],T[deg]\n".to_owned() + &each(&|_, it, _| numbers(it, degrees, ",") + "\n")),
     ];
     let measured = [
         (
@@ -387,6 +436,8 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
                 + &each(&|_, _, it| format!("{},0.18,0.24,22.6,'11.10.2022 10:00:00.000,\n", numbers(&it, 1e3, ","))),
         ),
         ("motive", motive + &each(&|k, _, it| format!("{k},0.0{k},{}\n", numbers(&it, 1e3, ",")))),
+        ("vicon", vicon + &each(&|k, _, it| format!("{k},0,{}\n", numbers(&it, 1e3, ",")))),
+        ("segments", segments + &each(&|k, _, it| format!("{k},0,0.1,0.2,0.3,{}\n", numbers(&it, 1e3, ",")))),
         ("qualisys", qualisys + &each(&|k, _, it| format!("{k}\t0.0{k}\t{}\n", numbers(&it, 1e3, "\t")))),
     ];
     let both = |one: &[u8], other: &[u8]| [one, format!("\n{BETWEEN}\n").as_bytes(), other].concat();
@@ -415,6 +466,17 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
     all.push((
         "bag".to_owned(),
         both(&bag("sensor_msgs/msg/JointState", &joint_state), own_points.as_bytes()),
+    ));
+    // Compressed by message, as one block of zstd that is not packed.
+    let packed = |at: usize| {
+        let content = [vec![0, 1, 0, 0], joint_state(at).0].concat();
+        let size = content.len() as u32;
+        let block = &((size << 3) | 1).to_le_bytes()[..3];
+        [&b"\x28\xb5\x2f\xfd\xa0"[..], &size.to_le_bytes(), block, &content].concat()
+    };
+    all.push((
+        "bag_packed".to_owned(),
+        both(&bag_of("sensor_msgs/msg/JointState", &packed), own_points.as_bytes()),
     ));
     all.push((
         "bag_of_points".to_owned(),
@@ -462,6 +524,11 @@ impl Cdr {
 
 /// A bag (MCAP) of four messages of a type.
 fn bag(kind: &str, message: &dyn Fn(usize) -> Cdr) -> Vec<u8> {
+    bag_of(kind, &|at| [vec![0, 1, 0, 0], message(at).0].concat())
+}
+
+/// The same of messages as they are in a file.
+fn bag_of(kind: &str, message: &dyn Fn(usize) -> Vec<u8>) -> Vec<u8> {
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
     let record =
         |kind: u8, content: &[u8]| [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat();
@@ -472,8 +539,8 @@ fn bag(kind: &str, message: &dyn Fn(usize) -> Cdr) -> Vec<u8> {
     out.extend(record(4, &[number(1), number(1), text("/a"), text("cdr"), text("")].concat()));
     for at in 0..4 {
         let time = ((at as u64 + 1) * 1_000_000_000).to_le_bytes();
-        let head = [number(1), vec![0; 4], time.to_vec(), time.to_vec(), vec![0, 1, 0, 0]].concat();
-        out.extend(record(5, &[head, message(at).0].concat()));
+        let head = [number(1), vec![0; 4], time.to_vec(), time.to_vec()].concat();
+        out.extend(record(5, &[head, message(at)].concat()));
     }
     out.extend(record(15, &[0; 4]));
     out.extend(record(2, &[0; 20]));
@@ -535,7 +602,7 @@ const OTHER_MAP: &str = "separator = \";\"\ndecimal = \",\"\npose = \"target_fro
 const MAPPED: &str = "run;phase;A1;A2;joint4;A4;px;py;pz;a;b;c;s\n1;train;12,5;-40;100;10;512,31;-40,02;130,9;1;2;3;0,1\n\
      2;test;-3;15,25;50;20;540,77;102,4;112,18;4;5;6;0,1\n";
 
-const CAMERAS: [(&str, &str); 8] = [
+const CAMERAS: [(&str, &str); 13] = [
     (
         "opencv",
         "yaml\n%YAML:1.0\n---\nimage_width: 1920\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
@@ -556,6 +623,31 @@ const CAMERAS: [(&str, &str); 8] = [
         "yaml\ncam0:\n  camera_model: pinhole\n  intrinsics: [461.6, 460.1, 362.7, 246.9]\n  distortion_model: equidistant\n  \
          distortion_coeffs: [-0.01, 0.02, -0.03, 0.01]\n  resolution: [752, 480]\ncam1:\n  camera_model: pinhole\n  intrinsics: [461, 460, 362, 246]\n  \
          distortion_model: radtan\n  distortion_coeffs: [-0.27, 0.06, 1e-4, 1e-5]\n  resolution: [752, 480]\n",
+    ),
+    (
+        "opencv_xml",
+        "xml\n<?xml version=\"1.0\"?>\n<opencv_storage>\n<image_width>640</image_width>\n<image_height>480</image_height>\n<camera_matrix type_id=\"opencv-matrix\">\n  \
+         <rows>3</rows>\n  <data>\n    600. 0. 320. 0. 601. 240. 0. 0. 1.</data></camera_matrix>\n<distortion_coefficients type_id=\"opencv-matrix\">\n  \
+         <data>\n    -0.1 0.02 0. 0. 0.</data></distortion_coefficients>\n</opencv_storage>\n",
+    ),
+    (
+        "realsense",
+        "json\n{\"color\": {\"width\": 640, \"height\": 480, \"ppx\": 320.5, \"ppy\": 240, \"fx\": 600, \"fy\": 601, \"model\": \"distortion.brown_conrady\", \"coeffs\": \
+         [0.1, 0, 0, 0, 0]}, \"depth\": {\"fx\": 400, \"fy\": 401, \"cx\": 320, \"cy\": 240, \"distortion\": {\"k1\": 0.1}}}\n",
+    ),
+    (
+        "oak",
+        "json\n{\"cameraData\": [[2, {\"cameraType\": 1, \"width\": 640, \"height\": 480, \"intrinsicMatrix\": [[600,0,320],[0,601,240],[0,0,1]], \
+         \"distortionCoeff\": [-0.1,0,0,0,0,0,0,0,0,0,0,0,0,0]}]]}\n",
+    ),
+    (
+        "mrcal",
+        "yaml\n# mrcal\n{\n    'lensmodel':  'LENSMODEL_OPENCV5',\n    'intrinsics': [ 600, 601, 320, 240, -0.1, 0, 0, 0, 0,],\n    'imagersize': [ 640, 480,],\n}\n",
+    ),
+    (
+        "halcon",
+        "dat\nParGroup: Cam_Par;\n  \"Internal camera parameters\";\n\nFocus:foc: 0.008;\n  DOUBLE:0.0:;\n\nKappa:kappa: -900;\n\nSx:sx: 5.5e-06;\nSy:sy: 5.5e-06;\nCx:cx: 320;\nCy:cy: \
+         240;\nImageWidth:imgw: 640;\nImageHeight:imgh: 480;\n",
     ),
     ("industrial", "yaml\nintrinsics:\n  fx: 550.0\n  fy: 551.0\n  cx: 320.0\n  cy: 240.0\n"),
     (

@@ -58,7 +58,7 @@ const UNITS: [NamedUnit; 12] = [
     unit("in", Unit::Metre, (254.0, 1e4), "inch inches"),
     RADIAN,
     unit("mrad", Unit::Radian, (1.0, 1e3), "milliradian milliradians"),
-    unit("deg", Unit::Radian, (PI / 180.0, 1.0), "degree degrees"),
+    unit("deg", Unit::Radian, (PI / 180.0, 1.0), "degree degrees 度"),
     unit("arcmin", Unit::Radian, (PI / 10_800.0, 1.0), "arcminute arcminutes"),
     unit("arcsec", Unit::Radian, (PI / 648_000.0, 1.0), "arcsecond arcseconds"),
     ONE,

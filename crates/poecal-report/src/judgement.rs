@@ -3,7 +3,7 @@
 use super::acceptance;
 use super::table::{STATISTICS, WIDTHS, line, lines, number, number_or_dash, pictures_words, row};
 use poecal_calibrate::{
-    Gain, Improvement, Judgement, Level, ModelAccuracy, PartCoverage, Refitted, Statistic,
+    Gain, Improvement, Judgement, Level, ModelAccuracy, PartCoverage, Refitted, RepeatScatter, Statistic,
 };
 use poecal_model::measurement::Quantity;
 
@@ -42,6 +42,9 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
         line(&mut out, "sampled range", &range_words(judgement));
     }
     line(&mut out, "gain", &gain_words(judgement));
+    if let Some(found) = &judgement.repeats {
+        line(&mut out, "repeats", &repeats_words(found));
+    }
     if let Some(found) = &judgement.acceptance {
         acceptance::lines(&mut out, found);
     }
@@ -67,6 +70,18 @@ pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
         Some(Level::DoNotUse) => "the calibration does not hold for these measurements",
         None => "the calibration has no bounds to test",
     }
+}
+
+/// How far rows of one configuration lie from each other.
+fn repeats_words(found: &RepeatScatter) -> String {
+    let (least, most, unit) = (number(found.smallest), number(found.largest), found.quantity.unit().symbol());
+    let range = if found.poses > 1 { format!("{least} to {most}") } else { most };
+    let poses = if found.poses == 1 {
+        "one configuration".to_owned()
+    } else {
+        format!("{} configurations", found.poses)
+    };
+    format!("scatter by {range} {unit} (repeatability of {poses}, {} rows)", found.rows)
 }
 
 /// How many times smaller errors are than those of the nominal model on these rows.

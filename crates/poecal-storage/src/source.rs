@@ -38,7 +38,7 @@ const fn form(starts: &'static [&'static [u8]], ends: &'static [&'static str], w
 }
 
 /// Forms that are not read as a text.
-const FORMS: [Form; 21] = [
+const FORMS: [Form; 22] = [
     form(&[b"ISO-10303-21;"], &["step", "stp"], "a STEP file, which has shapes and no joints"),
     form(&[], &["igs", "iges"], "an IGES file, which has shapes and no joints"),
     form(&[], &["stl", "dae", "obj", "ply", "glb", "gltf", "3mf"], "a mesh, which has a shape and no joints"),
@@ -90,6 +90,11 @@ const FORMS: [Form; 21] = [
         &[b"\x93NUMPY"],
         &[],
         "an array of NumPy (.npy); hand it to `Measurements.from_arrays` in Python (`numpy.load`)",
+    ),
+    form(
+        &[b"\x02\x50"],
+        &["c3d"],
+        "motion capture as C3D; export its trajectories as CSV or TSV from Vicon, Motive or Qualisys, or hand them to `Measurements.from_arrays` in Python (`ezc3d`)",
     ),
     form(&[], &["mp4", "avi", "mov", "mkv"], "a film"),
 ];

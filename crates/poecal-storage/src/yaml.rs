@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::numbers::LARGEST_NUMBER;
-use super::yaml_tree::{Node, NodeKind, of_yaml};
+use super::yaml_tree::{Node, NodeKind, documents, of_yaml};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 /// A value of a mapping.
@@ -108,15 +108,20 @@ pub struct Leaf {
     pub line: usize,
 }
 
-/// All numbers and words of a text, entries of lists too; the directive of OpenCV, which is no YAML, and tags are passed over.
+/// All numbers and words of a text, entries of lists too; tags are passed over.
 pub fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
-    let text = text.trim_start_matches('\u{feff}');
-    let text = text.strip_prefix("%YAML:").map_or_else(|| text.to_owned(), |rest| format!("#{rest}"));
-    let mut found = Vec::new();
-    for document in of_yaml(&text, path, (0, expected))? {
-        leaves_of(&document, &mut Vec::new(), &mut found);
-    }
-    Ok(found)
+    Ok(trees(text, path, expected)?.concat())
+}
+
+/// The same of each document of YAML, or value of JSON.
+pub fn trees(text: &str, path: &Path, expected: &str) -> Result<Vec<Vec<Leaf>>> {
+    let all = documents(text, path, expected)?;
+    let trees = all.iter().map(|document| {
+        let mut found = Vec::new();
+        leaves_of(document, &mut Vec::new(), &mut found);
+        found
+    });
+    Ok(trees.collect())
 }
 
 fn leaves_of(node: &Node, steps: &mut Vec<String>, found: &mut Vec<Leaf>) {

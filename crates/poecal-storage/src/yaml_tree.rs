@@ -1,5 +1,6 @@
 //! Documents of YAML and JSON as trees, each part with its place.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -141,7 +142,12 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
         Err(Error::new(ErrorKind::Syntax, message).at(path, line, column))
     };
     let (mut open, mut found): (Vec<Open>, Vec<Node>) = (Vec::new(), Vec::new());
-    for event in Parser::new_from_str(text) {
+    // OpenCV's directive is no YAML, and the parser reads no other.
+    let text = match text.trim_start_matches('\u{feff}').strip_prefix("%YAML") {
+        Some(rest) => Cow::Owned(format!("#{rest}")),
+        None => Cow::Borrowed(text),
+    };
+    for event in Parser::new_from_str(&text) {
         let (event, span) = event.map_err(|error| {
             let (place, message) = (error.marker(), visible(&error.info()).into_owned());
             let message = format!("found broken YAML ({message}), expected {expected}");

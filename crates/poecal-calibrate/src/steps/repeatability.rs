@@ -1,9 +1,10 @@
 //! Pose accuracy and repeatability of configurations that were measured several times (ISO 9283).
 
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use crate::{Calibration, RowError};
-use poecal_fit::state::{Estimate, turn_to_first};
+use poecal_fit::state::{Estimate, Session, turn_to_first};
 use poecal_model::measurement::{Dataset, Quantity};
 
 /// Fewest rows of one configuration; ISO 9283 asks for 30.
@@ -25,6 +26,47 @@ pub struct RepeatedPose {
     /// Mean distance of the errors from their mean, plus three standard deviations: R of theory.md §9 (46), metres or radians, by the
     /// calibrated model.
     pub repeatability: f64,
+}
+
+/// How far rows of one configuration lie from each other, of measurements that judge a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RepeatScatter {
+    /// Number of targets in configurations with three rows or more.
+    pub poses: usize,
+    /// Number of their rows.
+    pub rows: usize,
+    /// The quantity that is compared: that of the first of them.
+    pub quantity: Quantity,
+    /// The smallest repeatability of a pose (theory.md §9 (46)), millimetres or degrees.
+    pub smallest: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
+/// Scatter of the rows of each configuration by a state of the robot; `None` if nothing was measured three times.
+pub(crate) fn repeat_scatter(
+    session: &Session<'_>,
+    data: &Dataset,
+    estimate: &Estimate,
+) -> Option<RepeatScatter> {
+    let groups = groups(data);
+    let quantity = leading(data, *groups.first()?.first()?)?;
+    let is_own = |rows: &&Vec<u32>| rows.first().and_then(|row| leading(data, *row)) == Some(quantity);
+    let own: Vec<&Vec<u32>> = groups.iter().filter(is_own).collect();
+    let all = own.iter().map(|rows| {
+        let mut errors = session.errors(rows, estimate);
+        turn_to_first(data, rows, estimate, &mut errors);
+        quantity.unit().shown(scatter(&errors))
+    });
+    let (smallest, largest) =
+        all.fold((f64::INFINITY, 0.0), |it: (f64, f64), own| (it.0.min(own), it.1.max(own)));
+    Some(RepeatScatter {
+        poses: own.len(),
+        rows: own.iter().map(|it| it.len()).sum(),
+        quantity,
+        smallest,
+        largest,
+    })
 }
 
 /// Every target and configuration with three rows or more, in the order measured: theory.md §9 (46). Readings within 0.0001 rad or 0.1 mm

@@ -6,6 +6,7 @@ use crate::acceptance::{Acceptance, AcceptedModel};
 use crate::run::accuracy::{Improvement, ModelAccuracy, model_accuracy};
 use crate::run::count::{measurements_words, of_device};
 use crate::steps::improvement::paired;
+use crate::steps::repeatability::{RepeatScatter, repeat_scatter};
 use crate::trust::coverage_check::{
     CoverageCheck, InSampledRange, JudgedRow, JudgedRows, PredictedUncertainty, coverage_checks,
     promised_rows,
@@ -65,7 +66,8 @@ pub enum Refitted {
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
 /// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
-///     in_sampled_range: None, improvement: None, acceptance: None, moved_device: None, base_from_device: poecal_arm::lie::Pose::identity(),
+///     in_sampled_range: None, improvement: None, acceptance: None, moved_device: None, repeats: None,
+///     base_from_device: poecal_arm::lie::Pose::identity(),
 ///     rows: vec![] };
 /// assert_eq!(judgement.calibrated.position_mm().max, 0.25);
 /// ```
@@ -96,6 +98,9 @@ pub struct Judgement {
     /// That the device stands elsewhere than at the calibration, where the rows show it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moved_device: Option<MovedDevice>,
+    /// Scatter of the rows of one configuration; `None` if none was measured three times.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repeats: Option<RepeatScatter>,
     /// Where the first device stands: as in the calibration, or as it was refitted.
     #[serde(skip)]
     pub base_from_device: Pose,
@@ -201,6 +206,7 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
         improvement: None,
         acceptance: None,
         moved_device: None,
+        repeats: repeat_scatter(&rows.session, data, &rows.estimate),
         base_from_device: rows.estimate.device_from_base.inverse(),
         rows: each,
     })

@@ -17,6 +17,8 @@ const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
 /// By how much readings differ at most that count a joint's turns from the middle of its range on or beyond, radians; and a margin.
 const MOST_TURNS: f64 = 2.0 * TAU;
 const MORE: f64 = 0.05;
+/// Counts in a turn of absolute encoders, as motors of low-cost arms state them.
+const ENCODERS: [f64; 4] = [1024.0, 4096.0, 16_384.0, 65_536.0];
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
 
@@ -33,8 +35,9 @@ struct OneJoint<'a> {
     reading: usize,
     /// Whether a whole turn of its reading is one of the joint, and of no other.
     is_periodic: bool,
-    /// The lowest and the highest reading before whole turns are taken off.
+    /// The lowest and the highest reading before whole turns are taken off, and whether all are whole numbers from 0 on.
     raw: [f64; 2],
+    is_count: bool,
     turned: NamedLines,
     beyond: NamedLines,
     /// The largest of these, and its place.
@@ -54,6 +57,7 @@ impl<'a> JointWatch<'a> {
                 && joint.reading.multiplier.abs() == 1.0
                 && robot.reading_indices().iter().filter(|it| **it == reading).count() == 1,
             raw: [f64::INFINITY, f64::NEG_INFINITY],
+            is_count: true,
             turned: NamedLines::default(),
             beyond: NamedLines::default(),
             extreme: 0.0,
@@ -73,6 +77,7 @@ impl<'a> JointWatch<'a> {
         for one in &mut self.joints {
             let Some(Some(reading)) = readings.get_mut(one.reading) else { continue };
             one.raw = [one.raw[0].min(*reading), one.raw[1].max(*reading)];
+            one.is_count &= *reading >= 0.0 && reading.fract() == 0.0;
             if reading.abs() > one.extreme {
                 (one.extreme, one.extreme_place) = (reading.abs(), place(one.reading));
             }
@@ -116,7 +121,10 @@ impl<'a> JointWatch<'a> {
                 });
                 let is_per_cent = PER_CENT.contains(&extremes.fold(0.0, f64::max));
                 let (line, character) = one.extreme_place;
-                let message = one.unit_message(column, likely, is_per_cent);
+                let message = match self.counts_a_turn(column) {
+                    Some(counts) => one.counts_message(column, counts),
+                    None => one.unit_message(column, likely, is_per_cent),
+                };
                 return Err(Doubt::new(DoubtPlace::Cell(line, character), message));
             }
             if let Some(limits) = one.joint.limits.filter(|_| one.beyond.count > 0) {
@@ -124,6 +132,16 @@ impl<'a> JointWatch<'a> {
             }
         }
         Ok(warnings)
+    }
+
+    /// Counts of an encoder in a turn, if all readings are whole numbers around the middle of such.
+    fn counts_a_turn(&self, column: &ReadColumn<'_>) -> Option<f64> {
+        let all = || self.joints.iter().map(|one| one.raw);
+        let [lowest, highest] =
+            [all().map(|it| it[0]).fold(f64::INFINITY, f64::min), all().map(|it| it[1]).fold(0.0, f64::max)];
+        let counts = ENCODERS.into_iter().find(|counts| highest < *counts)?;
+        let is_of_all = self.joints.iter().all(|one| one.is_count) && column.unit_from == UnitSource::Si;
+        (is_of_all && lowest < 0.5 * counts && highest > 0.5 * counts).then_some(counts)
     }
 
     /// How far the slides without limits move in all (metres), by the ranges of the columns.
@@ -235,6 +253,17 @@ impl OneJoint<'_> {
             }
             None => unit_from == UnitSource::Si,
         }
+    }
+
+    fn counts_message(&self, input: &ReadColumn<'_>, counts: f64) -> String {
+        let (name, degrees, zero) = (input.name, 360.0 / counts, 0.5 * counts);
+        format!(
+            "found whole numbers from {} to {}, expected angles: most likely they are counts of an encoder, {counts} a turn with the zero at {zero}, \
+             which a mapping (--columns) reads by lines under `[joints]` such as `{} = {{ columns = {{ {name} = {degrees} }}, unit = \"deg\", offset = -180 }}`",
+            short(self.raw[0]),
+            short(self.raw[1]),
+            self.joint.name
+        )
     }
 
     fn unit_message(&self, input: &ReadColumn<'_>, likely: NamedUnit, is_per_cent: bool) -> String {

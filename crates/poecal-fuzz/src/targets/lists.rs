@@ -19,10 +19,11 @@ fn row_name(row: usize) -> String {
     format!("row {}", row + 1)
 }
 
-/// Poses of an arm and of a target, in one file or in two: what is read has as many of both, and a camera that is found is somewhere.
+/// Poses of an arm and of a target, in one file or in two, as tables or as YAML: what is read has as many of both, and a camera that is found is somewhere.
 pub fn hand_eye(data: &[u8]) -> bool {
     let Some([one, other]) = parts::<2>(data) else { return false };
-    let names = [format!("{PATH}.csv"), format!("{PATH}.2")];
+    let ending = if one.starts_with(['-', '{', '[']) { "yaml" } else { "csv" };
+    let names = [format!("{PATH}.{ending}"), format!("{PATH}.2")];
     let all: Vec<(&str, &[u8])> =
         names.iter().map(String::as_str).zip([one.as_bytes(), other.as_bytes()]).collect();
     let files = if other.is_empty() { &all[..1] } else { &all[..] };

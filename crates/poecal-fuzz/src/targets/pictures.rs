@@ -16,10 +16,10 @@ fn file<'a>(text: &'a str, endings: &[&str]) -> Option<(String, &'a str)> {
     endings.contains(&ending).then(|| (format!("{PATH}.{ending}"), rest))
 }
 
-/// A line with the ending of the name (`yaml`, `xml`, `csv`), and the file: its cameras have lenses that map points.
+/// A line with the ending of the name (`yaml`, `json`, `xml`, `dat`, `csv`), and the file: its cameras have lenses that map points.
 pub fn cameras(data: &[u8]) -> bool {
     let Some(whole) = text(data) else { return false };
-    let Some((path, text)) = file(&whole, &["yaml", "xml", "csv"]) else { return false };
+    let Some((path, text)) = file(&whole, &["yaml", "json", "xml", "dat", "csv"]) else { return false };
     let read = || with_file(&path, text, || read_cameras(&path).map(|it| it.cameras));
     let Some(cameras) = understood(read(), text) else { return false };
     let again = certain(read(), "a second time");

@@ -9,6 +9,7 @@ mod auto_id;
 #[cfg(feature = "bags")]
 mod bags;
 mod bodies;
+mod controller_lists;
 mod figaroh;
 pub(crate) mod headerless;
 mod leica;
@@ -24,6 +25,7 @@ mod refused;
 mod robodk;
 mod spatial_analyzer;
 mod two_sets;
+mod vicon;
 mod words;
 #[cfg(feature = "workbooks")]
 mod workbook;
@@ -55,7 +57,8 @@ pub(crate) const MEASURED: &str = "a measurement file (CSV)";
 pub(crate) const WORKBOOK: &str = "a workbook";
 pub(crate) const BAG: &str = "a ROS 2 bag";
 /// Recordings in which several bodies or markers may be.
-pub(crate) const RECORDINGS: [&str; 3] = [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title];
+pub(crate) const RECORDINGS: [&str; 4] =
+    [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, vicon::FORM.title];
 
 /// What files are opened with.
 #[derive(Clone, Copy)]
@@ -99,12 +102,27 @@ const FORMS: &[Form] = &[
     motive::FORM,
     qualisys::FORM,
     ndi::FORM,
+    vicon::FORM,
+    controller_lists::FANUC,
+    controller_lists::STAUBLI,
+    controller_lists::KUKA,
+    controller_lists::ECHO,
     leica::FORM,
     programs::FORM,
     robodk::FORM,
     figaroh::FORM,
     auto_id::FORM,
     two_sets::FORM,
+    headerless::FORM,
+];
+
+/// Forms of joint readings alone.
+const LISTS: &[Form] = &[
+    programs::FORM,
+    controller_lists::FANUC,
+    controller_lists::STAUBLI,
+    controller_lists::KUKA,
+    controller_lists::ECHO,
     headerless::FORM,
 ];
 
@@ -208,7 +226,7 @@ impl Opening<'_> {
         let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
             None => FORMS,
             Some(map) if map.names_joints() => &[headerless::FORM],
-            Some(_) => &[programs::FORM, headerless::FORM],
+            Some(_) => LISTS,
         };
         let mut forms = forms.iter();
         let Some(form) = forms.find(|form| (form.is_it)(blocks.text(), self)) else {

@@ -56,6 +56,70 @@ fn parts(cell: &str) -> (&str, Option<&str>) {
     name_and_unit(cell, &[['[', ']'], ['(', ')']])
 }
 
+/// The columns of two sets by their names and by the words above them, which stand over all columns up to the next one.
+fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<Part>, [Called; 2])> {
+    let mut word = None;
+    let mut found: Vec<Option<(&str, Option<Called>)>> = Vec::with_capacity(names.len());
+    for (at, cell) in names.iter().enumerate() {
+        let own = over.get(at).map(|it| plain(it)).filter(|it| !it.is_empty());
+        word = own.map_or(word, |it| called(&it));
+        found.push(coordinate(&plain(parts(cell).0)).map(|(name, own)| (name, own.or(word))));
+    }
+    let named = |it: Called| found.contains(&Some(("x", Some(it))));
+    let are_named = named(Called::Nominal) && named(Called::Measured);
+    let mut seen: [Vec<&str>; 2] = Default::default();
+    let mut of_sets = Vec::with_capacity(found.len());
+    for coordinate in found {
+        let set = coordinate.and_then(|(name, own)| match (are_named, own) {
+            (true, Some(Called::Nominal)) => Some((name, 0)),
+            (true, Some(Called::Measured)) => Some((name, 1)),
+            (true, _) => None,
+            (false, _) => Some((name, usize::from(seen[0].contains(&name)))),
+        });
+        let Some((name, set)) = set else {
+            of_sets.push(Part::Other);
+            continue;
+        };
+        if seen[set].contains(&name) {
+            return None;
+        }
+        seen[set].push(name);
+        let place = PLACE.into_iter().find(|it| *it == name);
+        of_sets.push(place.map_or(Part::Angle, |it| Part::Place(set, it)));
+    }
+    let has_all = |seen: &Vec<&str>| PLACE.iter().all(|it| seen.contains(it));
+    let called = if are_named { [Called::Nominal, Called::Measured] } else { [Called::Unnamed; 2] };
+    (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some((of_sets, called))
+}
+
+/// The columns of a set with what they are called, and of none.
+fn columns(names: &[&str], of: &[Part], set: usize) -> Vec<(usize, Column)> {
+    let column = |(at, part): (usize, &Part)| {
+        let cell = *names.get(at)?;
+        match part {
+            Part::Other => Some((at, Column::from(cell))),
+            Part::Place(own, name) if *own == set => {
+                let unit = parts(cell).1;
+                let column = Column::from(*name);
+                Some((at, unit.map_or(column.clone(), |unit| column.in_unit(unit))))
+            }
+            Part::Place(..) | Part::Angle => None,
+        }
+    };
+    of.iter().enumerate().filter_map(column).collect()
+}
+
+/// Columns of each of two sets.
+#[cfg(feature = "workbooks")]
+type SetColumns = [Vec<(usize, Column)>; 2];
+
+/// The columns of each of two sets that names say, with what they are called.
+#[cfg(feature = "workbooks")]
+pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
+    let (parts, called) = sort(names, &[])?;
+    Some(([0, 1].map(|set| columns(names, &parts, set)), called))
+}
+
 impl<'t> Sets<'t> {
     /// The sets that a line names, below another one that may name what they are.
     fn of(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
@@ -64,43 +128,8 @@ impl<'t> Sets<'t> {
             return None;
         }
         let over = above.map(|it| Head::of(it, head.by).names).unwrap_or_default();
-        // A word of the line above stands over all columns up to the next one.
-        let mut word = None;
-        let mut found: Vec<Option<(&str, Option<Called>)>> = Vec::with_capacity(head.names.len());
-        for (at, cell) in head.names.iter().enumerate() {
-            let own = over.get(at).map(|it| plain(it)).filter(|it| !it.is_empty());
-            word = own.map_or(word, |it| called(&it));
-            found.push(coordinate(&plain(parts(cell).0)).map(|(name, own)| (name, own.or(word))));
-        }
-        let named = |it: Called| found.contains(&Some(("x", Some(it))));
-        let are_named = named(Called::Nominal) && named(Called::Measured);
-        let mut seen: [Vec<&str>; 2] = Default::default();
-        let mut of_sets = Vec::with_capacity(found.len());
-        for coordinate in found {
-            let set = coordinate.and_then(|(name, own)| match (are_named, own) {
-                (true, Some(Called::Nominal)) => Some((name, 0)),
-                (true, Some(Called::Measured)) => Some((name, 1)),
-                (true, _) => None,
-                (false, _) => Some((name, usize::from(seen[0].contains(&name)))),
-            });
-            let Some((name, set)) = set else {
-                of_sets.push(Part::Other);
-                continue;
-            };
-            if seen[set].contains(&name) {
-                return None;
-            }
-            seen[set].push(name);
-            let place = PLACE.into_iter().find(|it| *it == name);
-            of_sets.push(place.map_or(Part::Angle, |it| Part::Place(set, it)));
-        }
-        let has_all = |seen: &Vec<&str>| PLACE.iter().all(|it| seen.contains(it));
-        let called = if are_named { [Called::Nominal, Called::Measured] } else { [Called::Unnamed; 2] };
-        (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some(Sets {
-            head,
-            parts: of_sets,
-            called,
-        })
+        let (parts, called) = sort(&head.names, &over)?;
+        Some(Sets { head, parts, called })
     }
 
     /// The sets of a text.
@@ -112,20 +141,8 @@ impl<'t> Sets<'t> {
 
     /// The table of a set.
     fn table(&self, text: &'t str, set: usize) -> Result<Made, Refused> {
-        let column = |(at, part): (usize, &Part)| {
-            let cell = *self.head.names.get(at)?;
-            match part {
-                Part::Other => Some((at, Column::from(cell))),
-                Part::Place(own, name) if *own == set => {
-                    let unit = parts(cell).1;
-                    let column = Column::from(*name);
-                    Some((at, unit.map_or(column.clone(), |unit| column.in_unit(unit))))
-                }
-                Part::Place(..) | Part::Angle => None,
-            }
-        };
         let (taken, columns): (Vec<usize>, Vec<Column>) =
-            self.parts.iter().enumerate().filter_map(column).unzip();
+            columns(&self.head.names, &self.parts, set).into_iter().unzip();
         let mut made = Made::new(self.head.line, columns);
         let header = format!("the header (line {})", self.head.line);
         for (line, found) in self.head.rows(text) {

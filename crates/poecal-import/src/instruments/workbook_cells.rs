@@ -8,6 +8,8 @@ use super::maker::Refused;
 use crate::table::places::Sheet;
 use crate::table::times::seconds_of;
 
+/// Seconds of a day, the unit of times in workbooks.
+pub(crate) const DAY_S: f64 = 86_400.0;
 /// What is to be done about formulas without results.
 const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
@@ -52,6 +54,34 @@ pub(crate) fn refuse_uncomputed(
 pub(crate) fn no_number(cell: &Data, column: &str) -> Option<String> {
     let name = column.split(['[', '(']).next().unwrap_or_default();
     let is_time = seconds_of(name, None).is_some() || seconds_of(column, None).is_some();
-    let Data::DateTime(time) = cell else { return None };
-    (!is_time).then(|| format!("{} (formatted as a date or time)", time.as_f64()))
+    let shown = if let Data::DateTime(time) = cell {
+        time.as_f64().to_string()
+    } else if let Data::DurationIso(text) = cell {
+        text.clone()
+    } else {
+        return None;
+    };
+    (!is_time).then(|| format!("{shown} (formatted as a date or time)"))
+}
+
+/// Seconds of a duration as ODS has it, such as `PT01H02M03.5S`.
+pub(crate) fn duration_s(text: &str) -> Option<f64> {
+    let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
+    let (days, time) = rest.strip_prefix('P')?.split_once('T')?;
+    let (mut seconds, mut number) = (0.0, String::new());
+    for (letter, is_time) in days.chars().map(|it| (it, false)).chain(time.chars().map(|it| (it, true))) {
+        let unit_s = match (letter, is_time) {
+            ('D', false) => DAY_S,
+            ('H', true) => 3600.0,
+            ('M', true) => 60.0,
+            ('S', true) => 1.0,
+            ('0'..='9' | '.' | ',', _) => {
+                number.push(if letter == ',' { '.' } else { letter });
+                continue;
+            }
+            _ => return None,
+        };
+        seconds += unit_s * std::mem::take(&mut number).parse::<f64>().ok()?;
+    }
+    (number.is_empty() && text.ends_with(['D', 'H', 'M', 'S'])).then_some(sign * seconds)
 }

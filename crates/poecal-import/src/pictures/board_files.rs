@@ -2,12 +2,11 @@
 
 use std::path::Path;
 
-use super::stated::Stated;
+use super::stated::{Stated, of_xml};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::limits::Limit;
 use poecal_storage::other_keys::KeysOf;
 use poecal_storage::source_text::read_up_to;
-use poecal_storage::xml::parsed;
 use poecal_storage::yaml::{Leaf, leaves};
 
 /// What such a file is.
@@ -80,7 +79,8 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
     let Some(ending) = ending.filter(|it| ENDINGS.contains(&it.as_str())) else { return Ok(None) };
     let text = read_up_to(path, EXPECTED, Limit::Settings)?;
-    let leaves = if ending == "xml" { of_xml(&text, path)? } else { leaves(&text, path, EXPECTED)? };
+    let leaves =
+        if ending == "xml" { of_xml(&text, path, EXPECTED)? } else { leaves(&text, path, EXPECTED)? };
     let stated = Stated { leaves, path };
     let Some(maker) = MAKERS.iter().find(|it| stated.find(it.mark).is_some()) else {
         return Err(ErrorKind::Option.error(format!("found no board, expected {EXPECTED}")).in_file(path));
@@ -89,22 +89,6 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let others = stated.unread(maker)?.map_or(String::new(), |it| format!("; {it}"));
     let said = format!("{}: read the board `{words}` ({}){others}", path.display(), maker.name);
     Ok(Some(BoardOfFile { words, said }))
-}
-
-/// The texts of an XML file with the names of their elements.
-fn of_xml(text: &str, path: &Path) -> Result<Vec<Leaf>> {
-    let document = parsed(text, path, EXPECTED)?;
-    // Elements are in their order: each begins so many lines after the one before.
-    let (mut line, mut at) = (1, 0);
-    let leaf = |node: roxmltree::Node<'_, '_>| {
-        let start = node.range().start;
-        line += text.get(at..start).unwrap_or_default().matches('\n').count();
-        at = start;
-        let text = node.text()?.trim().trim_matches('"').trim().to_owned();
-        Some(Leaf { path: vec![node.tag_name().name().to_owned()], text, line })
-    };
-    let elements = document.descendants().filter(|node| node.is_element());
-    Ok(elements.filter(|node| !node.children().any(|it| it.is_element())).filter_map(leaf).collect())
 }
 
 impl Stated<'_> {

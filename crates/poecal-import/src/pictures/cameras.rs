@@ -1,11 +1,13 @@
-//! Files of cameras: CSV, and what OpenCV, ROS, Kalibr and ViSP write.
+//! Files of cameras: CSV, and what OpenCV, ROS, Kalibr, ViSP, HALCON and makers of cameras write.
 
 use std::path::Path;
 
 use roxmltree::Node;
 
 use super::camera_tables::read_table;
-use super::camera_texts::read_yaml;
+use super::camera_trees::read_trees;
+use super::halcon::read_halcon;
+use super::stated::of_xml;
 use super::stored_pictures::stored_cameras;
 use crate::pictures::lens_checks::{EXPECTED, check};
 use poecal_model::camera::{Camera, Distortion, LARGEST_SIDE, Lens, size_of_pictures};
@@ -13,7 +15,9 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::disk::is_file;
 use poecal_storage::limits::Limit;
 use poecal_storage::source_text::read_up_to;
-use poecal_storage::xml::parsed;
+use poecal_storage::text_of;
+use poecal_storage::xml::{parsed, root_name};
+use poecal_storage::yaml::trees;
 
 /// Cameras of a file, and what was understood of it, a sentence each.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +28,8 @@ pub struct CameraFile {
     pub said: Vec<String>,
 }
 
+/// What a calibration.json has in it, and no other file of a camera.
+const OF_CALIBRATION: [&str; 2] = ["\"pictures\"", "\"poecal-calibration-"];
 /// What begins the words of a camera whose lens is unknown.
 const UNKNOWN: &str = "unknown:";
 
@@ -54,9 +60,27 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     let ending = path.extension().map(|it| it.to_string_lossy().to_ascii_lowercase());
     let text = |what: &str| read_up_to(path, what, Limit::Settings);
     let (cameras, said) = match ending.as_deref() {
-        Some("yaml" | "yml") => read_yaml(&text("a camera (YAML)")?, path)?,
-        Some("json") => (stored_cameras(path)?, Vec::new()),
-        Some("xml") => (read_visp(&text("a camera (XML)")?, path)?, Vec::new()),
+        Some("yaml" | "yml" | "cameramodel") => {
+            read_trees(trees(&text("a camera (YAML)")?, path, EXPECTED)?, path)?
+        }
+        Some("json") => {
+            let text = text_of(path, "a camera (JSON)")?;
+            match OF_CALIBRATION.iter().any(|key| text.contains(key)) {
+                true => (stored_cameras(path)?, Vec::new()),
+                false => read_trees(trees(&text, path, EXPECTED)?, path)?,
+            }
+        }
+        Some("xml") => {
+            let text = text("a camera (XML)")?;
+            match root_name(&text) {
+                Some("opencv_storage") => read_trees(vec![of_xml(&text, path, EXPECTED)?], path)?,
+                _ => (read_visp(&text, path)?, Vec::new()),
+            }
+        }
+        Some("dat" | "cal") => match read_halcon(&text("a camera (HALCON)")?, path)? {
+            Some(found) => found,
+            None => read_table(path, version)?,
+        },
         _ => read_table(path, version)?,
     };
     for Camera { name, lens, .. } in &cameras {

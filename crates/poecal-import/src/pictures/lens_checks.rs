@@ -7,8 +7,10 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::numbers::LARGEST_NUMBER;
 
 /// What a file of cameras is expected to be.
-pub(crate) const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order, or YAML of OpenCV, ROS (camera_info) or Kalibr (camchain), \
-                        or XML of ViSP";
+pub(crate) const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order, YAML, JSON or XML with a `camera_matrix`, or with fx, fy, \
+                        cx, cy (OpenCV, ROS, RealSense, OAK), Kalibr's camchain, or a camera of ViSP, HALCON (.dat) or mrcal";
+/// What to do about a lens of another model.
+pub(crate) const OTHERWISE: &str = "or find the lens by the pictures: --camera unknown:WIDTHxHEIGHT";
 
 /// Refuses numbers that are no lens's.
 pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
@@ -53,8 +55,9 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
             format!("found the distortion `{kind}` with {} coefficients, expected {expected}", numbers.len());
         Err(ErrorKind::Measurement.error(message).in_file(path))
     };
-    match kind {
-        "" | "none" | "plumb_bob" | "radtan" | "rational_polynomial" => {
+    let small = kind.to_ascii_lowercase();
+    match small.strip_prefix("distortion.").unwrap_or(&small) {
+        "" | "none" | "plumb_bob" | "radtan" | "rational_polynomial" | "brown_conrady" | "opencv" => {
             // OpenCV writes up to 14, of which those of thin prisms and tilts are mostly 0.
             if numbers.iter().skip(8).any(|it| *it != 0.0) {
                 return refuse("none of a thin prism or a tilted sensor");
@@ -63,11 +66,17 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
             k.iter_mut().zip(numbers).for_each(|(k, number)| *k = *number);
             Ok(Distortion::Brown(k))
         }
-        "equidistant" | "fisheye" => match *numbers {
-            [k1, k2, k3, k4] => Ok(Distortion::Fisheye([k1, k2, k3, k4])),
+        "equidistant" | "fisheye" | "kannala_brandt4" => match *numbers {
+            [k1, k2, k3, k4, ref rest @ ..] if rest.iter().all(|it| *it == 0.0) => {
+                Ok(Distortion::Fisheye([k1, k2, k3, k4]))
+            }
             [] => Ok(Distortion::Fisheye([0.0; 4])),
             _ => refuse("4"),
         },
-        _ => refuse("plumb_bob, radtan, rational_polynomial, equidistant, fisheye or none"),
+        // No model bends anything by zeros.
+        _ if !numbers.is_empty() && numbers.iter().all(|it| *it == 0.0) => Ok(Distortion::Brown([0.0; 8])),
+        _ => refuse(&format!(
+            "plumb_bob, radtan, rational_polynomial, equidistant, fisheye or none: calibrate it with one of these, {OTHERWISE}"
+        )),
     }
 }

@@ -4,7 +4,42 @@ use std::path::Path;
 
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::other_keys::{KeysOf, other_keys};
+use poecal_storage::xml::parsed;
 use poecal_storage::yaml::Leaf;
+
+/// Whether keys are numbers of places in lists.
+pub(crate) fn are_places(keys: &[String]) -> bool {
+    keys.iter().all(|key| !key.is_empty() && key.bytes().all(|it| it.is_ascii_digit()))
+}
+
+/// The words of an XML text below the names of their elements, but for that of the first; of several in an element each with its place.
+pub(crate) fn of_xml(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
+    let document = parsed(text, path, expected)?;
+    // Elements are in their order: each begins so many lines after the one before.
+    let (mut line, mut at) = (1, 0);
+    let mut found = Vec::new();
+    for node in document.descendants().filter(|node| node.is_element()) {
+        let start = node.range().start;
+        line += text.get(at..start).unwrap_or_default().matches('\n').count();
+        at = start;
+        let Some(own) = node.text().filter(|_| !node.children().any(|it| it.is_element())) else { continue };
+        let mut keys: Vec<String> =
+            node.ancestors().filter(|it| it.is_element()).map(|it| it.tag_name().name().to_owned()).collect();
+        keys.pop();
+        keys.reverse();
+        let leaf = |path, text: &str| Leaf { path, text: text.to_owned(), line };
+        let words: Vec<&str> = own.split_whitespace().collect();
+        if words.len() > 1 && words.iter().all(|it| it.parse::<f64>().is_ok()) {
+            let word = |(at, word): (usize, &&str)| {
+                leaf(keys.iter().cloned().chain([at.to_string()]).collect(), word)
+            };
+            found.extend(words.iter().enumerate().map(word));
+        } else {
+            found.push(leaf(keys, own.trim().trim_matches('"').trim()));
+        }
+    }
+    Ok(found)
+}
 
 /// The numbers and words of a file with the keys that lead to them.
 pub(crate) struct Stated<'a> {
@@ -13,10 +48,10 @@ pub(crate) struct Stated<'a> {
 }
 
 impl Stated<'_> {
-    /// The same of what stands below a key.
-    pub(crate) fn below(&self, key: &str) -> Self {
+    /// The same of what stands below keys.
+    pub(crate) fn below(&self, keys: &[String]) -> Self {
         let own = |leaf: &Leaf| {
-            let path = leaf.path.strip_prefix(&[key.to_owned()])?.to_vec();
+            let path = leaf.path.strip_prefix(keys)?.to_vec();
             Some(Leaf { path, ..leaf.clone() })
         };
         Stated { leaves: self.leaves.iter().filter_map(own).collect(), path: self.path }
@@ -28,6 +63,15 @@ impl Stated<'_> {
         self.leaves.iter().find(own).map(|leaf| leaf.text.as_str())
     }
 
+    /// The number of the first of these keys, with blanks between them, in letters of any size.
+    pub(crate) fn number_called(&self, keys: &str) -> Result<Option<f64>> {
+        let is = |leaf: &&Leaf, key: &str| {
+            leaf.path.len() == 1 && leaf.path.iter().all(|it| it.eq_ignore_ascii_case(key))
+        };
+        let own = |key: &str| Some((self.leaves.iter().find(|leaf| is(leaf, key))?, key.to_owned()));
+        keys.split(' ').find_map(own).map(|(leaf, key)| self.number_of(leaf, &key)).transpose()
+    }
+
     /// The number that keys lead to, with dots between them.
     pub(crate) fn number(&self, keys: &str) -> Result<Option<f64>> {
         let own = |leaf: &&Leaf| leaf.path.iter().eq(keys.split('.'));
@@ -37,9 +81,10 @@ impl Stated<'_> {
     /// The numbers of the first list that is there of those to which keys lead, with dots between them and blanks between the lists.
     pub(crate) fn list(&self, lists: &str) -> Result<Vec<f64>> {
         for keys in lists.split(' ') {
+            // In lists of lists too.
             let own = |leaf: &&Leaf| {
-                let list = leaf.path.split_last().filter(|it| it.0.bytes().all(|byte| byte.is_ascii_digit()));
-                list.is_some_and(|(_, list)| list.iter().eq(keys.split('.')))
+                let (list, places) = leaf.path.split_at(keys.split('.').count().min(leaf.path.len()));
+                !places.is_empty() && are_places(places) && list.iter().eq(keys.split('.'))
             };
             let found = self.leaves.iter().filter(own).map(|leaf| self.number_of(leaf, keys));
             let found: Vec<f64> = found.collect::<Result<_>>()?;

@@ -1,7 +1,7 @@
 //! Poses of the flange and of what it holds, as lists and as pairs.
 //!
 //! `pose_columns.rs` is from names of columns to forms, `pose_file.rs` one file, with joint readings too, `pose_lists.rs` one file or two,
-//! `picture_poses.rs` the target by corners, `pose_readings.rs` how else the numbers could be read.
+//! `samples.rs` lists of other programs, `sixteen.rs` matrices in columns, `picture_poses.rs` the target by corners, `pose_readings.rs` how else the numbers could be read.
 
 pub(crate) mod paired_readings;
 pub(crate) mod picture_poses;
@@ -10,3 +10,5 @@ pub(crate) mod pose_file;
 pub(crate) mod pose_lists;
 pub(crate) mod pose_readings;
 pub(crate) mod pose_table;
+pub(crate) mod samples;
+pub(crate) mod sixteen;

@@ -1,5 +1,6 @@
 //! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
 
+use super::sixteen::matrices;
 use crate::table::conventions::{CONVENTIONS, Convention, OPENCV};
 use crate::table::header::Header;
 use crate::table::orientation::OrientationForm;
@@ -145,11 +146,14 @@ pub(crate) fn found(
     stated: PoseUnits,
 ) -> Result<Vec<PoseColumns>> {
     let texts = [name_column(header), text_column(header, "point"), text_column(header, "tip")];
+    let matrices = matrices(header);
+    let is_free = |at: usize| !texts.contains(&Some(at)) && !matrices.iter().any(|it| it.0 == at);
     let cells = header.cells.iter().enumerate();
-    let cells = cells.filter(|(at, cell)| !texts.contains(&Some(*at)) && !joints.contains(&cell.name));
+    let cells = cells.filter(|(at, cell)| is_free(*at) && !joints.contains(&cell.name));
     let mut parts: Vec<Part> = cells
         .filter_map(|(at, cell)| part_of(&cell.name).map(|(whose, key)| Part { at, whose, key }))
         .collect();
+    parts.extend(matrices.iter().map(|(at, whose, key)| Part { at: *at, whose: *whose, key: key.clone() }));
     let has = |whose| parts.iter().any(|it| it.whose == Some(whose));
     let is_one = !(has(Whose::Arm) && has(Whose::Target));
     if let Some(whose) = alone.filter(|_| is_one) {

@@ -9,6 +9,7 @@ use super::pose_columns::{
     NumberColumn, PoseColumns, PoseUnits, Whose, found, list_words, name_column, text_column,
 };
 use super::pose_readings::others;
+use super::samples;
 use crate::read::joints::read_joints;
 use crate::table::mapping::ColumnMap;
 use crate::table::number::Numbers;
@@ -112,7 +113,12 @@ pub(crate) fn read_poses(
     robot: Option<&Robot>,
 ) -> Result<PoseFile> {
     let map = ColumnMap::default();
-    let mut table = Table::open(path, Blocks::open(path, "a file of poses (CSV)")?, &map)?;
+    let expected = "a file of poses (CSV)";
+    let blocks = match samples::table(path)? {
+        Some(made) => made.blocks(path, expected),
+        None => Blocks::open(path, expected)?,
+    };
+    let mut table = Table::open(path, blocks, &map)?;
     let joints = robot.map(Robot::reading_names).unwrap_or_default();
     let by_joints = robot.filter(|_| alone != Some(Whose::Target));
     let alone = if by_joints.is_some() { Some(Whose::Target) } else { alone };

@@ -27,6 +27,9 @@ impl HeaderCell {
         let (name, unit) = bracketed(text, '[', ']')
             .filter(|(_, unit)| !is_index(unit.trim()))
             .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
+            .or_else(|| bracketed(text, '（', '）').filter(|(_, unit)| is_unit(unit)))
+            // As theses have it: `q_1 / deg`.
+            .or_else(|| text.rsplit_once('/').filter(|(name, unit)| !name.trim().is_empty() && is_unit(unit)))
             .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
         HeaderCell {
             text: text.to_owned(),

@@ -7,6 +7,11 @@ use super::mapping::ColumnMap;
 use super::roles::{Role, plain};
 use poecal_model::robot::{ReadingKind, Robot};
 
+/// Yaskawa's names of axes, in the order of the chain.
+const YASKAWA: [&str; 2] = ["SLURBT", "SLEURBT"];
+/// Fewest joints of a robot whose numbered columns may be called anything: fewer are coordinates.
+const FEWEST: usize = 4;
+
 /// Joints with the columns that are taken for them, if no column has the name of a joint.
 pub(crate) fn numbered(
     header: &Header<'_>,
@@ -19,7 +24,9 @@ pub(crate) fn numbered(
     if !map.joints.is_empty() || joints.iter().any(|name| header.count(name) > 0) {
         return None;
     }
-    let columns = with_more(header, &joints).or_else(|| by_numbers(header, joints.len()))?;
+    let columns = with_more(header, &joints)
+        .or_else(|| by_numbers(header, joints.len()))
+        .or_else(|| by_letters(header, joints.len()))?;
     Some(joints.into_iter().cloned().zip(columns).collect())
 }
 
@@ -67,7 +74,20 @@ fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
         let rest = |word| stem.strip_prefix(word).or_else(|| stem.strip_suffix(word));
         Role::Reading.words().filter_map(rest).any(|rest| Role::Joint.has(rest))
     };
-    of(&is_reading).or_else(|| of(&|stem| Role::Joint.has(stem)))
+    // Whatever they are called, one for each joint.
+    let is_any = |stem: &str| {
+        joints >= FEWEST && !stem.is_empty() && !Role::Other.is_in(stem) && !Role::InStatistic.is_in(stem)
+    };
+    of(&is_reading).or_else(|| of(&|stem| Role::Joint.has(stem))).or_else(|| of(&is_any))
+}
+
+/// The columns with Yaskawa's letters.
+fn by_letters(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
+    let letters = YASKAWA.into_iter().find(|it| it.len() == joints)?;
+    let of = |letter: char| {
+        header.cells.iter().find(|cell| cell.name.eq_ignore_ascii_case(letter.encode_utf8(&mut [0; 4])))
+    };
+    letters.chars().map(|it| of(it).map(|cell| cell.name.clone())).collect()
 }
 
 /// The letters of a name and its one number.

@@ -4,6 +4,7 @@
 
 mod camera_keys;
 mod components;
+mod controllers;
 mod drawing;
 mod foreign_corners;
 mod foreign_messages;
@@ -15,5 +16,6 @@ mod measurement_errors;
 mod measurement_forms;
 mod measurement_long;
 mod motion;
+mod other_tools;
 mod shop;
 mod stands;

@@ -6,4 +6,4 @@ pub mod mcap;
 #[cfg(feature = "workbooks")]
 pub mod office;
 #[cfg(feature = "bags")]
-mod unpack;
+pub mod unpack;

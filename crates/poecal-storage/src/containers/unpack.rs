@@ -1,9 +1,31 @@
-//! Unpacks chunks.
+//! Unpacks chunks, and the messages or the whole files that rosbag2 compresses.
 
-use std::io::Read;
+use std::io::{self, Read};
 
 use lz4_flex::frame::FrameDecoder as Lz4;
 use ruzstd::decoding::StreamingDecoder as Zstd;
+
+/// How a frame of zstd begins; no message does.
+pub const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
+
+/// The bytes of a file that is compressed as a whole, up to so many.
+///
+/// # Errors
+/// A file that is no zstd.
+pub fn stream<'r>(packed: impl Read + 'r, most: u64) -> io::Result<impl Read + 'r> {
+    Ok(Zstd::new(packed)
+        .map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?
+        .take(most))
+}
+
+/// Puts the bytes of a message that is compressed by itself into `into`, up to so many.
+///
+/// # Errors
+/// The damage that was found.
+pub fn message(packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
+    into.clear();
+    frames(packed, most, into).map(|_| ())
+}
 
 /// Puts the bytes of a chunk that is packed in this way into `into`, up to one beyond the size that it states; an error says what was found.
 pub(super) fn unpack(packed: &[u8], how: &str, stated: u64, into: &mut Vec<u8>) -> Result<(), String> {

@@ -20,6 +20,7 @@ use super::{BAG, Made, Opening, Recording};
 use crate::GivenBag;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::containers::mcap::{self, Damage};
+use poecal_storage::containers::unpack;
 use poecal_storage::disk::is_file;
 use poecal_storage::hashes::Hashing;
 use poecal_storage::limits::{Limit, amount};
@@ -40,20 +41,28 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     for part in &parts {
         let unreadable = |error: io::Error| source::unreadable(part, &error, EXPECTED);
         // What can be read once is held.
-        let (mut input, _) = match is_file(part) {
+        let (mut input, head) = match is_file(part) {
             true => source::open_streamed(part, EXPECTED, Limit::Bag)?,
             false => source::open_any(part, EXPECTED, Limit::Bag)?,
         };
-        unpacked = unpacked.saturating_add(mcap::stated_size(&mut input).map_err(unreadable)?);
+        let (is_packed, most) = (head.starts_with(unpack::ZSTD), Limit::Bag.most() + 1);
+        let stated = match is_packed {
+            true => mcap::stated_size(&mut unpack::stream(&mut input, most).map_err(unreadable)?),
+            false => mcap::stated_size(&mut input),
+        };
+        unpacked = unpacked.saturating_add(stated.map_err(unreadable)?);
         refuse_large(unpacked, path)?;
         let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
-        if !head.starts_with(mcap::MAGIC) {
+        if !is_packed && !head.starts_with(mcap::MAGIC) {
             let message = format!("found a file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));
         }
         hashing = hashing.over(Box::new(input));
         let name = part.file_name().map(Path::new).filter(|_| parts.len() > 1);
-        warned.extend(take(&mut hashing, &mut topics, part, name)?);
+        warned.extend(match is_packed {
+            true => take(unpack::stream(&mut hashing, most).map_err(unreadable)?, &mut topics, part, name)?,
+            false => take(&mut hashing, &mut topics, part, name)?,
+        });
         // The checksum is of all bytes.
         io::copy(&mut hashing, &mut io::sink()).map_err(unreadable)?;
     }

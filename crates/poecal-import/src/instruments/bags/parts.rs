@@ -7,27 +7,32 @@ use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::containers::mcap::MAGIC;
+use poecal_storage::containers::unpack::ZSTD;
 use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::limits::Limit;
 use poecal_storage::source;
 
-/// Ending of the names of files.
-const ENDING: &str = "mcap";
+/// Endings of the names of files: as they are, and compressed as a whole.
+const ENDINGS: [&str; 2] = [".mcap", ".mcap.zstd"];
+
+/// Whether the name of a file is that of a part of a bag.
+fn is_part(name: &str) -> bool {
+    let small = name.to_ascii_lowercase();
+    ENDINGS.iter().any(|it| small.ends_with(it))
+}
 
 /// Whether a path is a bag, by the first bytes of the file, or by the names in the folder.
 pub(crate) fn is_bag(path: &Path) -> bool {
     if is_folder(path) {
         return names(path).is_ok_and(|it| !it.0.is_empty());
     }
-    source::open_any(path, EXPECTED, Limit::Bag).is_ok_and(|(_, head)| head.starts_with(MAGIC))
+    let is_packed = path.to_str().is_some_and(|it| is_part(it) && !it.ends_with(ENDINGS[0]));
+    let begins = |head: Vec<u8>| head.starts_with(MAGIC) || is_packed && head.starts_with(ZSTD);
+    source::open_any(path, EXPECTED, Limit::Bag).is_ok_and(|(_, head)| begins(head))
 }
 
 /// Names of files of a folder that are parts of a bag, and what has such a name and is none.
 fn names(folder: &Path) -> std::io::Result<(Vec<String>, Vec<LeftOut>)> {
-    let is_part = |name: &str| {
-        let ending = Path::new(name).extension();
-        ending.is_some_and(|it| it.eq_ignore_ascii_case(ENDING))
-    };
     folder::files(folder, is_part)
 }
 
@@ -39,8 +44,8 @@ pub(crate) fn of(path: &Path) -> Result<(Vec<PathBuf>, Vec<LeftOut>)> {
     let (mut names, left) = names(path).map_err(|error| source::unreadable(path, &error, EXPECTED))?;
     // Names without their numbers, which are the same for all parts of a bag.
     let stem = |name: &String| {
-        let stem = Path::new(name).file_stem().map(|it| it.to_string_lossy().into_owned());
-        stem.unwrap_or_default().trim_end_matches(|it: char| it.is_ascii_digit()).to_owned()
+        let stem = name.split_once(ENDINGS[0]).map_or(name.as_str(), |it| it.0);
+        stem.trim_end_matches(|it: char| it.is_ascii_digit()).to_owned()
     };
     if let Some(other) = names.iter().find(|it| Some(stem(it)) != names.first().map(stem)) {
         let first = names.first().map_or("", String::as_str);

@@ -13,6 +13,7 @@ use poecal_model::robot::Robot;
 use poecal_model::simulate::elbow;
 use poecal_storage::containers::mcap::{self, MAGIC, Records as _, op};
 use poecal_storage::limits::{self, Limit};
+use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 
 const JOINTS: &str = "sensor_msgs/msg/JointState";
 const POSE: &str = "geometry_msgs/msg/PoseStamped";
@@ -239,6 +240,36 @@ fn both_parts_of_a_bag_are_the_same_rows_as_two_tables() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     let alone = read_all(&[&only_poses], &options).unwrap_err();
     assert!(alone.contains("found no joint readings (sensor_msgs/msg/JointState) in the bag"), "{alone}");
+}
+
+#[test]
+fn bags_that_rosbag2_compressed_by_message_or_by_file_are_the_same_rows() {
+    let (robot, folder, options) = (elbow(), Folder::new("packed"), ReadOptions::default());
+    let messages = session(&robot);
+    let expected = read_all(&[&folder.write("plain.mcap", bag(&messages))], &options).unwrap();
+    let packed = |bytes: &[u8]| compress_to_vec(bytes, CompressionLevel::Uncompressed);
+    let each: Vec<Message> = messages.iter().map(|it| (it.0, it.1, it.2, packed(&it.3))).collect();
+    let by_message = folder.write("message/bag_0.mcap", bag(&each));
+    let (first, second) = messages.split_at(messages.len() / 2);
+    folder.write("file/bag_1.mcap.zstd", packed(&bag(second)));
+    let by_file = folder.write("file/bag_0.mcap.zstd", packed(&bag(first)));
+    for path in [by_message.as_path(), by_message.parent().unwrap(), by_file.parent().unwrap()] {
+        let found = read_all(&[path], &options).unwrap();
+        assert!(are_same(&found, &expected), "{}: {:?}", path.display(), found.warnings);
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    }
+    // Damaged, cut, and more than there may be.
+    let mut broken = each.clone();
+    broken[5].3.truncate(9);
+    let error = read_all(&[&folder.write("cut.mcap", bag(&broken))], &options).unwrap_err();
+    assert!(error.contains("message"), "{error}");
+    let cut = packed(&bag(&messages));
+    let cut = folder.write("cut.mcap.zstd", &cut[..cut.len() / 2]);
+    assert!(read_all(&[&cut], &options).is_err());
+    limits::on(limits::here().with(Limit::Bag, 40_000), || {
+        let error = read_all(&[&by_message], &options).unwrap_err();
+        assert!(error.contains("limit `bag`"), "{error}");
+    });
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::joints::Readings;
 use super::messages::{Kind, joint_state, poses};
 use poecal_numerics::error::shown;
 use poecal_storage::containers::mcap::Records;
+use poecal_storage::containers::unpack;
 use poecal_storage::limits::Limit;
 
 /// Most topics in a list.
@@ -119,6 +120,8 @@ pub(crate) struct Topics<'a> {
     pub(crate) span_ns: Option<(u64, u64)>,
     /// Number of readings and poses that are held.
     held: usize,
+    /// Bytes of the messages that were unpacked one by one.
+    unpacked: u64,
     /// Number of messages of channels that are nowhere described.
     pub(crate) unknown: u64,
 }
@@ -185,7 +188,21 @@ impl Records for Topics<'_> {
         match self.channels.get(&channel).and_then(|at| self.all.get_mut(*at)) {
             Some(topic) => {
                 let before = topic.content.held();
-                topic.take(log_ns, message);
+                let mut whole = Vec::new();
+                // Compressed by rosbag2 one by one.
+                if message.starts_with(unpack::ZSTD) && !matches!(topic.content, Content::Other) {
+                    let left = Limit::Bag.most().saturating_sub(self.unpacked);
+                    match unpack::message(message, left, &mut whole) {
+                        Ok(()) => topic.take(log_ns, &whole),
+                        Err(found) => topic.broken = topic.broken.take().or(Some((topic.count + 1, found))),
+                    }
+                    self.unpacked += whole.len() as u64;
+                    if whole.len() as u64 >= left {
+                        self.refused = Some(Limit::Bag.exceeded("the messages of a bag"));
+                    }
+                } else {
+                    topic.take(log_ns, message);
+                }
                 self.held += topic.content.held() - before;
                 if topic.content.bodies().map_or(0, |it| it.all.len()) > Limit::Topics.most_held() {
                     self.refused = Some(Limit::Topics.exceeded("one topic"));

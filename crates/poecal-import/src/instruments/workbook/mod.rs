@@ -5,6 +5,7 @@
 
 mod archive;
 mod cells;
+mod heads;
 mod numbers;
 mod old;
 
@@ -14,20 +15,15 @@ use calamine::{Data, Ods, Range, Reader as _, Sheets, Xlsx};
 
 use self::archive::Parts;
 use self::cells::{Book, Formulas, Left, ReadSheet};
-use super::Opening;
-use super::maker::{Made, Refused, Value};
+use self::heads::{Head, head, is_sum};
+use super::maker::{Column, Made, Refused, Value};
 use super::words::{number, quoted};
-use super::workbook_cells::{no_number, refuse_uncomputed};
+use super::workbook_cells::{DAY_S, duration_s, no_number, refuse_uncomputed};
+use super::{Opening, two_sets};
+use crate::table::mapping::ColumnMap;
 use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
 use poecal_storage::containers::office;
-
-/// Rows in which the header is sought.
-const FIRST: usize = 60;
-/// Fewest columns of a table, and fewest rows of numbers.
-const FEWEST_COLUMNS: usize = 3;
-/// Seconds of a day, the unit of times in workbooks.
-const DAY_S: f64 = 86_400.0;
 
 /// Whether a file is a workbook, or an archive as workbooks are, by its first bytes.
 pub(crate) fn is_one(head: &[u8]) -> bool {
@@ -95,7 +91,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
         tables.extend(Found::of(book.range(name)?, name));
     }
     if let [found] = tables.as_slice() {
-        return found.made(&book.formulas(&found.sheet.name, &found.range));
+        return found.sets(&book.formulas(&found.sheet.name, &found.range), opening);
     }
     let (one, many) = (names.len() == 1, !tables.is_empty());
     Refused::whole(match wanted {
@@ -120,8 +116,9 @@ fn value(cell: &Data) -> Option<f64> {
         Data::Float(value) => Some(*value).filter(|it| it.is_finite()),
         Data::Int(value) => Some(*value as f64),
         Data::DateTime(time) => Some(time.as_f64() * DAY_S),
+        Data::DurationIso(text) => duration_s(text),
         Data::String(text) => number(text),
-        Data::Bool(_) | Data::DateTimeIso(_) | Data::DurationIso(_) | Data::Error(_) | Data::Empty => None,
+        Data::Bool(_) | Data::DateTimeIso(_) | Data::Error(_) | Data::Empty => None,
     }
 }
 
@@ -145,44 +142,26 @@ struct Found {
     names: Vec<String>,
     units: Option<usize>,
     rows: Vec<usize>,
+    /// Whether groups stand above the names; lines at the end that sum up the rows.
+    is_two: bool,
+    sums: Vec<usize>,
 }
 
 impl Found {
-    /// The first row of texts with numbers below, or below a row of units.
+    /// The first head with numbers below.
     fn of(range: Range<Data>, name: &str) -> Option<Self> {
         let rows: Vec<&[Data]> = range.rows().collect();
-        let is_text =
-            |cell: &&Data| matches!(cell, Data::String(_)) && value(cell).is_none() && !is_empty(cell);
-        let is_blank = |row: &&[Data]| row.iter().all(is_empty);
-        for (header, row) in rows.iter().enumerate().take(FIRST) {
-            let texts = row.iter().filter(is_text).count();
-            if texts < FEWEST_COLUMNS || row.iter().any(|it| !is_empty(it) && !is_text(&it)) {
-                continue;
-            }
-            let first = header + 1 + rows.iter().skip(header + 1).position(|it| !is_blank(it))?;
-            let has_numbers = rows.get(first).is_some_and(|it| it.iter().any(|it| value(it).is_some()));
-            let begin = if has_numbers { first } else { first + 1 };
-            let is_row = rows.get(begin).is_some_and(|it| {
-                let named = it.iter().zip(row.iter()).filter(|(_, name)| !is_empty(name));
-                2 * named.filter(|(cell, _)| value(cell).is_some()).count() >= texts
-            });
-            if !is_row {
-                continue;
-            }
-            let columns = row.iter().rposition(|it| !is_empty(it)).map_or(0, |it| it + 1);
-            let is_filled =
-                |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(columns).all(is_empty));
-            let first_column = range.start().map_or(0, |it| it.1 as usize);
-            return Some(Found {
-                sheet: Sheet { name: name.to_owned(), first_column },
-                header,
-                names: row.iter().take(columns).map(text).collect(),
-                units: (!has_numbers).then_some(first),
-                rows: (begin..rows.len()).filter(is_filled).collect(),
-                range,
-            });
+        let Head { names, header, units, begin, is_two } = head(&rows)?;
+        let is_filled =
+            |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
+        let mut rows_at: Vec<usize> = (begin..rows.len()).filter(is_filled).collect();
+        let mut sums = Vec::new();
+        while let Some(at) = rows_at.pop_if(|at| rows.get(*at).is_some_and(|it| is_sum(it))) {
+            sums.push(at);
         }
-        None
+        let first_column = range.start().map_or(0, |it| it.1 as usize);
+        let sheet = Sheet { name: name.to_owned(), first_column };
+        Some(Found { sheet, header, names, units, rows: rows_at, is_two, sums, range })
     }
 
     /// The number of a row in the sheet.
@@ -194,11 +173,22 @@ impl Found {
         self.range.get((row, column)).unwrap_or(&Data::Empty)
     }
 
-    fn made(&self, formulas: &Formulas) -> Result<Made, Refused> {
+    /// The table, or of one with two sets of coordinates both, unless a mapping names columns.
+    fn sets(&self, formulas: &Formulas, opening: &Opening<'_>) -> Result<Made, Refused> {
         refuse_uncomputed(formulas, &self.range, &self.sheet, (&self.rows, &self.names))?;
-        let mut made = Made::new(self.line(self.header), self.names.iter().map(String::as_str));
+        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        let is_mapped = opening.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
+        match two_sets::split(&names).filter(|_| !is_mapped) {
+            Some(([first, second], called)) => Ok(self.made(&first)?.with_other(called, self.made(&second)?)),
+            None => self.made(&names.into_iter().map(Column::from).enumerate().collect::<Vec<_>>()),
+        }
+    }
+
+    /// The table of some columns.
+    fn made(&self, columns: &[(usize, Column)]) -> Result<Made, Refused> {
+        let mut made = Made::new(self.line(self.header), columns.iter().map(|it| it.1.clone()));
         if let Some(units) = self.units {
-            let texts: Vec<String> = (0..self.names.len()).map(|it| text(self.cell(units, it))).collect();
+            let texts: Vec<String> = columns.iter().map(|it| text(self.cell(units, it.0))).collect();
             made.row(self.line(units), texts.iter().map(|it| Value::Text(it)));
         }
         // Columns of numbers, in which a text is a number or a mistake.
@@ -206,17 +196,28 @@ impl Found {
             let is_number = |at: &&usize| matches!(self.cell(**at, column), Data::Float(_) | Data::Int(_));
             2 * self.rows.iter().filter(is_number).count() > self.rows.len()
         };
-        let numeric: Vec<bool> = (0..self.names.len()).map(is_numeric).collect();
+        let numeric: Vec<(usize, bool)> = columns.iter().map(|it| (it.0, is_numeric(it.0))).collect();
         let mut stored = Vec::new();
         for &row in &self.rows {
-            let cells = numeric.iter().enumerate();
+            let cells = numeric.iter();
             let cells: Vec<(String, Option<f64>)> =
-                cells.map(|(at, it)| self.typed((row, at), *it, &mut stored)).collect::<Result<_, _>>()?;
+                cells.map(|(at, it)| self.typed((row, *at), *it, &mut stored)).collect::<Result<_, _>>()?;
             let typed = cells.iter().map(|(text, number)| number.map_or(Value::Text(text), Value::Number));
             made.row(self.line(row), typed);
         }
         let (name, first) = (&self.sheet.name, self.rows.first().map_or(0, |at| self.line(*at)));
         made.say(format!("sheet `{name}`, {} rows from row {first} on", self.rows.len()));
+        if self.is_two {
+            made.say(format!(
+                "names of columns in two rows, {} and {}",
+                self.line(self.header) - 1,
+                self.line(self.header)
+            ));
+        }
+        if !self.sums.is_empty() {
+            let sums: Vec<String> = self.sums.iter().rev().map(|at| self.line(*at).to_string()).collect();
+            made.say(format!("left out what sums up the rows in row {}", sums.join(", ")));
+        }
         if !stored.is_empty() {
             let stored = first_few(&stored);
             made.warn(format!(

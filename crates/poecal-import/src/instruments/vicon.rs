@@ -1,0 +1,130 @@
+//! Exports of Vicon (Nexus, Tracker) as CSV: segments with rotation vectors, or trajectories of markers, below a head of five lines.
+
+use nalgebra::Vector3;
+use poecal_arm::lie::{Pose, rotation};
+
+use super::bodies::{Body, Frames, cells};
+use super::maker::{At, Made, Refused, Value};
+use super::words::{lines, number};
+use super::{Form, Opening};
+
+pub(crate) const FORM: Form = Form { title: "an export of Vicon", is_it, table };
+
+/// Names of parts of an export that are read, first those with poses.
+const PARTS: [&str; 3] = ["Segments", "Objects", "Trajectories"];
+/// Units of positions, with their sizes in metres.
+const UNITS: [(&str, f64); 3] = [("mm", 1e-3), ("cm", 1e-2), ("m", 1.0)];
+
+fn is_it(text: &str, _: &Opening<'_>) -> bool {
+    head(text).is_some()
+}
+
+/// The first line of the part that is read, and the line behind its last.
+fn part(text: &str) -> Option<(usize, usize)> {
+    let all: Vec<&str> = text.lines().collect();
+    let is_part = |line: &&str, part: &str| {
+        line.trim_start_matches('\u{feff}').split(',').next().is_some_and(|it| it.trim() == part)
+    };
+    let first = PARTS.iter().find_map(|part| all.iter().position(|line| is_part(line, part)))?;
+    let is_blank = |line: &&str| line.split(',').all(|it| it.trim().is_empty());
+    let last = all.iter().skip(first).position(is_blank).map_or(all.len(), |it| first + it);
+    Some((first + 1, last + 1))
+}
+
+/// The lines of a head.
+struct Head<'t> {
+    rate_hz: f64,
+    names: Vec<&'t str>,
+    columns: Vec<&'t str>,
+    units: Vec<&'t str>,
+    /// The line of the columns' names, and the one behind the last frame.
+    line: usize,
+    end: usize,
+}
+
+fn head(text: &str) -> Option<Head<'_>> {
+    let (first, end) = part(text)?;
+    let mut own = lines(text).filter(|it| it.0 > first).map(|it| (it.0, cells(it.1, ',')));
+    let rate_hz = number(own.next()?.1.first()?)?;
+    let (names, (line, columns), units) = (own.next()?.1, own.next()?, own.next()?.1);
+    let is_head = columns.first() == Some(&"Frame") && columns.len() > 4 && rate_hz > 0.0;
+    is_head.then_some(Head { rate_hz, names, columns, units, line, end })
+}
+
+impl Head<'_> {
+    /// Bodies or markers: each begins where it is named.
+    fn bodies(&self) -> Vec<(Body, Option<Vec<usize>>)> {
+        let starts: Vec<usize> = (0..self.columns.len())
+            .filter(|at| self.names.get(*at).is_some_and(|it| !it.is_empty()))
+            .collect();
+        let ends = starts.iter().skip(1).copied().chain([self.columns.len()]);
+        let body = |(start, end): (usize, usize)| {
+            let at = |names: &[&str]| -> Option<Vec<usize>> {
+                let at = |name: &&str| (start..end).find(|at| self.columns.get(*at) == Some(name));
+                names.iter().map(at).collect()
+            };
+            let place = at(&["TX", "TY", "TZ"]).or_else(|| at(&["X", "Y", "Z"]))?;
+            let [x, y, z] = place.try_into().ok()?;
+            let quaternion = at(&["RX", "RY", "RZ", "RW"]).and_then(|it| it.try_into().ok());
+            let turn = at(&["RX", "RY", "RZ"]).filter(|_| quaternion.is_none());
+            let name = self.names.get(start).copied().unwrap_or_default().to_owned();
+            Some((Body { name, position: [x, y, z], quaternion }, turn))
+        };
+        starts.iter().copied().zip(ends).filter_map(body).collect()
+    }
+}
+
+fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
+    let head = head(text).ok_or("found no head of Vicon")?;
+    let found = head.bodies();
+    let Some((first, turn)) = found.first() else {
+        return At(head.line).refuse("found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them");
+    };
+    let unit_of = |at: Option<&usize>| at.and_then(|at| head.units.get(*at)).copied().unwrap_or_default();
+    let length = unit_of(first.position.first());
+    let Some(unit) = UNITS.into_iter().find(|it| it.0 == length) else {
+        return At(head.line + 1)
+            .refuse(format!("found the unit `{length}` of positions, expected mm, cm or m"));
+    };
+    let angle = turn.as_ref().map(|it| unit_of(it.first()));
+    let to_rad = match angle {
+        None | Some("rad") => 1.0,
+        Some("deg") => 1.0_f64.to_radians(),
+        Some(other) => {
+            return At(head.line + 1)
+                .refuse(format!("found the unit `{other}` of rotations, expected rad or deg"));
+        }
+    };
+    let (expected, rate_hz) = (head.columns.len(), head.rate_hz);
+    let own: usize = text.split_inclusive('\n').take(head.end - 1).map(str::len).sum();
+    let mut frames =
+        Frames::of(text.get(..own).unwrap_or(text), (head.line + 1, unit), ',', |cells, count, _| {
+            if cells.len() > expected {
+                return Err(format!("found {} cells, expected {expected} as in the head", cells.len()));
+            }
+            let frame = cells.first().copied().and_then(number).unwrap_or(count as f64 + 1.0);
+            Ok(Some((frame - 1.0) / rate_hz))
+        })?;
+    let mut bodies: Vec<Body> = Vec::with_capacity(found.len());
+    let mut width = expected;
+    for (mut body, turn) in found {
+        if let Some(columns) = turn.and_then(|it| <[usize; 3]>::try_from(it).ok()) {
+            frames.refuse_words(&body.name, &columns)?;
+            for frame in &mut frames.all {
+                let vector = frame.numbers(columns).map(|it| Vector3::from(it) * to_rad);
+                frame.cells.resize(width, Value::Empty);
+                let turned =
+                    vector.map(|it| Pose::new(rotation::exp(&it), Vector3::zeros()).quaternion_xyzw());
+                frame.cells.extend(turned.map_or([Value::Empty; 4], |it| it.map(Value::Number)));
+            }
+            body.quaternion = Some([0, 1, 2, 3].map(|part| width + part));
+            width += 4;
+        }
+        bodies.push(body);
+    }
+    let mut made = frames.table(&bodies, "segment or marker", opening)?;
+    if let Some(angle) = angle {
+        made.say(format!("rotations as rotation vectors (helical) in {angle}"));
+    }
+    Ok(made)
+}

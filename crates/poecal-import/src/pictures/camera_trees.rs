@@ -1,0 +1,261 @@
+//! Cameras as OpenCV, ROS, Kalibr, mrcal, makers of cameras and scripts write them: numbers below keys (YAML, JSON, XML).
+
+use std::path::Path;
+
+use super::stated::{Stated, are_places};
+use crate::pictures::lens_checks::{EXPECTED, OTHERWISE, distortion};
+use poecal_model::camera::{Camera, Distortion, Lens, REGION_KEYS, Region, size_of_pictures};
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::other_keys::KeysOf;
+use poecal_storage::yaml::Leaf;
+
+/// Keys of Kalibr's cameras that are read, or say nothing of a lens.
+const OF_KALIBR: &str = "camera_model intrinsics distortion_model distortion_coeffs resolution t_cn_cnm1 t_cam_imu cam_overlaps timeshift_cam_imu";
+/// The same of mrcal.
+const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref extrinsics valid_intrinsics_region optimization_inputs \
+                        icam_intrinsics";
+/// Models of mrcal that are OpenCV's, in its order of coefficients.
+const MRCAL_MODELS: [&str; 4] = ["PINHOLE", "OPENCV4", "OPENCV5", "OPENCV8"];
+/// What leads to the matrix, row by row or, as Open3D has it, column by column.
+const MATRIX: &str = "camera_matrix.data cameraMatrix.data Camera_Matrix.data K.data M1.data K k camera_matrix cameraMatrix intrinsicMatrix \
+                      intrinsic_matrix intrinsics mtx camera_intrinsics";
+/// Focal lengths and centre by their names.
+const FOCAL: [&str; 4] = ["fx", "fy", "cx ppx", "cy ppy"];
+/// What leads to the coefficients of the distortion.
+const COEFFICIENTS: &str = "distortion_coefficients.data dist_coeffs.data distCoeffs.data Distortion_Coefficients.data distortion_coeffs.data D.data D1.data D \
+                            d distortion_coefficients dist_coeffs dist_coeff distCoeffs distortionCoeff distortion_coeffs distortion dist coeffs";
+/// The same by their names, in OpenCV's order, and where they may be.
+const NAMED: [&str; 8] = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
+const BENT: [&str; 2] = ["distortion", "Distortion"];
+const MODEL: &str = "distortion_model distortionModel model";
+/// OAK's type of a camera is 1 for a fisheye.
+const IS_FISHEYE: &str = "fisheye_model fisheye cameraType";
+/// Width and height of pictures.
+const SIZE: [&str; 2] = ["image_width image_Width width", "image_height image_Height height"];
+/// Other keys, in small letters, which say nothing of the lens: how it was calibrated, how pictures would be rectified, where the camera is.
+const BESIDE: &str = "distortion header image_size r p rectification_matrix projection_matrix binning_x binning_y roi board_width board_height \
+                      board_size boardsize_width boardsize_height square_size marker_size pattern calibrate_pattern aspectratio fix_aspect_ratio \
+                      fixaspectratio nframes nr_of_frames extrinsic_parameters image_points grid_points per_view_errors std_deviations rvecs tvecs \
+                      rms seq frame_id extrinsics lensposition spechfovdeg";
+
+/// Cameras with what was understood, a sentence each.
+type Read = (Vec<Camera>, Vec<String>);
+
+/// The cameras of the documents of a text, which must be the same in all of them.
+pub(crate) fn read_trees(mut documents: Vec<Vec<Leaf>>, path: &Path) -> Result<Read> {
+    documents.retain(|it| it.iter().any(|leaf| !leaf.path.is_empty()));
+    let count = documents.len();
+    let mut all = documents.into_iter().map(|leaves| read_tree(&Stated { leaves, path }));
+    let (cameras, mut said) =
+        all.next().unwrap_or_else(|| refuse(path, format!("found nothing, expected {EXPECTED}")))?;
+    for (at, other) in (2..).zip(all) {
+        if other?.0 != cameras {
+            return refuse(
+                path,
+                format!(
+                    "found another camera in document {at} than in the first, expected one: take the others out"
+                ),
+            );
+        }
+    }
+    if count > 1 {
+        said.push(format!("took the first of {count} documents with the same camera"));
+    }
+    Ok((cameras, said))
+}
+
+fn refuse<T>(path: &Path, message: impl Into<String>) -> Result<T> {
+    Err(ErrorKind::Measurement.error(message).in_file(path))
+}
+
+/// The cameras of a document.
+fn read_tree(stated: &Stated<'_>) -> Result<Read> {
+    let others = |at: usize, own: &dyn Fn(&Leaf) -> bool, known: &[&str]| {
+        stated.others(KeysOf::Pictures, (at, own), known)
+    };
+    let cameras = read_chain(stated)?;
+    if !cameras.is_empty() {
+        let is_own = |leaf: &Leaf| cameras.iter().any(|it| leaf.path.first() == Some(&it.name));
+        let said = others(1, &is_own, &[OF_KALIBR])?;
+        return Ok((cameras, said.into_iter().collect()));
+    }
+    if let Some(camera) = of_mrcal(stated)? {
+        return Ok((vec![camera], others(0, &|_| true, &[OF_MRCAL])?.into_iter().collect()));
+    }
+    let places = places(stated);
+    let (mut cameras, mut said) = (Vec::with_capacity(places.len()), Vec::new());
+    for place in &places {
+        let (camera, seen) = read_single(stated, place)?;
+        let name = if places.len() > 1 { place.join("_") } else { camera.name };
+        if cameras.iter().any(|it: &Camera| it.name == name) {
+            return refuse(stated.path, format!("found the camera `{name}` a second time, expected it once"));
+        }
+        cameras.push(Camera { name, ..camera });
+        let known = [MATRIX, COEFFICIENTS, MODEL, IS_FISHEYE, SIZE[0], SIZE[1], BESIDE];
+        let known: Vec<&str> = known.into_iter().chain(FOCAL).chain(NAMED).collect();
+        said.extend(seen.into_iter().chain(others(
+            place.len(),
+            &|leaf| leaf.path.starts_with(place),
+            &known,
+        )?));
+    }
+    Ok((cameras, said))
+}
+
+/// The keys below which a matrix or focal lengths are stated, in the order of the file; none of what is at the top.
+fn places<'a>(stated: &'a Stated<'_>) -> Vec<&'a [String]> {
+    let is_matrix = |keys: &[String], list: &str| {
+        let count = list.split('.').count();
+        let (own, at) = keys.split_at(count.min(keys.len()));
+        !at.is_empty() && are_places(at) && own.iter().eq(list.split('.'))
+    };
+    let begins = |keys: &[String]| match keys {
+        [key] => key.eq_ignore_ascii_case(FOCAL[0]),
+        _ => MATRIX.split(' ').any(|list| is_matrix(keys, list)),
+    };
+    let mut found: Vec<&'a [String]> = Vec::new();
+    for leaf in &stated.leaves {
+        let at = (0..leaf.path.len()).find(|at| leaf.path.get(*at..).is_some_and(begins));
+        if let Some(place) = at.and_then(|at| leaf.path.get(..at)).filter(|it| !found.contains(it)) {
+            found.push(place);
+        }
+    }
+    // Without one, what is missing is told of the top.
+    if found.is_empty() || found.iter().any(|it| it.is_empty()) { vec![&[]] } else { found }
+}
+
+/// The cameras of Kalibr, which names them by keys; none of another form.
+fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
+    let path = stated.path;
+    let is_lens = |leaf: &&Leaf| {
+        matches!(leaf.path.as_slice(), [_, key, _] if key == "intrinsics") && are_places(&leaf.path[2..])
+    };
+    let has_model = |name: &&String| stated.below(std::slice::from_ref(*name)).word("camera_model").is_some();
+    let mut names: Vec<&String> =
+        stated.leaves.iter().filter(is_lens).filter_map(|leaf| leaf.path.first()).collect();
+    names.dedup();
+    names.retain(has_model);
+    let camera = |name: &String| {
+        let own = stated.below(std::slice::from_ref(name));
+        let model = own.word("camera_model").unwrap_or_default();
+        if model != "pinhole" {
+            let expected = format!("`pinhole`: calibrate it so, {OTHERWISE}");
+            return refuse(
+                path,
+                format!("found the camera model `{model}` of `{name}`, expected {expected}"),
+            );
+        }
+        let [fx, fy, cx, cy] = exact(own.list("intrinsics")?, "intrinsics", path)?;
+        let kind = own.word("distortion_model").unwrap_or("none");
+        let distortion = distortion(kind, &own.list("distortion_coeffs")?, path)?;
+        let size = <[f64; 2]>::try_from(own.list("resolution")?).ok();
+        let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
+        let size_px = size_px.map_err(|error| error.in_file(path))?;
+        let lens = Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px };
+        Ok(Camera::new(name.clone(), lens))
+    };
+    names.into_iter().map(camera).collect()
+}
+
+/// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
+fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
+    let Some(model) = stated.word("lensmodel") else { return Ok(None) };
+    if !MRCAL_MODELS.iter().any(|it| model.strip_prefix("LENSMODEL_") == Some(it)) {
+        return refuse(
+            stated.path,
+            format!(
+                "found the lens model `{model}` of mrcal, expected LENSMODEL_OPENCV8, 5 or 4, or LENSMODEL_PINHOLE: \
+                 `mrcal-convert-lensmodel LENSMODEL_OPENCV8` writes one"
+            ),
+        );
+    }
+    let mut numbers = stated.list("intrinsics")?;
+    let bent = numbers.split_off(numbers.len().min(4));
+    let [fx, fy, cx, cy] = exact(numbers, "intrinsics", stated.path)?;
+    let size = <[f64; 2]>::try_from(stated.list("imagersize")?).ok();
+    let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
+    let size_px = size_px.map_err(|error| error.in_file(stated.path))?;
+    let distortion = distortion("opencv", &bent, stated.path)?;
+    Ok(Some(Camera::new(
+        String::new(),
+        Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px },
+    )))
+}
+
+/// The camera below these keys, and what its region changed in words.
+fn read_single(all: &Stated<'_>, place: &[String]) -> Result<(Camera, Option<String>)> {
+    let path = all.path;
+    let in_file = |error: Error| error.in_file(path);
+    let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);
+    let own = all.below(place);
+    // Coefficients and sizes may stand beside the numbers of the lens.
+    let beside = all.below(place.split_last().map_or(place, |it| it.1));
+    let near = || [&own, &beside].into_iter();
+    let word = |keys: &str| near().find_map(|it| it.word(keys));
+    let (focal_px, centre_px) = focal(&own)?;
+    let is_fisheye = word(IS_FISHEYE).is_some_and(|it| it == "1" || it == "true");
+    let kind = word(MODEL).unwrap_or(if is_fisheye { "fisheye" } else { "" });
+    let mut distortion = distortion(kind, &[], path);
+    for near in near() {
+        if let Some(found) = bent(near, kind)? {
+            distortion = Ok(found);
+            break;
+        }
+    }
+    let size_px = size_of_pictures(SIZE.map(|keys| word(keys)?.parse().ok())).map_err(in_file)?;
+    let lens = Lens { focal_px, centre_px, distortion: distortion?, size_px };
+    let mut region = [0.0; REGION_KEYS.len()];
+    for (number, keys) in region.iter_mut().zip(REGION_KEYS) {
+        *number = own.number(keys)?.unwrap_or(0.0);
+    }
+    let (lens, said) = Region::new(region).and_then(|region| region.applied(&lens)).map_err(refused)?;
+    Ok((Camera::new(word("camera_name").unwrap_or_default().to_owned(), lens), said))
+}
+
+/// Focal lengths and centre, by their names or of a matrix.
+fn focal(own: &Stated<'_>) -> Result<([f64; 2], [f64; 2])> {
+    let [fx, fy, cx, cy] = FOCAL.map(|keys| own.number_called(keys));
+    if let [Some(fx), Some(fy), Some(cx), Some(cy)] = [fx?, fy?, cx?, cy?] {
+        return Ok(([fx, fy], [cx, cy]));
+    }
+    match exact::<9>(own.list(MATRIX)?, "camera_matrix", own.path)? {
+        [fx, 0.0, cx, _, fy, cy, ..] if cx != 0.0 || cy != 0.0 => Ok(([fx, fy], [cx, cy])),
+        // Column by column.
+        [fx, 0.0, 0.0, 0.0, fy, 0.0, cx, cy, _] => Ok(([fx, fy], [cx, cy])),
+        [_, skew, ..] => refuse(own.path, format!("found a skew of {skew} in `camera_matrix`, expected 0")),
+    }
+}
+
+/// The distortion that is stated here, if one is.
+fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
+    let numbers = own.list(COEFFICIENTS)?;
+    if !numbers.is_empty() {
+        return distortion(kind, &numbers, own.path).map(Some);
+    }
+    for own in [own.below(&[])].into_iter().chain(BENT.map(|key| own.below(&[key.to_owned()]))) {
+        let named = NAMED.map(|key| own.number_called(key));
+        let mut numbers = [0.0; NAMED.len()];
+        let mut is_stated = false;
+        for (number, named) in numbers.iter_mut().zip(named) {
+            let named = named?;
+            is_stated |= named.is_some();
+            *number = named.unwrap_or(0.0);
+        }
+        let [k1, k2, p1, p2, k3, k4, ..] = numbers;
+        if is_stated {
+            // Of a fisheye all are of the angle.
+            let is_fisheye =
+                matches!(distortion(kind, &[], own.path)?, Distortion::Fisheye(_)) && p1 == 0.0 && p2 == 0.0;
+            let numbers = if is_fisheye { vec![k1, k2, k3, k4] } else { numbers.to_vec() };
+            return distortion(kind, &numbers, own.path).map(Some);
+        }
+    }
+    Ok(None)
+}
+
+/// As many numbers as a key must have.
+fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f64; N]> {
+    numbers.try_into().or_else(|numbers: Vec<f64>| {
+        refuse(path, format!("found {} numbers of `{key}`, expected {N}: {EXPECTED}", numbers.len()))
+    })
+}

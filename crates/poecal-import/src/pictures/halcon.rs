@@ -1,0 +1,72 @@
+//! Internal camera parameters of HALCON: lines `Key:key: value;` with metres of the sensor, and the division model.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::lens_checks::OTHERWISE;
+use poecal_model::camera::{Camera, Distortion, Lens, size_of_pictures};
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// What such files have, and no others.
+const MARK: &str = "ParGroup:";
+/// Parameters that are read.
+const READ: [&str; 8] = ["Focus", "Kappa", "Sx", "Sy", "Cx", "Cy", "ImageWidth", "ImageHeight"];
+/// Largest product of Kappa and the square of a place on the sensor for which the fractions below are exact to 0.001 px.
+const MOST_BENT: f64 = 0.1;
+
+/// The camera of a text of HALCON; `None` of another one.
+pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>, Vec<String>)>> {
+    if !text.lines().any(|line| line.trim_start().starts_with(MARK)) {
+        return Ok(None);
+    }
+    let refuse = |message: String| Err(ErrorKind::Measurement.error(message).in_file(path));
+    let numbers: BTreeMap<&str, f64> = text.lines().filter_map(parameter).collect();
+    if let Some((key, number)) = numbers.iter().find(|(key, number)| !READ.contains(key) && **number != 0.0) {
+        return refuse(format!(
+            "found {number} for `{key}` of HALCON's camera, expected an area scan camera with the division model (Kappa): calibrate it so, {OTHERWISE}"
+        ));
+    }
+    let [Some(focus), kappa, Some(sx), Some(sy), Some(cx), Some(cy), width, height] =
+        READ.map(|key| numbers.get(key).copied())
+    else {
+        return refuse(format!("found HALCON's camera without one of {}, expected them", READ.join(", ")));
+    };
+    let size_px = size_of_pictures([width, height]).map_err(|error| error.in_file(path))?;
+    let focal_px = [focus / sx, focus / sy];
+    // u = 2 u' / (1 + sqrt(1 - 4 Kappa r'²)) of places u' without distortion, as the continued fraction of this function: OpenCV's rational model.
+    let bent = kappa.unwrap_or(0.0) * focus * focus;
+    let far = [(cx, width, focal_px[0]), (cy, height, focal_px[1])];
+    let far = far.map(|(centre, size, focal)| centre.max(size.unwrap_or(2.0 * centre) - centre) / focal);
+    if (bent * (far[0] * far[0] + far[1] * far[1])).abs() > MOST_BENT {
+        return refuse(format!(
+            "found the distortion Kappa = {}, which bends the corners of the picture by more than a tenth, expected less: {OTHERWISE}",
+            kappa.unwrap_or(0.0)
+        ));
+    }
+    let [second, third] = [bent * bent, bent * bent * bent];
+    let distortion = Distortion::Brown([
+        -5.0 * bent,
+        6.0 * second,
+        0.0,
+        0.0,
+        -third,
+        -6.0 * bent,
+        10.0 * second,
+        -4.0 * third,
+    ]);
+    let lens = Lens { focal_px, centre_px: [cx, cy], distortion, size_px };
+    let said = if bent == 0.0 {
+        Vec::new()
+    } else {
+        vec!["HALCON's division model as OpenCV's rational one".to_owned()]
+    };
+    Ok(Some((vec![Camera::new(String::new(), lens)], said)))
+}
+
+/// The parameter of a line, if it is a number.
+fn parameter(line: &str) -> Option<(&str, f64)> {
+    let mut parts = line.trim().split(':');
+    let (key, _, value) = (parts.next()?, parts.next()?, parts.next()?);
+    let value: f64 = value.trim().trim_end_matches(';').trim().parse().ok()?;
+    (parts.next().is_none() && value.is_finite()).then_some((key, value))
+}

@@ -1,0 +1,239 @@
+//! Samples of other hand-eye programs, as a table of poses: lists of MoveIt, easy_handeye2 and scripts (YAML, JSON), and folders with a pose in each file,
+//! as ViSP and Zivid write them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::pose_columns::Whose;
+use crate::instruments::{Column, Made, Value};
+use crate::table::configurations::is_folder;
+use crate::table::picture_names::number_at_end;
+use crate::table::roles::plain;
+use poecal_numerics::error::{Error, ErrorKind, Result};
+use poecal_storage::folder;
+use poecal_storage::hashes::sha256_of;
+use poecal_storage::limits::Limit;
+use poecal_storage::source::unreadable;
+use poecal_storage::source_text::read_up_to;
+use poecal_storage::yaml_tree::{Node, NodeKind, documents};
+
+const EXPECTED: &str = "samples of a hand-eye calibration: poses of the arm (effector_wrt_world, robot) and of the target (object_wrt_sensor, tracking), or a \
+                        folder with a pose in each file";
+/// Endings of files with trees; in folders others have rows of numbers.
+const TREES: [&str; 3] = ["yaml", "yml", "json"];
+const TEXTS: [&str; 3] = ["txt", "csv", "dat"];
+/// Words of keys and names of files for the arm's poses, and for the target's; the first that one has is meant.
+const WORDS: [(Whose, &[&str]); 2] = [
+    (
+        Whose::Arm,
+        &["effector", "robot", "flange", "tcp", "gripper", "hand", "ee", "arm", "base", "fpe", "fme", "rpe"],
+    ),
+    (
+        Whose::Target,
+        &["object", "tracking", "target", "board", "marker", "camera", "cam", "pattern", "cpo", "cmo"],
+    ),
+];
+/// Keys of the two parts of a pose.
+const PLACES: [&str; 2] = ["translation", "position"];
+const TURNS: [&str; 2] = ["rotation", "orientation"];
+/// Columns of a matrix, of a place with a quaternion, and of ViSP's vectors, each with the unit of lengths in its place.
+const MATRIX: [&str; 12] =
+    ["r11", "r12", "r13", "r14[m]", "r21", "r22", "r23", "r24[m]", "r31", "r32", "r33", "r34[m]"];
+const QUATERNION: [&str; 7] = ["x[m]", "y[m]", "z[m]", "qx", "qy", "qz", "qw"];
+const VECTOR: [&str; 6] = ["x[m]", "y[m]", "z[m]", "rvec_x[rad]", "rvec_y[rad]", "rvec_z[rad]"];
+
+/// A pose as it is written.
+struct Sample {
+    whose: Option<Whose>,
+    columns: &'static [&'static str],
+    numbers: Vec<f64>,
+    /// Whether lengths are millimetres.
+    in_mm: bool,
+    line: usize,
+    /// The number of its file.
+    file: Option<u64>,
+}
+
+/// The table of a folder or a file of samples; `None` of a file in another form.
+pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
+    let ends = |path: &Path, all: &[&str]| {
+        let ending = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
+        all.iter().any(|it| ending.eq_ignore_ascii_case(it))
+    };
+    let (mut samples, mut whole) = (Vec::new(), String::new());
+    if is_folder(path) {
+        let is_wanted = |name: &str| {
+            number_at_end(name).is_some() && (ends(Path::new(name), &TREES) || ends(Path::new(name), &TEXTS))
+        };
+        let (mut names, _) =
+            folder::files(path, is_wanted).map_err(|error| unreadable(path, &error, EXPECTED))?;
+        names.sort_by_cached_key(|name| (number_at_end(name), name.clone()));
+        for name in names {
+            let own = path.join(&name);
+            let text = read_up_to(&own, EXPECTED, Limit::Settings)?;
+            let before = samples.len();
+            if ends(&own, &TREES) {
+                for document in documents(&text, &own, EXPECTED)? {
+                    walk(&document, whose_of(&name), &mut samples);
+                }
+            } else {
+                let all = text.split(|it: char| it.is_whitespace() || matches!(it, ',' | ';' | '[' | ']'));
+                let numbers =
+                    all.filter(|it| !it.is_empty()).map(|it| it.parse().ok()).collect::<Option<Vec<f64>>>();
+                samples.extend(numbers.and_then(|it| Sample::matrix(it, whose_of(&name), 1)));
+            }
+            if samples.len() != before + 1 {
+                let message = format!(
+                    "found {} poses, expected one in each file of the folder: sixteen numbers row by row, or YAML",
+                    samples.len() - before
+                );
+                return Err(ErrorKind::Measurement.error(message).in_file(&own));
+            }
+            samples.iter_mut().skip(before).for_each(|it| it.file = number_at_end(&name));
+            whole.push_str(&text);
+        }
+    } else if ends(path, &TREES) {
+        whole = read_up_to(path, EXPECTED, Limit::Table)?;
+        documents(&whole, path, EXPECTED)?.iter().for_each(|it| walk(it, None, &mut samples));
+    } else {
+        return Ok(None);
+    }
+    let made = made(&samples).map_err(|message| refuse(path, message))?;
+    Ok(Some(made.of_file("samples of a hand-eye calibration", Some(sha256_of(&whole)))))
+}
+
+fn refuse(path: &Path, message: String) -> Error {
+    ErrorKind::Measurement.error(message).in_file(path)
+}
+
+/// Whose poses a key or the name of a file says that it has.
+pub(crate) fn whose_of(name: &str) -> Option<Whose> {
+    let of = |word: String| WORDS.iter().find(|it| it.1.contains(&word.as_str())).map(|it| it.0);
+    name.split(|it: char| !it.is_alphanumeric()).map(plain).find_map(of)
+}
+
+/// The numbers of a list, or of lists in it.
+fn numbers(node: &Node) -> Option<Vec<f64>> {
+    let inner: Option<Vec<Vec<f64>>> = node
+        .list()?
+        .iter()
+        .map(|it| it.text().map_or_else(|| numbers(it), |text| Some(vec![text.parse().ok()?])))
+        .collect();
+    Some(inner?.concat())
+}
+
+/// Takes the poses below a node.
+fn walk(node: &Node, whose: Option<Whose>, found: &mut Vec<Sample>) {
+    if let Some(sample) = Sample::new(node, whose) {
+        return found.push(sample);
+    }
+    match &node.kind {
+        NodeKind::Map(entries) => {
+            entries.iter().for_each(|(key, it)| walk(it, whose_of(key).or(whose), found))
+        }
+        NodeKind::List(entries) => entries.iter().for_each(|it| walk(it, whose, found)),
+        NodeKind::Text(_) => {}
+    }
+}
+
+impl Sample {
+    /// The pose of a node, if it is one.
+    fn new(node: &Node, whose: Option<Whose>) -> Option<Self> {
+        let part = |keys: [&str; 2]| keys.into_iter().find_map(|key| node.get(key));
+        let Some((place, turn)) = part(PLACES).zip(part(TURNS)) else {
+            if let Some(matrix) = node.get("FloatMatrix").and_then(|it| it.get("Data")) {
+                return Some(Sample { in_mm: true, ..Sample::matrix(numbers(matrix)?, whose, node.line)? });
+            }
+            // OpenCV's and ViSP's matrices, or the numbers alone.
+            let numbers = numbers(node.get("data").unwrap_or(node))?;
+            let columns: &[&str] = if numbers.len() == VECTOR.len() && node.get("rows").is_some() {
+                &VECTOR
+            } else {
+                return Sample::matrix(numbers, whose, node.line);
+            };
+            return Some(Sample { whose, columns, numbers, in_mm: false, line: node.line, file: None });
+        };
+        let parts = |of: &Node, keys: &[&str]| -> Option<Vec<f64>> {
+            keys.iter().map(|key| of.get(key)?.text()?.parse().ok()).collect()
+        };
+        let numbers = [parts(place, &["x", "y", "z"])?, parts(turn, &["x", "y", "z", "w"])?].concat();
+        Some(Sample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, file: None })
+    }
+
+    /// The pose of sixteen numbers, row by row, or column by column where the place comes last.
+    fn matrix(numbers: Vec<f64>, whose: Option<Whose>, line: usize) -> Option<Self> {
+        let all: [f64; 16] = numbers.try_into().ok()?;
+        let row = |at: usize| [all[at], all[at + 4], all[at + 8]];
+        let numbers: Vec<f64> = match (&all[12..], row(3)) {
+            ([0.0, 0.0, 0.0, _], _) => all[..12].to_vec(),
+            (_, [0.0, 0.0, 0.0]) => {
+                (0..3).flat_map(|at| [all[at], all[at + 4], all[at + 8], all[at + 12]]).collect()
+            }
+            _ => return None,
+        };
+        (all[15] == 1.0).then_some(Sample {
+            whose,
+            columns: &MATRIX,
+            numbers,
+            in_mm: false,
+            line,
+            file: None,
+        })
+    }
+
+    /// The names of its columns.
+    fn columns(&self) -> impl Iterator<Item = Column> {
+        let before = match self.whose {
+            None => "",
+            Some(Whose::Arm) => "flange_",
+            Some(Whose::Target) => "target_",
+        };
+        let unit = if self.in_mm { "[mm]" } else { "[m]" };
+        self.columns.iter().map(move |it| Column::from(format!("{before}{}", it.replace("[m]", unit))))
+    }
+}
+
+/// The table of poses: those of arm and target side by side, by the numbers of their files or in their order.
+fn made(samples: &[Sample]) -> std::result::Result<Made, String> {
+    let mut rows: BTreeMap<u64, Vec<&Sample>> = BTreeMap::new();
+    let mut counts = [0_u64; 3];
+    for sample in samples {
+        let count = &mut counts[sample.whose.map_or(2, |it| usize::from(it == Whose::Target))];
+        rows.entry(sample.file.unwrap_or(*count)).or_default().push(sample);
+        *count += 1;
+    }
+    rows.values_mut().for_each(|row| row.sort_by_key(|it| it.whose));
+    let Some(first) = rows.values().next() else {
+        return Err(format!(
+            "found no pose with a place and a quaternion, and none of sixteen numbers, expected {EXPECTED}"
+        ));
+    };
+    let is_alike = |row: &[&Sample]| {
+        row.len() == first.len()
+            && row.iter().zip(first).all(|(one, other)| {
+                (one.whose, one.columns, one.in_mm) == (other.whose, other.columns, other.in_mm)
+            })
+    };
+    if first.len() > 2 || rows.values().any(|row| !is_alike(row)) {
+        let [arm, target, others] = counts;
+        return Err(format!(
+            "found {arm} poses of the arm, {target} of the target and {others} of which nothing says whose they are, expected as many of both in one \
+             form, {EXPECTED}"
+        ));
+    }
+    let are_files = samples.iter().all(|it| it.file.is_some());
+    let names = are_files.then(|| Column::from("image"));
+    let mut made = Made::new(1, names.into_iter().chain(first.iter().flat_map(|it| it.columns())));
+    for (number, row) in &rows {
+        let name = number.to_string();
+        let numbers = row.iter().flat_map(|it| it.numbers.iter().copied().map(Value::Number));
+        let line = row.first().map_or(1, |it| it.line);
+        made.row(line, are_files.then_some(Value::Text(&name)).into_iter().chain(numbers));
+    }
+    made.say(format!(
+        "{} poses, {}",
+        rows.len(),
+        if first.len() == 2 { "of arm and target" } else { "each alone" }
+    ));
+    Ok(made)
+}
