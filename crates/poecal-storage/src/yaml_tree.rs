@@ -134,6 +134,12 @@ struct Open {
     seen: BTreeSet<String>,
 }
 
+/// The text with its directive as a comment: OpenCV's is no YAML, and the parser reads no other.
+fn without_directive(text: &str) -> Cow<'_, str> {
+    let rest = text.trim_start_matches('\u{feff}').strip_prefix("%YAML");
+    rest.map_or(Cow::Borrowed(text), |rest| Cow::Owned(format!("#{rest}")))
+}
+
 /// The documents of YAML, with so many lines before it.
 pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
     let refuse = |span: &Span, found: &str| {
@@ -142,11 +148,7 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
         Err(Error::new(ErrorKind::Syntax, message).at(path, line, column))
     };
     let (mut open, mut found): (Vec<Open>, Vec<Node>) = (Vec::new(), Vec::new());
-    // OpenCV's directive is no YAML, and the parser reads no other.
-    let text = match text.trim_start_matches('\u{feff}').strip_prefix("%YAML") {
-        Some(rest) => Cow::Owned(format!("#{rest}")),
-        None => Cow::Borrowed(text),
-    };
+    let text = without_directive(text);
     for event in Parser::new_from_str(&text) {
         let (event, span) = event.map_err(|error| {
             let (place, message) = (error.marker(), visible(&error.info()).into_owned());

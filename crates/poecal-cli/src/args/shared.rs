@@ -110,9 +110,9 @@ impl ColumnArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = FILES)]
 pub(crate) struct CameraArgs {
-    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML of OpenCV,
-    /// ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the size of the pictures,
-    /// for a lens that is found from them; may be given again
+    /// Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML, JSON
+    /// or XML of OpenCV, ROS, Kalibr, ViSP, mrcal and makers of cameras, .dat of HALCON, a calibration.json with what it found, or unknown:1920x1080
+    /// with the size of the pictures, for a lens that is found from them; may be given again
     #[arg(long, value_name = "FILE[#VERSION]|unknown:WxH")]
     pub(crate) camera: Vec<String>,
     /// Board or solid that cameras see: CSV with target, x[mm], y[mm], z[mm] of its points, chessboard:10x7:27mm (squares along x and y, and

@@ -209,7 +209,7 @@ fn is_echo(text: &str, opening: &Opening<'_>) -> bool {
 fn of_echo(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let joints = opening.robot.joint_reading_names();
     let columns = std::iter::once(Column::from("time").in_unit("s"));
-    let mut made = Made::new(1, columns.chain(joints.iter().map(|it| Column::from(it.as_str()))));
+    let mut made = Made::new(1, columns.chain(opening.joint_columns("rad")));
     for (line, content) in lines(text) {
         let cells = cells(content, Separator::Comma);
         let Some(names) = echo_names(&cells) else {

@@ -66,7 +66,9 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
 /// The parameter of a line, if it is a number.
 fn parameter(line: &str) -> Option<(&str, f64)> {
     let mut parts = line.trim().split(':');
-    let (key, _, value) = (parts.next()?, parts.next()?, parts.next()?);
+    let (key, short, value) = (parts.next()?, parts.next()?, parts.next()?);
     let value: f64 = value.trim().trim_end_matches(';').trim().parse().ok()?;
-    (parts.next().is_none() && value.is_finite()).then_some((key, value))
+    // Below a parameter are its type with bounds, and words.
+    let is_named = short.starts_with(|it: char| it.is_ascii_alphabetic());
+    (is_named && parts.next().is_none() && value.is_finite()).then_some((key, value))
 }

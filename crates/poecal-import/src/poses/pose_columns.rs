@@ -46,6 +46,9 @@ struct Part {
 }
 
 const PLACE: [&str; 3] = ["x", "y", "z"];
+/// What to do with places of a target that has no orientation.
+const PLACES_ALONE: &str = "; places alone, as of a ball or a depth camera, locate the camera by the joint readings beside them: \
+                            `poecal calibrate MODEL FILE --fix joints`, for a camera in the hand with --instrument NAME=LINK and --target NAME=LINK";
 /// The place in the last column of a matrix.
 const IN_MATRIX: [&str; 3] = ["r14", "r24", "r34"];
 
@@ -220,16 +223,16 @@ fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits
     let find = |name: &&str| parts.iter().find(|it| it.key.eq_ignore_ascii_case(name)).map(|it| it.at);
     let all = |names: &[&str]| names.iter().map(find).collect::<Option<Vec<usize>>>();
     let who = list_words(whose);
-    let refuse = |missing: &str, expected: &str| {
+    let refuse = |missing: &str, expected: &str, more: &str| {
         let names = parts.iter().filter_map(|it| header.cells.get(it.at)).map(|it| it.name.as_str());
         let names = names.collect::<Vec<_>>().join(", ");
         let message = format!(
-            "found no {missing} of {who} among the columns {names}, expected {expected}: name them so"
+            "found no {missing} of {who} among the columns {names}, expected {expected}: name them so{more}"
         );
         Err(ErrorKind::Measurement.error(message).at_line(header.path, header.line))
     };
     let Some(place) = all(&PLACE).or_else(|| all(&IN_MATRIX)) else {
-        return refuse("position", "x, y, z or tvec_x, tvec_y, tvec_z");
+        return refuse("position", "x, y, z or tvec_x, tvec_y, tvec_z", "");
     };
     let found = CONVENTIONS.iter().find_map(|it| Some((it, all(it.columns)?)));
     let Some((convention, orientation)) = found else {
@@ -237,6 +240,7 @@ fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits
             "orientation",
             "qx, qy, qz, qw, or A, B, C (KUKA), W, P, R (FANUC), O, A, T (Kawasaki), A, E, R (Comau), U, V, W (Epson), intrinsic_x, intrinsic_y, \
              intrinsic_z (Stäubli), rx, ry, rz (rotation vector), q1 to q4 (ABB), roll, pitch, yaw, rvec_x, rvec_y, rvec_z (OpenCV) or r11 to r33",
+            if whose == Whose::Target { PLACES_ALONE } else { "" },
         );
     };
     let (length, angle) = convention.usual.unwrap_or(("m", "rad"));

@@ -249,7 +249,7 @@ fn boards_and_lenses_of_other_programs_are_read() {
         (
             "flipped.xml",
             settings.replace("</Settings>", "<Input_FlipAroundHorizontalAxis>1</Input_FlipAroundHorizontalAxis></Settings>"),
-            "found `1` for `Input_FlipAroundHorizontalAxis`",
+            "found `1` for `Settings.Input_FlipAroundHorizontalAxis`",
         ),
         (
             "flipped.yml",

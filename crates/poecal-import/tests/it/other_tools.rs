@@ -115,7 +115,7 @@ fn the_division_model_of_halcon_is_exact_to_a_thousandth_of_a_pixel() {
         pinhole.cameras[0].lens.distortion,
         Distortion::Brown([-0.0, 0.0, 0.0, 0.0, -0.0, -0.0, 0.0, -0.0])
     );
-    for kappa in [-1600.0, 900.0, -40.0] {
+    for kappa in [-1600.0_f64, 900.0, -40.0] {
         let found =
             cameras("camera.dat", &halcon(&format!("Kappa:kappa: {kappa:?};\n  DOUBLE::;\n\n"))).unwrap();
         let lens = found.cameras[0].lens;

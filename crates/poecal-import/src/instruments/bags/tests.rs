@@ -266,9 +266,13 @@ fn bags_that_rosbag2_compressed_by_message_or_by_file_are_the_same_rows() {
     let cut = packed(&bag(&messages));
     let cut = folder.write("cut.mcap.zstd", &cut[..cut.len() / 2]);
     assert!(read_all(&[&cut], &options).is_err());
-    limits::on(limits::here().with(Limit::Bag, 40_000), || {
-        let error = read_all(&[&by_message], &options).unwrap_err();
-        assert!(error.contains("limit `bag`"), "{error}");
+    let zeros = compress_to_vec(&[0_u8; 200_000][..], CompressionLevel::Fastest);
+    let large = bag(&[("/joint_states", JOINTS, FIRST_NS, zeros)]);
+    assert!(large.len() < 20_000, "{}", large.len());
+    let large = folder.write("large.mcap", large);
+    limits::on(limits::here().with(Limit::Bag, 100_000), || {
+        let error = read_all(&[&large], &options).unwrap_err();
+        assert!(error.contains("the messages of a bag") && error.contains("limit"), "{error}");
     });
 }
 
