@@ -33,6 +33,7 @@ FOLLOWED = {
     "expected one that was measured: name its columns in a mapping (--columns)": HERE + "test_two_sets_of_coordinates",
     "since angles do not say their convention, which a mapping does (--columns)": HERE + "test_two_sets_of_coordinates",
     "is meant, write `{name}[{}]`": HERE + "test_a_unit_in_a_name",
+    "which a mapping (--columns) reads by lines under `[joints]` such as": HERE + "test_counts_of_an_encoder",
     "spread over {} mm, expected about the same: most likely they are in rad": HERE + "test_radians_that_are_called_degrees",
     "most likely they are in {}, not {}": HERE + "test_millimetres_that_are_called_metres",
     "write `{}[{symbol}]` in the header": HERE + "test_degrees_without_a_unit",
@@ -158,6 +159,23 @@ def test_lines_above_the_header(here):
     calibrates(here, "--columns", "map.toml")
     table(here, "#Cell 4, line 2,,,,,,,", ["#operator,N. N.,,,,,,,", POINTS[0], *POINTS[1:]])
     calibrates(here)
+
+
+def test_counts_of_an_encoder(here):
+    names = [it.split("[")[0] for it in POINTS[0].split(",")[:6]]
+    rows = []
+    for row in POINTS[1:]:
+        cells = row.split(",")
+        turns = [(float(it) + 180) % 360 for it in cells[:6]]
+        rows.append(",".join([f"{min(it * 4096 / 360, 4095):.0f}" for it in turns] + cells[6:]))
+    table(here, ",".join([*names, *POINTS[0].split(",")[6:]]), rows)
+    said = run(here, "calibrate", "robot.urdf", "points.csv", "--out", "out", code=2)
+    line = re.search(r"`\[joints\]` such as `(joint\d = .*offset = -180 \})`", said)[1]
+    joint = line.split(" ")[0]
+    (here / "map.toml").write_text("\n".join(["[joints]", *(line.replace(joint, name) for name in names)]) + "\n")
+    # A count is 0.088 deg.
+    said = run(here, "calibrate", "robot.urdf", "points.csv", "--columns", "map.toml", "--out", "out")
+    assert said.startswith(("verdict good", "verdict use inside the sampled range"))
 
 
 def test_points_without_a_unit(here):

@@ -1,15 +1,16 @@
-//! Cells of workbooks whose number is none: formulas that no program computed, and numbers that are shown as dates or times.
+//! Cells of workbooks: their numbers and texts, formulas that no program computed, and numbers that are shown as dates or times.
 
 use std::collections::BTreeMap;
 
 use calamine::{Data, Range};
 
 use super::maker::Refused;
+use super::words::number;
 use crate::table::places::Sheet;
 use crate::table::times::seconds_of;
 
 /// Seconds of a day, the unit of times in workbooks.
-pub(crate) const DAY_S: f64 = 86_400.0;
+const DAY_S: f64 = 86_400.0;
 /// What is to be done about formulas without results.
 const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
@@ -64,8 +65,33 @@ pub(crate) fn no_number(cell: &Data, column: &str) -> Option<String> {
     (!is_time).then(|| format!("{shown} (formatted as a date or time)"))
 }
 
+/// A number of a cell.
+pub(crate) fn value(cell: &Data) -> Option<f64> {
+    match cell {
+        Data::Float(value) => Some(*value).filter(|it| it.is_finite()),
+        Data::Int(value) => Some(*value as f64),
+        Data::DateTime(time) => Some(time.as_f64() * DAY_S),
+        Data::DurationIso(text) => duration_s(text),
+        Data::String(text) => number(text),
+        Data::Bool(_) | Data::DateTimeIso(_) | Data::Error(_) | Data::Empty => None,
+    }
+}
+
+/// Whether a cell has nothing.
+pub(crate) fn is_empty(cell: &Data) -> bool {
+    matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
+}
+
+/// The text of a cell.
+pub(crate) fn text(cell: &Data) -> String {
+    if let Data::String(text) = cell {
+        return text.trim().replace(['\n', '\r', '\t'], " ");
+    }
+    if is_empty(cell) { String::new() } else { cell.to_string() }
+}
+
 /// Seconds of a duration as ODS has it, such as `PT01H02M03.5S`.
-pub(crate) fn duration_s(text: &str) -> Option<f64> {
+fn duration_s(text: &str) -> Option<f64> {
     let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
     let (days, time) = rest.strip_prefix('P')?.split_once('T')?;
     let (mut seconds, mut number) = (0.0, String::new());

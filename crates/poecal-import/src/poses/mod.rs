@@ -12,3 +12,4 @@ pub(crate) mod pose_readings;
 pub(crate) mod pose_table;
 pub(crate) mod samples;
 pub(crate) mod sixteen;
+pub(crate) mod whose;

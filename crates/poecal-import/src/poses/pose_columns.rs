@@ -1,6 +1,7 @@
 //! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
 
 use super::sixteen::matrices;
+pub(crate) use super::whose::Whose;
 use crate::table::conventions::{CONVENTIONS, Convention, OPENCV};
 use crate::table::header::Header;
 use crate::table::orientation::OrientationForm;
@@ -8,15 +9,6 @@ use crate::table::roles::{Role, plain, without_unit};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
-
-/// Whose poses a column belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Whose {
-    /// The arm's.
-    Arm,
-    /// What the camera saw.
-    Target,
-}
 
 /// A column of numbers with its unit.
 #[derive(Clone, Copy, Debug)]

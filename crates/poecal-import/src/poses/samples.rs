@@ -4,11 +4,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::pose_columns::Whose;
+use super::whose::{Whose, whose_of};
 use crate::instruments::{Column, Made, Value};
 use crate::table::configurations::is_folder;
 use crate::table::picture_names::number_at_end;
-use crate::table::roles::plain;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::folder;
 use poecal_storage::hashes::sha256_of;
@@ -22,17 +21,6 @@ const EXPECTED: &str = "samples of a hand-eye calibration: poses of the arm (eff
 /// Endings of files with trees; in folders others have rows of numbers.
 const TREES: [&str; 3] = ["yaml", "yml", "json"];
 const TEXTS: [&str; 3] = ["txt", "csv", "dat"];
-/// Words of keys and names of files for the arm's poses, and for the target's; the first that one has is meant.
-const WORDS: [(Whose, &[&str]); 2] = [
-    (
-        Whose::Arm,
-        &["effector", "robot", "flange", "tcp", "gripper", "hand", "ee", "arm", "base", "fpe", "fme", "rpe"],
-    ),
-    (
-        Whose::Target,
-        &["object", "tracking", "target", "board", "marker", "camera", "cam", "pattern", "cpo", "cmo"],
-    ),
-];
 /// Keys of the two parts of a pose.
 const PLACES: [&str; 2] = ["translation", "position"];
 const TURNS: [&str; 2] = ["rotation", "orientation"];
@@ -104,12 +92,6 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
 
 fn refuse(path: &Path, message: String) -> Error {
     ErrorKind::Measurement.error(message).in_file(path)
-}
-
-/// Whose poses a key or the name of a file says that it has.
-pub(crate) fn whose_of(name: &str) -> Option<Whose> {
-    let of = |word: String| WORDS.iter().find(|it| it.1.contains(&word.as_str())).map(|it| it.0);
-    name.split(|it: char| !it.is_alphanumeric()).map(plain).find_map(of)
 }
 
 /// The numbers of a list, or of lists in it.

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::pose_columns::Whose;
-use super::samples::whose_of;
+use super::whose::{Whose, whose_of};
 use crate::table::cells::{Separator, split};
 use crate::table::header::Header;
 use crate::table::number::number_of;

@@ -2,7 +2,7 @@
 
 use calamine::Data;
 
-use super::{is_empty, text, value};
+use super::super::workbook_cells::{is_empty, text, value};
 use crate::table::header::bracketed;
 use crate::table::roles::{plain, unit_of};
 

@@ -18,7 +18,7 @@ use self::cells::{Book, Formulas, Left, ReadSheet};
 use self::heads::{Head, head, is_sum};
 use super::maker::{Column, Made, Refused, Value};
 use super::words::{number, quoted};
-use super::workbook_cells::{DAY_S, duration_s, no_number, refuse_uncomputed};
+use super::workbook_cells::{is_empty, no_number, refuse_uncomputed, text, value};
 use super::{Opening, two_sets};
 use crate::table::mapping::ColumnMap;
 use crate::table::places::Sheet;
@@ -108,30 +108,6 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
             quoted(&names)
         ),
     })
-}
-
-/// A number of a cell.
-fn value(cell: &Data) -> Option<f64> {
-    match cell {
-        Data::Float(value) => Some(*value).filter(|it| it.is_finite()),
-        Data::Int(value) => Some(*value as f64),
-        Data::DateTime(time) => Some(time.as_f64() * DAY_S),
-        Data::DurationIso(text) => duration_s(text),
-        Data::String(text) => number(text),
-        Data::Bool(_) | Data::DateTimeIso(_) | Data::Error(_) | Data::Empty => None,
-    }
-}
-
-fn is_empty(cell: &Data) -> bool {
-    matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
-}
-
-/// The text of a cell.
-fn text(cell: &Data) -> String {
-    if let Data::String(text) = cell {
-        return text.trim().replace(['\n', '\r', '\t'], " ");
-    }
-    if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
 /// The table of a sheet: its header, units and rows by their numbers in the range.
