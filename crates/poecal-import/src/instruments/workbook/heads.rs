@@ -3,7 +3,7 @@
 use calamine::Data;
 
 use super::super::workbook_cells::{is_empty, text, value};
-use crate::table::header::bracketed;
+use crate::table::header_cells::bracketed;
 use crate::table::roles::{plain, unit_of};
 
 /// Rows in which the header is sought.
