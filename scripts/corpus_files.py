@@ -64,7 +64,7 @@ measurements = ["points.csv"]
 sigma_position = "0.05mm"
 held_out = 0.25
 seed = 4
-fit_where = "no=column"
+train_where = "no=column"
 out = "by-settings"
 
 [record]

@@ -11,8 +11,8 @@ WORDS = {
     "FORMS": "urdf|toml|poe|dh|mdh|hayati|origins|ur|xarm|franka|pal|lerobot|mjcf|sdf|usd|csv|offsets|tf|c",
     "CLOSED": "kuka|fanuc|staubli|yaskawa|abb",
     "SHELLS": "bash|elvish|fish|powershell|zsh",
-    "COMMANDS": "init|plan|identify|simulate|board|watch|calibrate|check|import|hand-eye|tcp|detect|report|certificate|export|apply|offsets"
-    "|compensate|predict|convert|validate|track|compare|fleet|reproduce|schema|completions|man",
+    "COMMANDS": "init|plan|simulate|watch|calibrate|check|import|hand-eye|tcp|detect|report|export|offsets"
+    "|compensate|predict|validate|track|compare|fleet|reproduce|schema|completions|man",
     "LOSSES": "auto|off|huber|cauchy|tukey",
     "ROBOTS": "continuous|extreme_rpy|fixed_between|mimic_column|non_unit_axis|random_origins|scara|seven_axis",
     "RECORDED": "bag|workbook|bag_of_points|bare|leica|log|motive|qualisys|rapid|rokae|script|spatial_analyzer",
@@ -39,7 +39,7 @@ GROUPS = {
         calibrate robot.urdf points.csv --out results
         calibrate robot.urdf points.csv --out verbose --verbose --record operator=A --record serial=4711 --accept 0.5mm,max:1mm
         calibrate robot.toml points.csv --out toml --json
-        calibrate robot.urdf points.csv --out base --frame base --quiet
+        calibrate robot.urdf points.csv --out base --device-frame base --quiet
         calibrate robot.urdf points.csv --out strict --require good --accept 0.01mm --accept-model calibrated
         calibrate robot.urdf points.csv --out held --fix joints --free *.offset
         calibrate robot.urdf points.csv --out free --free targets --tolerance auto
@@ -63,31 +63,31 @@ GROUPS = {
         check robot.urdf --json
         report results/calibration.json --out again.html
         report results/calibration.json --residuals verbose/residuals.csv --out other.html --force
-        certificate verbose/calibration.json
+        report verbose/calibration.json --certificate
         @pictures logos
-        certificate results/calibration.json --out paper.html --record serial=12 --valid-until 2027-11-28 --logo logos/{gray.png|baseline.jpg}
+        report results/calibration.json --certificate --out paper.html --record serial=12 --record valid_until=2027-11-28 --logo logos/{gray.png|baseline.jpg}
         validate results/calibration.json points.csv --out check
-        validate results/calibration.json points.csv --history none --json --refit-frame --refit-tool
+        validate results/calibration.json points.csv --history none --json --refit device,tool
         validate results/calibration.json points.csv --require good    # its own rows
         simulate results/calibrated.urdf --errors 0deg,0mm --kind point --count 25 --seed 7 --out second
-        validate results/calibration.json second/measurements.csv --refit-frame --require good --accept 0.2mm,max:0.5mm --report check.html --record operator=B
-        validate results/calibration.json second/measurements.csv --refit-frame --refit-tool --accept 0.001mm --out second/check
+        validate results/calibration.json second/measurements.csv --refit device --require good --accept 0.2mm,max:0.5mm --report check.html --record operator=B
+        validate results/calibration.json second/measurements.csv --refit device,tool --accept 0.001mm --out second/check
         report results/calibration.json --out with-history.html
         predict results/calibration.json points.csv
-        predict results/calibration.json points.csv --frame device --with-uncertainty
+        predict results/calibration.json points.csv --output-frame device --with-uncertainty
         predict robot.urdf points.csv --out nominal.csv
         predict results/calibration.json points.csv --target measured --model calibrated --out target.csv
         compensate results/calibration.json points.csv --out corrected.csv --check
         compensate results/calibration.json points.csv --dry-run --json --model calibrated
         offsets robot.urdf results/calibration.json
-        offsets robot.urdf results/calibration.json --json --base kept --tip kept
+        offsets robot.urdf results/calibration.json --json --fix base,tip
         offsets robot.urdf robot.toml --out offsets.txt
-        apply results/calibration.json robot.urdf --out applied.urdf
+        export results/calibration.json --onto robot.urdf --out applied.urdf
         compare results/calibration.json held/calibration.json
         compare results/calibration.json held/calibration.json --json --limit 1mm
         compare results/calibration.json verbose/calibration.json --verbose --out compared.txt
-        identify robot.urdf points.csv
-        identify robot.urdf points.csv --kind point --frame base --robot-error 0.3mm,0.1mm --json
+        plan robot.urdf --rows points.csv --kind pose
+        plan robot.urdf --rows points.csv --kind point --device-frame base --robot-error 0.3mm,0.1mm --json
         init robot.urdf --out cell
         init robot.urdf --out cell    # is there
         init --hand-eye {in-hand|beside} --out poses-{}
@@ -108,16 +108,16 @@ GROUPS = {
         export results/calibration.json --format urdf --onto robot.urdf --out onto.urdf
         export results/calibration.json --format urdf --out onto.urdf    # is there
         export robot.toml --format {dh|mdh|usd|csv}
-        apply results/calibration.json robot.urdf
+        export results/calibration.json --onto robot.urdf
         @replace robot.urdf six.urdf joint1 shoulder_pan_joint
         calibrate six.urdf s/measurements.csv --out no    # no such column
         simulate six.urdf --count 60 --out six
         calibrate six.urdf six/measurements.csv --report none --out six/results
         export six/results/calibration.json --format {ur|pal|origins}
-        convert robot.urdf --out elbow.toml
-        convert robot.toml --to urdf
-        convert results/calibration.json --to {urdf|toml}
-        convert robot.urdf --offset joint2=1deg --offset joint3=-0.2deg --out offset.urdf
+        export robot.urdf --out elbow.toml
+        export robot.toml --format urdf
+        export results/calibration.json --format {urdf|toml}
+        export robot.urdf --offset joint2=1deg --offset joint3=-0.2deg --out offset.urdf
     """,
     "models": """
         @take crates/poecal-testing/data/urdf/*
@@ -132,10 +132,10 @@ GROUPS = {
         @seed foreign/conf calibration.conf
         @seed calibration/{corrected|gantry|scara|schema_1} {}.json
         @seed pipeline/{elbow|gantry|scara|two_targets} line-{}.toml line-{}.csv
-        convert {form0|form1|form2|form3|form4|gantry|kuka|ur|fanuc|abb}.toml --to urdf
-        convert {found-robot-without-a-name|mimic|slide|extreme_rpy|mimic_column|seven_axis}.urdf --to toml
-        convert {arm.xml|arm.sdf|ur.yaml|calibration.conf} --to {urdf|toml}
-        convert {corrected|gantry|scara|schema_1}.json --to toml
+        export {form0|form1|form2|form3|form4|gantry|kuka|ur|fanuc|abb}.toml --format urdf
+        export {found-robot-without-a-name|mimic|slide|extreme_rpy|mimic_column|seven_axis}.urdf --format toml
+        export {arm.xml|arm.sdf|ur.yaml|calibration.conf} --format {urdf|toml}
+        export {corrected|gantry|scara|schema_1}.json --format toml
         check {arm.xml|arm.sdf|ur.yaml|calibration.conf|form4.toml|mimic.urdf|torso.urdf}
         check torso.urdf --tip-link left_hand --json
         predict calibration_schema_1.json calibration_schema_1.csv
@@ -148,7 +148,7 @@ GROUPS = {
         @take examples/elbow/robot.urdf
         simulate robot.urdf --kind {KINDS} --count 120 --held-out-count 10 --out {}
         check {KINDS}/nominal.urdf {}/measurements.csv
-        identify {KINDS}/nominal.urdf {}/measurements.csv --kind {}
+        plan {KINDS}/nominal.urdf --rows {}/measurements.csv --kind {}
         calibrate {KINDS}/nominal.urdf {}/measurements.csv --out {}/results
         validate {KINDS}/results/calibration.json {}/held_out.csv --history none --json
         init robot.urdf --kind {KINDS} --count 12 --out {}-cell
@@ -192,9 +192,9 @@ GROUPS = {
         validate auto/calibration.json made/measurements.csv --history none --require good
         export auto/calibration.json --format {urdf|c|toml} --model corrected --out auto.{}
         compensate auto/calibration.json made/measurements.csv --out auto.csv --check
-        compensate warm/calibration.json warm.csv --factor temperature=25 --out warm-25.csv
+        compensate warm/calibration.json warm.csv --factors temperature=25 --out warm-25.csv
         compare auto/calibration.json off/calibration.json --limit 100mm
-        certificate auto/calibration.json
+        report auto/calibration.json --certificate
         offsets made/nominal.urdf auto/calibration.json
     """,
     "sessions": """
@@ -206,11 +206,11 @@ GROUPS = {
         calibrate s/nominal.urdf {moved|slipped}.csv --repair off --out kept-{}
         calibrate s/nominal.urdf {lost|repeated|ids|sets}.csv --out of-{}
         calibrate s/nominal.urdf lost.csv --strict --out strict
-        calibrate s/nominal.urdf stages.csv --fit-where stage=1,2 --out stages
-        calibrate s/nominal.urdf s/measurements.csv moved.csv --frames per-file --out files
+        calibrate s/nominal.urdf stages.csv --train-where stage=1,2 --out stages
+        calibrate s/nominal.urdf s/measurements.csv moved.csv --device-frames per-file --out files
         calibrate s/nominal.urdf half.csv --validate moved.csv --out repeated    # rows that are fitted
         simulate s/actual.urdf --errors 0deg,0mm --kind point --count 40 --seed 6 --out other
-        calibrate s/nominal.urdf s/measurements.csv --validate other/measurements.csv --frames per-file --out judged
+        calibrate s/nominal.urdf s/measurements.csv --validate other/measurements.csv --device-frames per-file --out judged
         calibrate s/nominal.urdf s/measurements.csv --instrument-noise 10um+5um/m --out noise
         calibrate s/nominal.urdf s/measurements.csv --seed 7 --held-out 0.2 --threads 1 --out seeded
         validate repaired-moved/calibration.json s/measurements.csv --refit auto --history none
@@ -301,7 +301,7 @@ GROUPS = {
         detect in-hand/picture-001.png --board {CHARUCO} --preview seen
         calibrate {in-hand|beside}/nominal.urdf {}/joints.csv {}.csv --camera {}/cameras.csv --markers {CHARUCO} --out {}-results
         calibrate in-hand/nominal.urdf in-hand/joints.csv in-hand.csv --camera unknown:1280x800 --markers {CHARUCO} --out unknown
-        hand-eye {in-hand|beside}/joints.csv {}.csv --camera {} --model {}/nominal.urdf --lens {}/cameras.csv --markers {CHARUCO}
+        hand-eye {in-hand|beside}/joints.csv {}.csv --camera {} --robot {}/nominal.urdf --lens {}/cameras.csv --markers {CHARUCO}
         validate in-hand-results/calibration.json in-hand/joints.csv in-hand.csv --history none
         calibrate robot.urdf pictures.csv corners.csv --camera lens.csv --markers chessboard:6x5:40mm --out howto
         calibrate robot.urdf pictures.csv corners.csv --camera unknown:1920x1200 --markers chessboard:6x5:40mm --out lens
@@ -309,8 +309,8 @@ GROUPS = {
         calibrate robot.urdf pictures.csv corners.csv --camera lens.csv --markers chessboard:6x5:40mm --fix joints --out held
         calibrate robot.urdf pictures.csv corners.csv --camera howto/calibration.json --markers howto/calibration.json --out found
         check robot.urdf pictures.csv corners.csv --camera lens.csv --markers chessboard:6x5:40mm
-        identify robot.urdf pictures.csv corners.csv --camera lens.csv --markers chessboard:6x5:40mm
-        hand-eye pictures.csv corners.csv --camera in-hand --model robot.urdf --lens lens.csv --markers chessboard:6x5:40mm --out hand-eye
+        plan robot.urdf --rows pictures.csv --rows corners.csv --camera lens.csv --markers chessboard:6x5:40mm
+        hand-eye pictures.csv corners.csv --camera in-hand --robot robot.urdf --lens lens.csv --markers chessboard:6x5:40mm --out hand-eye
     """,
     "boards": """
         @take examples/elbow/robot.urdf
@@ -349,24 +349,24 @@ GROUPS = {
         @change camera corners.csv left.csv
         check robot.urdf pictures.csv left.csv --camera {table.csv|kalibr.yaml} --markers chessboard:6x5:40mm
         check robot.urdf pictures.csv corners.csv --camera ros.yaml --markers {charuco.yaml|points.csv|board.csv}
-        board chessboard:10x7:25mm --out chessboard.{svg|pdf}
-        board circles:9x6:25mm --out dots.{svg|pdf}
-        board aprilgrid:4x3:40mm:0.3 --out aprilgrid.{svg|pdf}
-        board tags:36h11:50mm --out tags.{svg|pdf}
-        board chessboard:10x7:25mm --out chessboard.{svg|png}    # is there; no form
-        board chessboard:10x7:25mm
-        board charuco:5x7:36mm:27mm:DICT_4X4_50:legacy --page {a3|letter|400x300mm} --out {}.pdf
-        board circles:4x11:15mm:asymmetric --out circles.svg
-        board charuco:5x7:36mm:27mm:DICT_4X4_50 --measured 179.4mm,251.2mm
-        board charuco:5x7:90mm:60mm:DICT_4X4_50 --page a4 --out large.pdf
-        board charuco:5x7:36mm:40mm:DICT_4X4_50
+        detect --print chessboard:10x7:25mm --out chessboard.{svg|pdf}
+        detect --print circles:9x6:25mm --out dots.{svg|pdf}
+        detect --print aprilgrid:4x3:40mm:0.3 --out aprilgrid.{svg|pdf}
+        detect --print tags:36h11:50mm --out tags.{svg|pdf}
+        detect --print chessboard:10x7:25mm --out chessboard.{svg|png}    # is there; no form
+        detect --print chessboard:10x7:25mm
+        detect --print charuco:5x7:36mm:27mm:DICT_4X4_50:legacy --paper {a3|letter|400x300mm} --out {}.pdf
+        detect --print circles:4x11:15mm:asymmetric --out circles.svg
+        detect --print charuco:5x7:36mm:27mm:DICT_4X4_50 --measured 179.4mm,251.2mm
+        detect --print charuco:5x7:90mm:60mm:DICT_4X4_50 --paper a4 --out large.pdf
+        detect --print charuco:5x7:36mm:40mm:DICT_4X4_50
     """,
     "flange": """
         @take examples/elbow/robot.urdf
         @take examples/howto/hand_eye.csv
         @take examples/howto/touches.csv
         hand-eye hand_eye.csv --camera {in-hand|beside} --units mm
-        hand-eye hand_eye.csv --camera in-hand --units mm --out hand-eye --frames base,flange,eye,board
+        hand-eye hand_eye.csv --camera in-hand --units mm --out hand-eye --frame-names base,flange,eye,board
         hand-eye hand_eye.csv --camera in-hand --units mm --out hand-eye    # is there
         hand-eye hand_eye.csv --camera in-hand --units mm --json --flange base-from-flange --target camera-from-target
         hand-eye hand_eye.csv --camera in-hand --units m
@@ -376,41 +376,41 @@ GROUPS = {
         tcp hand_eye.csv --units mm
         tcp robot.urdf
         simulate robot.urdf --kind socket --count 20 --noise 0.02mm,0.01deg --out s
-        tcp s/measurements.csv --model s/nominal.urdf
+        tcp s/measurements.csv --robot s/nominal.urdf
     """,
     "plan": """
         @take examples/elbow/*
-        plan robot.urdf --count 12 --judge 4 --target-offset 60,0,30mm --out joints.csv --report plan.html
+        plan robot.urdf --count 12 --held-out-count 4 --target-offset 60,0,30mm --out joints.csv --report plan.html
         plan robot.urdf --count 10 --kind {pose|distance|relative|plane} --seed 3
         plan robot.urdf --count 10 --criterion {D|A|E|G} --json
-        plan robot.urdf --count 10 --over 0.5,-0.5,0.5:1.5,0.5,1.5m --margin 5deg,0mm --separation 5deg
-        plan robot.urdf --count 10 --floor {20mm|-3m}
-        plan robot.urdf --count 10 --device 3000,0,500mm --cone 60deg --distance 0.5m:10m --acceptance 60deg --keep-out 1,1,0:2,2,1m
+        plan robot.urdf --count 10 --workspace 0.5,-0.5,0.5:1.5,0.5,1.5m --margin 5deg,0mm --separation 5deg
+        plan robot.urdf --count 10 --floor-height {20mm|-3m}
+        plan robot.urdf --count 10 --device 3000,0,500mm --device-half-angle 60deg --distance 0.5m:10m --target-half-angle 60deg --keep-out 1,1,0:2,2,1m
         plan robot.urdf --count 8 --candidates points.csv --targets 3 --target-offset 60,0,30mm --stop 20s --out {script|mod|src|ls}.csv --program visit.{}
-        plan robot.urdf --keep joints.csv --replace 2,5 --out better.csv
-        plan robot.urdf --count 16 --keep joints.csv --out longer.csv
-        plan robot.urdf --count 12 --keep joints.csv --replace 2,5
+        plan robot.urdf --keep-rows joints.csv --replace-rows 2,5 --out better.csv
+        plan robot.urdf --count 16 --keep-rows joints.csv --out longer.csv
+        plan robot.urdf --count 12 --keep-rows joints.csv --replace-rows 2,5
         plan robot.urdf --count 10 --corrections off --tolerance 1deg,10mm --robot-error 0.3mm,0.1mm
-        identify robot.urdf joints.csv --kind point --sigma-position 0.03mm
-        watch robot.urdf points.csv --once
+        plan robot.urdf --rows joints.csv --kind point --sigma-position 0.03mm
+        watch robot.urdf points.csv --batch
         @change half points.csv half.csv
         @change outliers points.csv wrong.csv
-        watch robot.urdf half.csv --once --json --candidates points.csv
-        watch robot.urdf wrong.csv --once --robot-error 0.05mm
-        watch robot.urdf points.csv --until 0.4mm
-        watch robot.urdf absent.csv --once
-        plan robot.urdf --for drift
+        watch robot.urdf half.csv --batch --json --candidates points.csv
+        watch robot.urdf wrong.csv --batch --robot-error 0.05mm
+        watch robot.urdf points.csv --target-error 0.4mm
+        watch robot.urdf absent.csv --batch
+        plan robot.urdf --purpose drift
         plan robot.urdf --count 0
     """,
     "track": """
         @take examples/elbow/robot.urdf
         simulate robot.urdf --kind point --count 60 --seed 3 --out cell
-        simulate robot.urdf --kind point --count 60 --seed 3 --frame base --out fixed
+        simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out fixed
         calibrate {cell|fixed}/nominal.urdf {}/measurements.csv --out {}/results --quiet
-        calibrate fixed/nominal.urdf fixed/measurements.csv --frame base --out fixed/based
+        calibrate fixed/nominal.urdf fixed/measurements.csv --device-frame base --out fixed/based
         track cell/results/calibration.json --plan 8 --repeatability 0.05mm --out witness.csv
         plan cell/nominal.urdf --count 20 --out new.csv
-        plan cell/results/calibration.json --for drift --count 6 --candidates new.csv --device known --repeatability 0.05mm --out first.csv
+        plan cell/results/calibration.json --purpose drift --count 6 --candidates new.csv --device known --repeatability 0.05mm --out first.csv
         track cell/results/calibration.json cell/measurements.csv --repeatability 0.05mm
         @change {hit|turned|moved} cell/measurements.csv {}.csv
         @change few cell/measurements.csv few.csv
@@ -419,11 +419,11 @@ GROUPS = {
         track cell/results/calibration.json few.csv --history none
         track cell/results/calibration.json hit.csv --repeatability 0.05mm --recalibrate joint4 --out by-model.json
         track cell/results/calibration.json hit-few.csv --reference few.csv --history none
-        track cell/results/calibration.json hit.csv --repeatability 0.05mm --device known --tool anew --history visits.jsonl
+        track cell/results/calibration.json hit.csv --repeatability 0.05mm --device known --tool refit --history visits.jsonl
         track fixed/based/calibration.json fixed/measurements.csv
-        convert {cell|fixed}/actual.urdf --offset joint4=0.3deg --out {}/hit.urdf
+        export {cell|fixed}/actual.urdf --offset joint4=0.3deg --out {}/hit.urdf
         simulate cell/hit.urdf --errors 0deg,0mm --kind point --count 60 --seed 3 --out cell/visit
-        simulate fixed/hit.urdf --errors 0deg,0mm --kind point --count 60 --seed 3 --frame base --out fixed/visit
+        simulate fixed/hit.urdf --errors 0deg,0mm --kind point --count 60 --seed 3 --device-frame base --out fixed/visit
         track cell/results/calibration.json cell/visit/measurements.csv --repeatability 0.05mm --recalibrate joint4 --out recalibrated.json
         track fixed/based/calibration.json fixed/visit/measurements.csv --repeatability 0.05mm --history visits.jsonl --json
         track cell/results/calibration.json hit.csv --recalibrate joint2.axis --out no.json
@@ -445,7 +445,7 @@ GROUPS = {
         @copy made/measurements.csv inbox/SN0041/2026-04-02.csv
         fleet station.toml --shard {1|2}/2
         fleet report station.toml --force
-        fleet station.toml --again
+        fleet station.toml --rerun
         fleet absent.toml
         fleet line.toml
     """,
@@ -458,16 +458,16 @@ GROUPS = {
         simulate {kuka|ur|fanuc|abb}.toml --errors 0.03deg,0.3mm --count 40 --out s-{}
         calibrate {kuka|ur|fanuc|abb}.toml s-{}/measurements.csv --corrections off --report none --out {}
         compensate kuka/calibration.json part.src --check --out out.src
-        compensate kuka/calibration.json part.dat --tool 1=10,-20,150,10,20,30 --frame 7=400,100,50,90,0,0 --json --out out.dat
+        compensate kuka/calibration.json part.dat --tool-data 1=10,-20,150,10,20,30 --work-object 7=400,100,50,90,0,0 --json --out out.dat
         compensate kuka/calibration.json part.dat --dry-run
         compensate kuka/calibration.json krl.txt --language krl --nearest
         compensate ur/calibration.json part.script --check --out out.script
-        compensate ur/calibration.json bare.script --tool 0,0,0.1,0,0,0
-        compensate ur/calibration.json bare.script --tool 0,0,0.1,0,0,0 --start 0.1745,-1.2217,1.3963,-1.7453,-1.3963,0.3491
-        compensate ur/calibration.json part.script --base 0,0,0,0,0,3.14159 --flange 0,0,-0.05,0,0,0.5 --most-change 5deg,2mm
+        compensate ur/calibration.json bare.script --tool-data 0,0,0.1,0,0,0
+        compensate ur/calibration.json bare.script --tool-data 0,0,0.1,0,0,0 --start 0.1745,-1.2217,1.3963,-1.7453,-1.3963,0.3491
+        compensate ur/calibration.json part.script --controller-base 0,0,0,0,0,3.14159 --controller-flange 0,0,-0.05,0,0,0.5 --max-correction 5deg,2mm
         compensate ur/calibration.json urscript.txt --language urscript --json
-        compensate fanuc/calibration.json {01_simple|02_joints|03_frames_and_tools|05_arcs|07_registers|09_external_axes|14_line_ends|20_branches}.ls --tool 1=12.5,-3,145.25,0,0,0 --tool 2=80,0,110,0,-45,0 --frame 1=350,-220,-180,0,0,90 --check
-        compensate fanuc/calibration.json 01_simple.ls --third-axis {level|arm} --tool 1=0,0,100,0,0,0 --json --out {}.ls
+        compensate fanuc/calibration.json {01_simple|02_joints|03_frames_and_tools|05_arcs|07_registers|09_external_axes|14_line_ends|20_branches}.ls --tool-data 1=12.5,-3,145.25,0,0,0 --tool-data 2=80,0,110,0,-45,0 --work-object 1=350,-220,-180,0,0,90 --check
+        compensate fanuc/calibration.json 01_simple.ls --third-axis {level|arm} --tool-data 1=0,0,100,0,0,0 --json --out {}.ls
         compensate abb/calibration.json {01_simple.mod|02_in_place.prg|03_work_objects.mod|06_arrays.mod|10_external_axes.mod|12_displaced.mod|17_flow.mod|20_modules.sys} --check
         compensate abb/calibration.json part.src
         compensate abb.toml 01_simple.mod
@@ -493,6 +493,9 @@ GROUPS = {
         @cut robot.toml cut.toml 500
         calibrate robot.urdf points.csv --quiet
         nonsense
+        {apply|board|certificate|convert|identify} robot.urdf    # old words
+        plan robot.urdf --workspace limits
+        track robot.urdf points.csv --tool refit
         calibrat robot.urdf points.csv
         calibrate robot.urdf points.csv --no-such-option
         calibrate robot.urdf points.csv --held-out {2|some|-1} --out no
@@ -501,7 +504,7 @@ GROUPS = {
         calibrate robot.urdf points.csv --{fix|free} joint9 --out no
         calibrate robot.urdf points.csv --tip-link nowhere --out no
         calibrate robot.urdf points.csv --gravity 0,0,0 --out no
-        calibrate robot.urdf points.csv --fit-where stage=1 --out no
+        calibrate robot.urdf points.csv --train-where stage=1 --out no
         calibrate robot.urdf points.csv --record colour=red --out no
         calibrate robot.urdf points.csv --join sideways --out no
         calibrate robot.urdf points.csv --threads 0 --out no
@@ -510,7 +513,7 @@ GROUPS = {
         calibrate robot.urdf points.csv points.csv --out no
         calibrate {absent.urdf|cut.urdf|cut.toml|points.csv|.} points.csv --out no
         calibrate robot.urdf {absent.csv|robot.urdf|README.md|.} --out no
-        {simulate|convert|export|plan|identify|check|predict|init} absent.urdf
+        {simulate|export|plan|check|predict|init} absent.urdf
         simulate robot.urdf --kind smell --out no
         simulate robot.urdf --count 0 --out no
         simulate robot.urdf --errors 1mm --out no
@@ -520,13 +523,13 @@ GROUPS = {
         track robot.urdf points.csv
         compare robot.urdf robot.toml
         compensate robot.urdf points.csv
-        convert robot.urdf --offset joint9=1deg
-        convert robot.urdf --out robot.obj
+        export robot.urdf --offset joint9=1deg
+        export robot.urdf --out robot.obj
         report robot.urdf
-        certificate poecal-out/calibration.json --valid-until tomorrow
-        certificate poecal-out/calibration.json --logo points.csv
+        report poecal-out/calibration.json --certificate --record valid_until=tomorrow
+        report poecal-out/calibration.json --certificate --logo points.csv
         hand-eye points.csv --camera above
-        board sudoku:9x9:20mm
+        detect --print sudoku:9x9:20mm
         completions tcsh
         man nonsense
         fleet

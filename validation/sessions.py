@@ -71,7 +71,7 @@ class Runs:
 
     def judged(self, rows):
         write(self.folder / "judge.csv", rows)
-        words = ["--refit-frame", "--refit-tool", "--json", "--quiet", "--history", "none"]
+        words = ["--refit", "device,tool", "--json", "--quiet", "--history", "none"]
         found = json.loads(self.run("validate", self.folder / "out/calibration.json", self.folder / "judge.csv", *words).stdout)
         return found["verdict"]["position_mm"]["rms"]
 

@@ -75,7 +75,7 @@ def printed(command: list, problem: Problem) -> dict:
 def poecal_peer(poecal: Path) -> Peer:
     def calibrate(problem: Problem, folder: Path) -> dict:
         out = folder / "calibrated"
-        known = ["--frame", "base", "--sigma-position", SIGMA_POSITION, "--sigma-rotation", SIGMA_ROTATION]
+        known = ["--device-frame", "base", "--sigma-position", SIGMA_POSITION, "--sigma-rotation", SIGMA_ROTATION]
         plain = ["--held-out", "0", "--robust", "off", "--threads", "1", "--quiet", "--force", "--out", out, "--timings"]
         command = [poecal, "calibrate", problem.model, folder / "measurements.csv", *known, *plain]
         _, err, rss_mb = run(command)

@@ -61,7 +61,7 @@ def make(problem: Problem, poecal: Path, folder: Path) -> Path:
 
 
 def simulate(problem: Problem, poecal: Path, out: Path, noise: str) -> None:
-    command = [poecal, "simulate", problem.model, "--kind", problem.kind, "--count", problem.m, "--frame", "base"]
+    command = [poecal, "simulate", problem.model, "--kind", problem.kind, "--count", problem.m, "--device-frame", "base"]
     command += ["--errors", ERRORS, "--noise", noise, "--held-out-count", HELD_OUT_COUNT, "--out", out, "--quiet"]
     subprocess.run([str(word) for word in command], check=True)
 

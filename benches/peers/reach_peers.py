@@ -153,8 +153,8 @@ def poecal_of(arm: Arm, nearest: bool) -> Solve | None:
     screws = [[*np.cross(p, w), *w] for w, p in zip(arm.directions, arm.points, strict=True)]
     robot = poecal.Robot.from_screws(screws, arm.home)
     none = {name: 0.0 for name in ("error_position_mm", "error_rotation_deg", "noise_position_mm", "noise_rotation_deg")}
-    made = poecal.simulate(robot, count=60, frame="base", **none)
-    calibration = poecal.calibrate(robot, made.measurements, corrections="off", frame="base", fix=["joints"])
+    made = poecal.simulate(robot, count=60, device_frame="base", **none)
+    calibration = poecal.calibrate(robot, made.measurements, corrections="off", device_frame="base", fix=["joints"])
 
     def run(targets: np.ndarray, near: np.ndarray, times: list) -> Iterable[np.ndarray]:
         start = {"near": near} if nearest else {}

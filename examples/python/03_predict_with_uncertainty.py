@@ -40,7 +40,7 @@ truth = made.held_out
 assert truth is not None
 calibration = poecal.calibrate(nominal, made.measurements)
 
-found = calibration.predict(truth.joints, with_uncertainty=True, frame="device")
+found = calibration.predict(truth.joints, with_uncertainty=True, output_frame="device")
 errors_mm = 1e3 * np.linalg.norm(found.poses[:, :3, 3] - truth.positions, axis=1)
 expected_mm = 1e3 * found.sigma_position_m
 print(f"expected     {rms(expected_mm):.4f} mm (RMS) in {len(found)} configurations")

@@ -25,9 +25,9 @@ ELBOW = Path(__file__).parents[1] / "elbow"
 
 # A session on a robot whose axes are off, of which the nominal description knows nothing.
 nominal = poecal.Robot.read(ELBOW / "robot.urdf")
-session = poecal.simulate(nominal, kind="pose", count=60, error_rotation_deg=0.1, error_position_mm=0.5, seed=3, frame="base")
+session = poecal.simulate(nominal, kind="pose", count=60, error_rotation_deg=0.1, error_position_mm=0.5, seed=3, device_frame="base")
 # What is measured there is the tip of the model itself, which is off as well.
-calibration = poecal.calibrate(nominal, session.measurements, frame="base", move_tip=True)
+calibration = poecal.calibrate(nominal, session.measurements, device_frame="base", move_tip=True)
 
 
 def source_of(urdf: str) -> str:

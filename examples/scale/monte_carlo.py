@@ -68,7 +68,7 @@ def fits(plan: dict[str, Any], first: int) -> engines.Row:
     warnings.simplefilter("ignore", poecal.PoecalWarning)
     nominal = poecal.Robot.from_text(plan["model"])
     exact = poecal.simulate(
-        nominal, count=plan["count"], seed=plan["seed"], noise_position_mm=0, noise_rotation_deg=0, frame="base", held_out_count=OTHERS
+        nominal, count=plan["count"], seed=plan["seed"], noise_position_mm=0, noise_rotation_deg=0, device_frame="base", held_out_count=OTHERS
     )
     others = exact.held_out
     assert others is not None
@@ -80,7 +80,7 @@ def fits(plan: dict[str, Any], first: int) -> engines.Row:
             calibration = poecal.calibrate(
                 nominal,
                 poecal.Measurements.from_arrays(nominal, joints=joints, poses=measured),
-                frame="base",
+                device_frame="base",
                 sigma_position_mm=plan["noise_mm"],
                 sigma_rotation_deg=plan["noise_deg"],
                 corrections="off",

@@ -9,6 +9,8 @@ import subprocess
 import sys
 
 WIDTH = "80"
+# Commands that `poecal --help` does not list.
+NOT_LISTED = ["reproduce", "schema", "completions", "man"]
 
 
 def page(program):
@@ -17,7 +19,7 @@ def page(program):
         "# Commands\n\nWhat `poecal --help` and `poecal COMMAND --help` say, written by `scripts/docs/commands.py`. `poecal COMMAND -h` is shorter.\n",
         block(overview),
     ]
-    parts += [f"## poecal {name}\n\n{block(told(program, name))}" for name in names(overview)]
+    parts += [f"## poecal {name}\n\n{block(told(program, name))}" for name in [*names(overview), *NOT_LISTED]]
     return "\n".join(parts)
 
 

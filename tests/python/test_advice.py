@@ -50,16 +50,16 @@ FOLLOWED = {
     "check the convention of the angles; a mapping (--columns) with": "crates/poecal-cli/tests/it/diagnosis.rs::angles_of_a_controller_that_are_called_roll_pitch_yaw_are_named_with_the_mapping_that_reads_them",
     "take `--format hayati`": "crates/poecal-results/tests/it/export.rs",
     "write `third_axis = ": HERE + "test_options_of_programs",
-    "state it by --factor": HERE + "test_a_factor",
+    "state it by --factors": HERE + "test_a_factor",
     "expand the file with `xacro": HERE + "test_remains_of_xacro",
     "expand the file first with `xacro": "needs xacro itself",
     "write `lower=": HERE + "test_degrees_in_a_urdf",
     "write `rpy=": HERE + "test_degrees_in_a_urdf",
     "is not in the file: state it by {flag}": HERE + "test_options_of_programs",
     "the tool is not known: state it by --tool": HERE + "test_options_of_programs",
-    "the frame is not known: state it by --frame": HERE + "test_options_of_programs",
+    "the frame is not known: state it by --work-object": HERE + "test_options_of_programs",
     "is not in this file: state it by {flag}": HERE + "test_options_of_programs",
-    "its frame is stated in no line of this file: state it by --frame NAME=": "crates/poecal-compensate/tests/it/programs/urscript.rs",
+    "its frame is stated in no line of this file: state it by --work-object NAME=": "crates/poecal-compensate/tests/it/programs/urscript.rs",
     "state where the robot starts by --start": HERE + "test_options_of_programs",
     "do not show from where the third axis counts": "crates/poecal-cli/tests/it/counted.rs::a_third_axis_is_stated_where_rows_do_not_show_it",
     "which are not all here: took these": "crates/poecal-cli/tests/it/counted.rs::tables_are_read_and_written_as_the_controller_counts",
@@ -394,7 +394,7 @@ def test_a_factor(here):
     run(here, "calibrate", "robot.urdf", "points.csv", "--factors", "payload", "--corrections", "payload=1", "--out", "out", "--force")
     (here / "job.csv").write_text("joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n10,20,30,40,50,60\n")
     said = run(here, "compensate", "out/calibration.json", "job.csv", "--out", "a.csv")
-    option, value = re.search(r"state it by (--factor) (payload=)VALUE", said).groups()
+    option, value = re.search(r"state it by (--factors) (payload=)VALUE", said).groups()
     assert "state it by" not in run(here, "compensate", "out/calibration.json", "job.csv", "--out", "b.csv", option, f"{value}1.5")
 
 
@@ -464,28 +464,28 @@ def test_options_of_programs(here):
 
     def listed(name: str, text: str, *words: str) -> str:
         (here / name).write_text(text)
-        return run(here, "compensate", "out/calibration.json", name, "--most-change", "20deg", "--dry-run", *words, code=1)
+        return run(here, "compensate", "out/calibration.json", name, "--max-correction", "20deg", "--dry-run", *words, code=1)
 
     def whole(name: str, *words: str) -> None:
-        assert "corrected" in run(here, "compensate", "out/calibration.json", name, "--most-change", "20deg", "--dry-run", *words)
+        assert "corrected" in run(here, "compensate", "out/calibration.json", name, "--max-correction", "20deg", "--dry-run", *words)
 
     # What one sentence asks for is added, until nothing is asked for.
     script = "movel(p[0.6, 0.1, 0.7, 0, 1.2, 0])\n"
-    assert "state where the robot starts by --start" in listed("a.script", script, "--tool", "0,0,0,0,0,0")
+    assert "state where the robot starts by --start" in listed("a.script", script, "--tool-data", "0,0,0,0,0,0")
     said = listed("b.script", "movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])\nmovel(p[0.6, 0.1, 0.7, 0, 1.2, 0])\n")
-    assert "the tool is not known: state it by --tool" in said
-    whole("a.script", "--tool", "0,0,0,0,0,0", "--start", "0.1,0.4,-0.3,0.2,0.8,0.1")
+    assert "the tool is not known: state it by --tool-data" in said
+    whole("a.script", "--tool-data", "0,0,0,0,0,0", "--start", "0.1,0.4,-0.3,0.2,0.8,0.1")
     places = "/PROG P\n/MN\n1:J P[1] 100% FINE ;\n/POS\nP[1]{\n GP1:\n UF : 2, UT : 3, CONFIG : 'N U T, 0, 0, 0',\n X = 700 mm, Y = 50 mm, Z = 700 mm,\n W = 0 deg, P = 60 deg, R = 5 deg\n};\n/END\n"
     said = listed("c.ls", places)
-    for option in re.findall(r"state it by (--\w+ \d)=X,Y,Z,W,P,R", said):
-        assert option in ("--tool 3", "--frame 2")
-    said = listed("c.ls", places, "--tool", "3=0,0,0,0,0,0")
-    assert "--frame 2=X,Y,Z,W,P,R" in said and "--tool 3" not in said
-    assert "state it by" not in listed("c.ls", places, "--tool", "3=0,0,0,0,0,0", "--frame", "2=0,0,0,0,0,0")
+    for option in re.findall(r"state it by (--[\w-]+ \d)=X,Y,Z,W,P,R", said):
+        assert option in ("--tool-data 3", "--work-object 2")
+    said = listed("c.ls", places, "--tool-data", "3=0,0,0,0,0,0")
+    assert "--work-object 2=X,Y,Z,W,P,R" in said and "--tool-data 3" not in said
+    assert "state it by" not in listed("c.ls", places, "--tool-data", "3=0,0,0,0,0,0", "--work-object", "2=0,0,0,0,0,0")
     module = "MODULE M\nCONST robtarget p:=[[700,50,700],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\nMoveL p,v100,fine,grip\\WObj:=table;\nENDPROC\nENDMODULE\n"
     said = listed("d.mod", module)
-    assert "state it by --tool" in said or "state it by --frame" in said
-    assert "state it by --tool" not in listed("d.mod", module, "--tool", "grip=0,0,0,1,0,0,0", "--frame", "table=0,0,0,1,0,0,0")
+    assert "state it by --tool-data" in said or "state it by --work-object" in said
+    assert "state it by --tool-data" not in listed("d.mod", module, "--tool-data", "grip=0,0,0,1,0,0,0", "--work-object", "table=0,0,0,1,0,0,0")
     (here / "job.csv").write_text("joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg]\n10,20,30,40,50,60\n")
     said = run(here, "compensate", "out/calibration.json", "job.csv", "--third-axis", "arm", code=2)
     (here / "map.toml").write_text(re.search(r"write `([^`]+)` into a mapping", said)[1] + "\n")

@@ -41,7 +41,7 @@ SHOWN = {
     "It passes only if the rows show that": "crates/poecal-cli/tests/it/acceptance.rs::limits_are_kept_exceeded_or_neither",
     "It does not measure": ELSEWHERE,
     "only the results folder is written to": "tests/python/test_install.py",
-    "it does not know where your nest will be": HERE + "test_identify_judges_the_tip_of_the_model",
+    "it does not know where your nest will be": HERE + "test_a_list_is_judged_by_the_tip_of_the_model",
     "It does not talk to the tracker or drive the robot": HERE + "test_nothing_can_talk_to_a_network",
     "it does not read the tracker's own project files": HERE + "test_no_pictures_are_read",
     "only their order can be mistaken": "crates/poecal-calibrate/tests/it/forensics.rs",
@@ -84,9 +84,12 @@ def test_every_sentence_that_denies_something_of_poecal_is_shown_to_be_true():
     print(f"{len(found)} sentences, {sum(it == ELSEWHERE for it in SHOWN.values())} of something else")
 
 
-def test_identify_judges_the_tip_of_the_model():
+def test_a_list_is_judged_by_the_tip_of_the_model():
     # The option with which `plan` knows where a nest will be.
-    assert "--target-offset" in poecal("plan", "--help") and "--target-offset" not in poecal("identify", "--help")
+    model = ROOT / "examples/elbow/robot.urdf"
+    words = [program(), "plan", model, "--rows", model.with_name("points.csv"), "--target-offset", "60,0,30mm"]
+    run = subprocess.run(words, capture_output=True, text=True)
+    assert run.returncode == 2 and "cannot be used with" in run.stderr, run.stderr
 
 
 def test_tables_of_joints_are_read_for_their_joints(tmp_path):

@@ -101,7 +101,7 @@ def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
     write_table(table, {f"joint{i + 1}": joints[:, i] for i in range(6)})
     assert (poecal.read_joints(table, calibration.robot) == joints).all()
     for frame in ["base", "device"]:
-        assert (calibration.predict(joints, frame=frame)[:, :3, 3] == predict(path, table, "--frame", frame)[:, :3]).all()
+        assert (calibration.predict(joints, output_frame=frame)[:, :3, 3] == predict(path, table, "--output-frame", frame)[:, :3]).all()
     rows = program("predict", path, table, "--with-uncertainty").splitlines()[1:]
     columns = list(zip(*(row.split(",") for row in rows), strict=True))
     found = calibration.predict(joints, with_uncertainty=True)
@@ -110,16 +110,16 @@ def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
     assert [cell == "true" for cell in columns[10]] == found.inside_sampled_range.tolist()
 
     measured = poecal.Measurements.from_csv(POINTS, calibration.robot)
-    for flags, arguments in [([], {}), (["--refit-frame", "--refit-tool"], {"refit_frame": True, "refit_tool": True})]:
+    for flags, arguments in [([], {}), (["--refit", "device,tool"], {"refit": ["device", "tool"]})]:
         judged = json.loads(program("validate", path, POINTS, "--json", *flags))
         # Which command it was, the package does not know.
         del judged["inputs"]["command"]
         assert calibration.validate(measured, **arguments).to_dict() == judged
-    checked = ["--refit-frame", "--record", "operator=Mia"]
+    checked = ["--refit", "device", "--record", "operator=Mia"]
     program("validate", path, POINTS, *checked, "--out", tmp_path / "program", "--history", tmp_path / "program.jsonl")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", poecal.PoecalWarning)
-        calibration.validate(measured, refit_frame=True, record={"operator": "Mia"}, out=tmp_path / "package", history=tmp_path / "package.jsonl")
+        calibration.validate(measured, refit="device", record={"operator": "Mia"}, out=tmp_path / "package", history=tmp_path / "package.jsonl")
     assert (tmp_path / "package/errors.csv").read_bytes() == (tmp_path / "program/errors.csv").read_bytes()
     lines = [json.loads((tmp_path / f"{name}.jsonl").read_text()) for name in ["program", "package"]]
     del lines[0]["inputs"]["command"]
@@ -127,7 +127,7 @@ def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
     with pytest.raises(poecal.FileError, match="output folder exists"):
         calibration.validate(measured, out=tmp_path / "package")
 
-    foreseen = json.loads(program("identify", path, table, "--kind", "point", "--json"))
+    foreseen = json.loads(program("plan", path, "--rows", table, "--kind", "point", "--json"))
     found = calibration.identify(joints, kind="point").to_dict()
     for theirs in [foreseen, found]:
         del theirs["files"], theirs["model"]
@@ -142,17 +142,17 @@ def test_checks_offsets_and_forms_are_the_same(tmp_path):
     program("calibrate", ELBOW, POINTS, "--out", tmp_path / "out")
     actual = poecal.Robot.read(tmp_path / "out/calibration.json")
     assert poecal.offsets(robot, actual).to_json() == program("offsets", ELBOW, tmp_path / "out/calibration.json", "--json")
-    kept = ["--base", "kept", "--tip", "free", "--json"]
-    assert poecal.offsets(robot, actual, base="kept", tip="free").to_json() == program("offsets", ELBOW, actual.path, *kept)
+    kept = ["--fix", "base", "--free", "tip", "--json"]
+    assert poecal.offsets(robot, actual, fix=["base"], free=["tip"]).to_json() == program("offsets", ELBOW, actual.path, *kept)
     assert poecal.schema() == program("schema")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", poecal.PoecalWarning)
         for path in sorted(URDFS.glob("*.urdf")):
             robot = poecal.Robot.from_urdf(path)
             for form in ["urdf", "toml"]:
-                assert robot.to_text(form) == program("convert", path, "--to", form)
+                assert robot.to_text(form) == program("export", path, "--format", form)
         offset = {"joint2": np.radians(0.5)}
-        assert poecal.convert(actual, to="toml", offset=offset) == program("convert", actual.path, "--to", "toml", "--offset", "joint2=0.5deg")
+        assert poecal.export(actual, format="toml", offset=offset) == program("export", actual.path, "--format", "toml", "--offset", "joint2=0.5deg")
 
 
 def test_simulations_are_the_same(tmp_path):
@@ -171,7 +171,7 @@ def test_simulations_are_the_same(tmp_path):
 
 def test_the_wheel_installs_the_program(tmp_path):
     installed = Path(sys.executable).with_name("poecal")
-    for arguments in [["check", ELBOW, POINTS, "--json"], ["predict", "nowhere"], ["--help"], ["calibrate"], ["convert", ELBOW, "--to", "toml"]]:
+    for arguments in [["check", ELBOW, POINTS, "--json"], ["predict", "nowhere"], ["--help"], ["calibrate"], ["export", ELBOW, "--format", "toml"]]:
         ours = subprocess.run([installed, *arguments], capture_output=True, text=True, env=os.environ | {"COLUMNS": "100"})
         theirs = subprocess.run([os.environ["POECAL_PROGRAM"], *arguments], capture_output=True, text=True, env=os.environ | {"COLUMNS": "100"})
         assert (ours.returncode, ours.stdout, ours.stderr) == (theirs.returncode, theirs.stdout, theirs.stderr)

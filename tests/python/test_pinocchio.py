@@ -69,7 +69,7 @@ class PinocchioChain:
 
 def tip_of(path) -> str:
     """The tip that the program itself finds."""
-    return poecal("convert", path, "--to", "toml", "--quiet").split('tip_link = "')[1].split('"')[0]
+    return poecal("export", path, "--format", "toml", "--quiet").split('tip_link = "')[1].split('"')[0]
 
 
 @pytest.mark.parametrize("path", sorted(URDFS.glob("*.urdf")), ids=lambda path: path.stem)

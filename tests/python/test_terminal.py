@@ -86,15 +86,15 @@ COMMANDS = [
     "calibrate robot.urdf swapped.csv --force",
     "validate result/calibration.json lesson/held_out.csv",
     "validate result/calibration.json knocked.csv",
-    "identify robot.urdf lesson/measurements.csv",
-    "identify robot.urdf still.csv --kind point",
+    "plan robot.urdf --rows lesson/measurements.csv --kind pose",
+    "plan robot.urdf --rows still.csv --kind point",
     "check robot.urdf lesson/measurements.csv",
     "check robot.urdf swapped.csv",
     "offsets robot.urdf result/calibration.json",
     "report result/calibration.json",
     "simulate robot.urdf --out lesson --held-out-count 40 --kind point --count 60 --force",
     "reproduce breakdown --trials 1 --out breakdown --force",
-    "init robot.urdf --measure smells",
+    "init robot.urdf --kind smells",
     "calibrate robot.urdf nothing_of_this_name.csv --out elsewhere",
     "predict robot.urdf still.csv --target nothing_of_this_name",
     "calibrate robot.urdf knocked.csv --force --verbose",
@@ -120,7 +120,7 @@ def test_a_narrow_terminal_is_survived(session, command):
     assert all(len(line) <= 60 or re.search(r"\S {2,}\S", line[14:]) for line in sentences), sentences
 
 
-@pytest.mark.parametrize("command", COMMANDS[:11] + ["init robot.urdf --measure smells", "calibrate --help"])
+@pytest.mark.parametrize("command", COMMANDS[:11] + ["init robot.urdf --kind smells", "calibrate --help"])
 def test_colours_are_for_terminals_only(session, command):
     words = command.split()
     assert COLOUR.search(on_terminal(session, *words)[0])
@@ -158,7 +158,7 @@ def test_progress_is_drawn_on_terminals_that_can_draw(session):
 
 
 def test_data_have_no_colours(session):
-    for command in ["predict robot.urdf still.csv", "check robot.urdf --json", "convert robot.urdf --to toml --quiet", "schema"]:
+    for command in ["predict robot.urdf still.csv", "check robot.urdf --json", "export robot.urdf --format toml --quiet", "schema"]:
         shown, code = on_terminal(session, *command.split())
         assert code == 0 and not COLOUR.search(shown), command
     assert (ROOT / "docs/calibration.schema.json").read_text() == on_terminal(session, "schema")[0].replace("\r\n", "\n")

@@ -37,7 +37,7 @@ rows = poecal.Measurements.from_csv(["a.csv", "b.csv"], robot)
 calibration = poecal.calibrate(robot, rows, seed=3, tolerance_deg_mm=None)
 joints = np.zeros((3, 6))
 poses: NDArray[np.float64] = calibration.predict(joints)
-same: NDArray[np.float64] = calibration.predict(joints, with_uncertainty=False, frame="device")
+same: NDArray[np.float64] = calibration.predict(joints, with_uncertainty=False, output_frame="device")
 found: poecal.Prediction = calibration.predict(joints, with_uncertainty=True)
 flag = len(rows) > 3
 either: NDArray[np.float64] | poecal.Prediction = calibration.predict(joints, with_uncertainty=flag)
@@ -58,11 +58,11 @@ degrees: dict[str, float] = offsets.offsets_deg
 judged: poecal.Validation = calibration.validate(rows)
 error: float | None = judged.position_rms_mm
 whole: object = judged["verdict"]
-planned: poecal.Plan = poecal.plan(robot, count=8, floor_mm="-70cm", margin_deg_mm=(5, "1cm"))
+planned: poecal.Plan = poecal.plan(robot, count=8, floor_height_mm="-70cm", margin_deg_mm=(5, "1cm"))
 visit: poecal.VisitPlan = poecal.plan(calibration, purpose="drift", device="known", repeatability_mm=0.03)
 found_again: list[poecal.Findings] = [offsets, judged, visit, poecal.check(robot), poecal.track(calibration, rows)]
 in_texts = poecal.calibrate("robot.urdf", "points.csv", sigma_position_mm="0.05mm", tolerance_deg_mm="0.5deg,5mm", corrections={"sag": "0.05deg"})
-summary: poecal.Compensation = calibration.compensate(joints, summary=True, most_turn_deg=2)[1]
+summary: poecal.Compensation = calibration.compensate(joints, summary=True, max_turn_deg=2)[1]
 """
 
 

@@ -14,11 +14,11 @@ USAGES = {
     "no such model": (["calibrate", "robt.urdf", POINTS], "robt.urdf: found no such file, expected a robot model"),
     "no such measurements": (["calibrate", MODEL, "pionts.csv"], "pionts.csv: found no such file, expected a measurement file"),
     "a PDF as the model": (["calibrate", "robot.pdf", POINTS], "robot.pdf: found a PDF, expected a robot model"),
-    "a URDF as the calibration": (["certificate", MODEL], "robot.urdf: found a URDF, expected a calibration"),
-    "no form": (["export", "calibration.json"], "found no --format, expected one of urdf, toml"),
+    "a URDF as the calibration": (["report", MODEL, "--certificate"], "robot.urdf: found a URDF, expected a calibration"),
+    "no form": (["export", "calibration.json"], "expected --out NAME.urdf or NAME.toml, or --format with one of urdf, toml"),
     "the form of a controller": (["export", "calibration.json", "--format", "kuka"], "whose maker publishes no format for this (KUKA"),
     "no such mapping": (["calibrate", MODEL, POINTS, "--columns", "map.toml"], "map.toml: found no such file, expected a column mapping"),
-    "a word of an option misspelt": (["calibrate", MODEL, POINTS, "--frame", "bose"], "bose"),
+    "a word of an option misspelt": (["calibrate", MODEL, POINTS, "--device-frame", "bose"], "bose"),
     "no such link": (["calibrate", MODEL, POINTS, "--tip-link", "flange"], "flange"),
 }
 

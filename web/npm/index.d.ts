@@ -1,5 +1,5 @@
 // Types of the package. Those of calibration.json and of the options are in types.d.ts.
-import type { CalibrateOptions, CalibrationFile, CheckOptions, ExportOptions, IdentifyOptions, PredictOptions, SimulateOptions, ValidateOptions, Verdict } from "./types.js";
+import type { CalibrateOptions, CalibrationFile, CheckOptions, ExportOptions, PlanOptions, PredictOptions, SimulateOptions, ValidateOptions, Verdict } from "./types.js";
 
 export * from "./types.js";
 
@@ -108,7 +108,7 @@ export interface Poecal {
    * @param more `input` is what the path `-` reads.
    * @throws {PoecalError} If the run does not come to an end. A refusal is an exit code.
    * @example
-   * const { out } = poecal.run(["convert", "robot.urdf", "--to", "toml"], { "robot.urdf": text });
+   * const { out } = poecal.run(["export", "robot.urdf", "--format", "toml"], { "robot.urdf": text });
    */
   run(words: readonly string[], files?: Files, more?: { input?: Content }): Answer;
 
@@ -151,13 +151,13 @@ export interface Poecal {
   check(call: { model: Input; measurements?: Input; mapping?: Input; options?: CheckOptions }): { code: number; table: string; warnings: string[] };
 
   /**
-   * What planned configurations would determine, before anything is measured: `poecal identify --json`.
+   * What planned configurations would determine, before anything is measured: `poecal plan --rows --json`.
    *
    * @throws {PoecalError} If the input is refused.
    * @example
    * const planned = poecal.identify({ model, joints, options: { kind: "point" } });
    */
-  identify(call: { model: Input; joints: Input; options?: IdentifyOptions }): Record<string, unknown>;
+  identify(call: { model: Input; joints: Input; options?: PlanOptions }): Record<string, unknown>;
 
   /**
    * A calibrated robot in the form of a controller, a driver or a simulator: `poecal export`.

@@ -137,7 +137,8 @@ class Api extends Poecal {
   identify({ model, joints, options }) {
     const robot = named(model, "model");
     const readings = named(joints, "joints.csv");
-    return JSON.parse(this.#called("identify", [...Object.keys(robot), ...Object.keys(readings)], together(robot, readings), options, undefined, ["--json"]).out);
+    const rows = Object.keys(readings).map((path) => `--rows=${path}`);
+    return JSON.parse(this.#called("plan", Object.keys(robot), together(robot, readings), options, undefined, [...rows, "--json"]).out);
   }
 
   exportAs(format, { model, onto, motors, options }) {

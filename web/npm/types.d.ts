@@ -25,7 +25,7 @@ export interface CalibrateOptions {
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
-  frames?: "common" | "per-file";
+  deviceFrames?: "common" | "per-file";
   /**
    * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
    * stood still and lists by their order, if the nominal model fits no other match as well]
@@ -64,9 +64,9 @@ export interface CalibrateOptions {
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
-  fitWhere?: Value | readonly Value[];
+  trainWhere?: Value | readonly Value[];
   /** The measuring device's frame */
-  frame?: "unknown" | "base";
+  deviceFrame?: "unknown" | "base";
   /** Standard deviation of each measured position component, like 0.05mm [default: estimated from the data] */
   sigmaPosition?: Value | readonly Value[];
   /** Standard deviation of each measured rotation component, like 0.01deg [default: estimated from the data] */
@@ -118,7 +118,7 @@ export interface CalibrateOptions {
    */
   repairLimit?: Value | readonly Value[];
   /**
-   * Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row
+   * Share of the configurations held out at random, unless a column `set`, --train-where or --validate chooses them; 0 fits every row
    * [default: 0.3; 0 if fewer than 12 would be held out, but for pictures, rows in motion and --accept]
    */
   heldOut?: Value | readonly Value[];
@@ -138,12 +138,6 @@ export interface CalibrateOptions {
   accept?: Value | readonly Value[];
   /** Which model must meet them: the corrected one, if there is one (the default), or the calibrated one, which a URDF holds */
   acceptModel?: "corrected" | "calibrated";
-  /** Parameterisation of joint errors; all but the default are for comparison */
-  formulation?: "adjoint" | "screw" | "screw-offsets" | "adjoint-offsets";
-  /** Residual of measured frames; the paper's is for comparison. Points have one residual only */
-  residual?: "tool" | "spatial";
-  /** Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else levenberg-marquardt] */
-  method?: "levenberg-marquardt" | "gauss-newton";
   /** File for the report, or `none` [default: report.html among the results] */
   report?: Value | readonly Value[];
   /**
@@ -164,7 +158,7 @@ export interface ValidateOptions {
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
-  frames?: "common" | "per-file";
+  deviceFrames?: "common" | "per-file";
   /**
    * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
    * stood still and lists by their order, if the nominal model fits no other match as well]
@@ -202,12 +196,11 @@ export interface ValidateOptions {
    * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
-  /** Refit the measuring device's frame to these measurements */
-  refitFrame?: boolean;
-  /** Refit the targets to these measurements */
-  refitTool?: boolean;
-  /** Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said */
-  refit?: "never" | "auto";
+  /**
+   * Refit to these measurements: the frame of the measuring device, the targets on the tool, or both; auto refits the device where the rows
+   * show that it stands elsewhere, which is stated otherwise
+   */
+  refit?: "device" | "tool" | "auto";
   /**
    * End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error (RMS)
    * is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
@@ -246,7 +239,7 @@ export interface PredictOptions {
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /** The frame of the poses */
-  frame?: "base" | "device";
+  outputFrame?: "base" | "device";
   /**
    * Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json); without --target of the
    * first target that was measured
@@ -280,7 +273,7 @@ export interface CheckOptions {
   /** Refuse lost beams (empty or zero positions) instead of skipping them with a warning */
   strict?: boolean;
   /** Which rows share a frame of the measuring device: per-file if it was moved between the files */
-  frames?: "common" | "per-file";
+  deviceFrames?: "common" | "per-file";
   /**
    * How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot
    * stood still and lists by their order, if the nominal model fits no other match as well]
@@ -319,13 +312,13 @@ export interface CheckOptions {
    */
   markers?: Value | readonly Value[];
   /** Fit only rows whose COLUMN has one of these values, and hold out all others */
-  fitWhere?: Value | readonly Value[];
+  trainWhere?: Value | readonly Value[];
   /** The measuring device's frame: `base` looks for mistakes in it too */
-  frame?: "unknown" | "base";
+  deviceFrame?: "unknown" | "base";
 }
 
-/** Options of `poecal identify`, by their long names. */
-export interface IdentifyOptions {
+/** Options of `poecal plan`, by their long names. */
+export interface PlanOptions {
   /** What a file may take, like rows=5000000 or text=1GiB, where that is less than it needs (repeatable; SECURITY.md has the names) */
   limit?: Value | readonly Value[];
   /** Wait so long, like 60s, for another run that writes to the same folder or ledger [default: refuse at once] */
@@ -355,19 +348,109 @@ export interface IdentifyOptions {
    * OpenCV (YAML, XML), or a calibration.json with what it found; may be given again
    */
   markers?: Value | readonly Value[];
-  /** Kind of the measurements of the tip */
+  /**
+   * Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose
+   * repeats show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones [possible
+   * values: drift]
+   */
+  purpose?: Value | readonly Value[];
+  /** Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration] */
+  repeatability?: Value | readonly Value[];
+  /** Whether the tool with its targets will be on the flange as it was [default: same] */
+  tool?: "same" | "refit";
+  /** Rows of an earlier visit whose configurations may be repeated [default: the measurements that the calibration was made of] */
+  reference?: Value | readonly Value[];
+  /** What will be measured of the tip */
   kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
+  /** Number of different configurations to fit [with --purpose drift: to measure at each visit, by default 8] [default: 30] */
+  count?: Value | readonly Value[];
+  /** Number of further rows to judge by, at random over the workspace [default: a third of the configurations] */
+  heldOutCount?: Value | readonly Value[];
+  /** Choose from these configurations alone (a table of joint readings) */
+  candidates?: Value | readonly Value[];
+  /**
+   * Where the robot will work and predictions shall be good: anywhere within its limits, in the configurations of a file, or with the tip
+   * in a box of the base frame, from one corner to the other [default: limits]
+   */
+  workspace?: Value | readonly Value[];
+  /**
+   * Rows that are in the list in any case, or were measured already (a table of joint readings): new ones complete them, and --count counts
+   * both. Rows whose `set` is held_out do not count
+   */
+  keepRows?: Value | readonly Value[];
+  /**
+   * Rows of --keep-rows, counted from 1 through all files, that collided or were not seen: new ones take their places, not within 10
+   * degrees of them, and all other rows stay. The list has all rows then, in their order
+   */
+  replaceRows?: Value | readonly Value[];
+  /** What the list shall be good at */
+  criterion?: "expected" | "D" | "A" | "E" | "G";
+  /** Number of targets of a nest at the tip, all measured in each configuration [default: 1] */
+  targets?: Value | readonly Value[];
+  /**
+   * Where the target is in the tip's frame, of several the first, the others turned about z, like 50,0,30mm [default: the targets of the
+   * model, or the tip]
+   */
+  targetOffset?: Value | readonly Value[];
   /** Standard deviation of each measured position component [default: 0.05mm] */
   sigmaPosition?: Value | readonly Value[];
   /** Standard deviation of each measured rotation component [default: 0.01deg] */
   sigmaRotation?: Value | readonly Value[];
   /**
    * Error of the tip (RMS) that a calibration leaves however much is measured, and that with corrections, like 0.3mm or 0.3mm,0.12mm, as an
-   * earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is a guess]
+   * earlier calibration of such a robot found it [default: 0.3 mm for each metre of reach, which is an assumption]
    */
   robotError?: Value | readonly Value[];
   /** The measuring device's frame */
-  frame?: "unknown" | "base";
+  deviceFrame?: "unknown" | "base";
+  /**
+   * How far the axes may be from the model's (the prior of the fit): standard deviations of their directions and places, or none [default:
+   * 0.5deg,5mm]
+   */
+  tolerance?: Value | readonly Value[];
+  /**
+   * What joints are expected to do beyond geometry: auto and all terms of the common sizes, off nothing, or groups with their sizes, as of
+   * poecal calibrate [default: auto]
+   */
+  corrections?: Value | readonly Value[];
+  /** Where gravity pulls, in the robot's base frame [default: 0,0,-1] */
+  gravity?: Value | readonly Value[];
+  /** How far every joint stays from its limits [default: 2deg,5mm; of a list that is stated none] */
+  margin?: Value | readonly Value[];
+  /** Box into which no part of the robot may reach, by two corners (repeatable) */
+  keepOut?: Value | readonly Value[];
+  /** Height above which all links that move stay, like 20mm */
+  floorHeight?: Value | readonly Value[];
+  /** Least change of some joint between any two configurations */
+  separation?: Value | readonly Value[];
+  /**
+   * Where the measuring device is; targets that links hide from it are left out. With --purpose drift: known where it will stand as it
+   * stood, as on fixed nests, or refit
+   */
+  device?: Value | readonly Value[];
+  /** Half the angle of the device's cone, about the direction from it to --device-aim */
+  deviceHalfAngle?: Value | readonly Value[];
+  /** Where the device looks [default: the base] */
+  deviceAim?: Value | readonly Value[];
+  /** Least and largest distance of the target from the device, like 0.5m:10m */
+  distance?: Value | readonly Value[];
+  /** Largest angle between the direction in which the target looks and the line to the device: of a reflector or a board */
+  targetHalfAngle?: Value | readonly Value[];
+  /** The direction in which the target looks, in its own frame [default: 0,0,1] */
+  targetNormal?: Value | readonly Value[];
+  /** Whether links may overlap by their shapes in the URDF: capsules around these, so that a little room is lost */
+  selfCollision?: "avoid" | "ignore";
+  /** How long the robot stands at each row, for how long all takes [default: 30s] */
+  stop?: Value | readonly Value[];
+  /** Seed of everything random [default: 1] */
+  seed?: Value | readonly Value[];
+  /**
+   * Write the list also as a program of joint motions with a stop at each row: its name ends in .script (Universal Robots), .mod (ABB),
+   * .src (KUKA) or .ls (FANUC)
+   */
+  program?: Value | readonly Value[];
+  /** Write a page of the plan (HTML): the targets of all configurations, some arms, the device, errors by number, how each joint is sampled */
+  report?: Value | readonly Value[];
 }
 
 /** Options of `poecal export`, by their long names. */
@@ -389,6 +472,11 @@ export interface ExportOptions {
   target?: Value | readonly Value[];
   /** Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json */
   model?: "corrected" | "calibrated";
+  /**
+   * Write the screws and home pose of the robot with this added to the joint's value, like joint2=0.5deg or slide=1.2mm (repeatable). Mimic
+   * joints that follow it stay: an error of its encoder would move them too
+   */
+  offset?: Value | readonly Value[];
   /** The controller's checksum, which the driver compares, like calib_12788084448423163542; for --format ur */
   hash?: Value | readonly Value[];
 }
@@ -428,12 +516,12 @@ export interface SimulateOptions {
   /** Kind of the measurements */
   kind?: "pose" | "mixed" | "relative" | "point" | "component" | "distance" | "ball-bar" | "distance-change" | "sphere" | "socket" | "plane" | "height" | "flush" | "direction";
   /** The measuring device's frame: unknown, or the robot's base */
-  frame?: "unknown" | "base";
+  deviceFrame?: "unknown" | "base";
   /** Number of further measurements, free of noise, to judge a calibration by [default: 0] */
   heldOutCount?: Value | readonly Value[];
   /** Pictures of a board and the readings of each, in place of measurements: where the camera is */
   camera?: "in-hand" | "beside";
-  /** The board in the pictures, as poecal board draws it [default: charuco:7x5:36mm:26mm:DICT_4X4_50] */
+  /** The board in the pictures, as poecal detect --print draws it [default: charuco:7x5:36mm:26mm:DICT_4X4_50] */
   board?: Value | readonly Value[];
 }
 
@@ -1858,7 +1946,7 @@ export type SolverEntry = {
 export type StationEntry = {
   /** Pose of the device in the base; of an instrument on the robot, at zero joint values. */
   base_from_device: PoseEntry;
-  /** Name of the instrument: from the column `instrument`, or the file with `--frames per-file`. */
+  /** Name of the instrument: from the column `instrument`, or the file with `--device-frames per-file`. */
   instrument?: string | null;
   /**
    * What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it),

@@ -7,9 +7,9 @@ const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 const OUT = here("types.d.ts");
 const LENGTH = 140;
 /** Commands whose options are types: those that poecal.js has a function for. */
-const COMMANDS = ["calibrate", "validate", "predict", "check", "identify", "export", "simulate"];
+const COMMANDS = ["calibrate", "validate", "predict", "check", "plan", "export", "simulate"];
 /** Options that the functions set themselves, or that mean nothing in memory. */
-const OWN = ["out", "force", "settings", "columns", "validate", "json", "quiet", "threads", "timings", "verbose", "format", "onto", "motors"];
+const OWN = ["out", "force", "settings", "columns", "validate", "json", "quiet", "threads", "timings", "verbose", "format", "onto", "motors", "rows"];
 
 /** Words as lines of a comment. */
 function comment(words, indent) {

@@ -11,7 +11,7 @@ import { crc32 } from "../app/src/zip.js";
 const file = (name, text = "", role = guess(name, new TextEncoder().encode(text))) => ({ name, bytes: new TextEncoder().encode(text), role });
 
 test("words are those of a shell, and are shown so that it takes them apart again", () => {
-  const lines = ["--seed 2", "--fit-where 'day=first one'", '--record "customer=A \\"B\\" C"', "a\\ b  c", "'it'\"'\"'s'", "", "--free 'joint2.*'"];
+  const lines = ["--seed 2", "--train-where 'day=first one'", '--record "customer=A \\"B\\" C"', "a\\ b  c", "'it'\"'\"'s'", "", "--free 'joint2.*'"];
   for (const line of lines) {
     const bySh = execFileSync("bash", ["-c", `for word in ${line}; do printf '%s\\n' "$word"; done`], { encoding: "utf8" }).split("\n").slice(0, -1);
     assert.deepEqual(wordsOf(line), bySh, line);
@@ -21,14 +21,14 @@ test("words are those of a shell, and are shown so that it takes them apart agai
 
 test("each command gets the options that it takes", () => {
   const files = [file("robot.urdf", "<robot/>"), file("a.csv", "x"), file("b.csv", "x", "validate"), file("map.toml", "[position]"), file("calibration/old.csv", "x", "unused")];
-  const options = ["--frame", "base", "--seed", "2", "--frames=per-file", "--accept", "0.2mm", "--accept-model", "calibrated"];
-  assert.equal(calibrateWords(files, options).join(" "), "calibrate robot.urdf a.csv --columns map.toml --validate b.csv --frame base --seed 2 --frames=per-file --accept 0.2mm --accept-model calibrated --out calibration-2");
-  assert.equal(checkWords(files, options).join(" "), "check robot.urdf a.csv b.csv --columns map.toml --frame base --frames=per-file");
+  const options = ["--device-frame", "base", "--seed", "2", "--device-frames=per-file", "--accept", "0.2mm", "--accept-model", "calibrated"];
+  assert.equal(calibrateWords(files, options).join(" "), "calibrate robot.urdf a.csv --columns map.toml --validate b.csv --device-frame base --seed 2 --device-frames=per-file --accept 0.2mm --accept-model calibrated --out calibration-2");
+  assert.equal(checkWords(files, options).join(" "), "check robot.urdf a.csv b.csv --columns map.toml --device-frame base --device-frames=per-file");
   const withSettings = [...files, file("cell/poecal.toml", "poecal_settings = 1", "settings")];
   assert.equal(checkWords(withSettings, []).join(" "), "check robot.urdf a.csv b.csv --settings cell/poecal.toml --columns map.toml");
   // Tables that settings name may not be there yet.
   assert.equal(checkWords(withSettings.filter((it) => it.role === "model" || it.role === "settings"), []).join(" "), "check robot.urdf");
-  assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --frames=per-file --accept 0.2mm --accept-model calibrated");
+  assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --device-frames=per-file --accept 0.2mm --accept-model calibrated");
 });
 
 test("files have the roles that their names and first lines say", () => {

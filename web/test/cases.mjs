@@ -85,7 +85,7 @@ function mounted(name, named, ...words) {
 /** The example's points in the frames of two trackers, in turn. */
 function fromTwoPlaces() {
   const path = join(folder, "two.csv");
-  const session = simulated("two", join(ELBOW, "robot.urdf"), "--kind", "point", "--frame", "base", "--noise", "0.1mm,0.01deg");
+  const session = simulated("two", join(ELBOW, "robot.urdf"), "--kind", "point", "--device-frame", "base", "--noise", "0.1mm,0.01deg");
   const lines = readFileSync(session, "utf8").split("\n").filter((line) => line && !line.startsWith("#"));
   const x = lines[0].split(",").findIndex((column) => column.startsWith("x["));
   const moved = (line, k) => {
@@ -131,7 +131,7 @@ export const CASES = [
 /** Two checks of a calibration by other rows; the folder of the second. */
 export function checked(out) {
   const rows = simulated("checked", join(ELBOW, "robot.urdf"), "--kind", "point", "--count", "60");
-  const check = (name, ...words) => poecal("validate", join(out, "calibration.json"), ...words, "--refit-frame", "--out", join(folder, name), "--quiet");
+  const check = (name, ...words) => poecal("validate", join(out, "calibration.json"), ...words, "--refit", "device", "--out", join(folder, name), "--quiet");
   check("first check", join(ELBOW, "points.csv"));
   check("second check", rows, "--accept", "1mm", "--record", "operator=Mia", "--record", "serial=4711");
   return join(folder, "second check");

@@ -1,16 +1,12 @@
 //! The command line.
 
-#[cfg(any(unix, windows))]
-mod board;
 mod calibrate;
-mod certificate;
 mod compensate;
 #[cfg(any(unix, windows))]
 mod detect;
 #[cfg(any(unix, windows))]
 mod fleet;
 mod hand_eye;
-mod identify;
 mod init;
 mod offsets;
 mod plan;
@@ -20,45 +16,39 @@ mod shared;
 mod simulate;
 mod track;
 mod watch;
-mod words;
 
-#[cfg(any(unix, windows))]
-pub(crate) use board::Board;
+pub(crate) use crate::words::{
+    CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, OuterFrame, ProgramLanguage, Refit, word_of,
+};
 pub(crate) use calibrate::Calibrate;
-pub(crate) use certificate::Certificate;
 pub(crate) use compensate::Compensate;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::Detect;
 #[cfg(any(unix, windows))]
 pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
 pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
-pub(crate) use identify::Identify;
 pub(crate) use init::Init;
 pub(crate) use offsets::Offsets;
-pub(crate) use plan::{FitArgs, Plan, PlannedDevice};
+pub(crate) use plan::{FitArgs, Plan, PlannedDevice, exclusive};
 pub(crate) use report::{Report, ReportPlace};
 pub(crate) use reproduce::{Experiment, Reproduce};
 pub(crate) use shared::{TreeArgs, with_mapping};
 pub(crate) use simulate::Simulate;
 pub(crate) use track::Track;
 pub(crate) use watch::Watch;
-#[cfg(any(unix, windows))]
-pub(crate) use words::CameraPlace;
-pub(crate) use words::{CONTACT, ExportForm, FRAMES, INSTEAD, JOIN, ProgramLanguage, word_of};
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Limit as ErrorLimit};
-use poecal_results::model::ModelFormat;
 use poecal_results::predictions::PredictionFrame;
 use poecal_results::record::Record;
 
 use crate::quantity::{Allowed, limit_of_change, limit_of_files, seconds, threads};
+use crate::words::{FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
 pub(crate) use shared::{ChainArgs, OutFile};
 use shared::{ColumnArgs, JUDGED, Meaning, RESULTS, Reading};
-use words::{FORM, FRAME, MODEL, PREDICT_IN, REFIT, REQUIRED_LEVEL, export_form, export_form_help, one_of};
 
 /// What the program ends with.
 const EXIT_CODES: &str = "Exit codes: 0 done, and a calibration is usable; 1 there are results, but the verdict is `do not use` or \
@@ -97,15 +87,13 @@ pub(crate) enum Command {
     HandEye(Box<HandEye>),
     /// Find where the tip of a tool is, from poses of the flange in which it touches a fixed point
     Tcp(Tcp),
-    /// Find the corners of a board in pictures
+    /// Find the corners of a board in pictures; or print a board
     #[cfg(any(unix, windows))]
     Detect(Detect),
     /// Simulate a robot with errors and its measurements, for tests and for learning
     Simulate(Simulate),
-    /// Write the report of a calibration again
+    /// Write the report of a calibration again, or its certificate
     Report(Report),
-    /// Write the certificate of a calibration: one page of paper
-    Certificate(Certificate),
     /// Judge a calibration by other measurements
     ///
     /// Ends with code 1 if it does not hold for them, or a limit of --accept is not shown to be kept.
@@ -129,28 +117,19 @@ pub(crate) enum Command {
     Check(Check),
     /// Write measurements of any form as a table of poecal's, and beside it how they were read
     Import(Import),
-    /// Write a model in another form
-    Convert(Convert),
-    /// Write a calibrated robot in the form of a controller, a driver or a simulator
+    /// Write a robot in the form of a controller, a driver or a simulator, or its numbers into a URDF
     Export(Export),
-    /// Write calibrated numbers into a URDF
-    Apply(Apply),
     /// Correct a program for the nominal robot so that the actual one reaches the programmed poses
     Compensate(Compensate),
     /// Explain how a robot differs from its model by joint offsets
     Offsets(Offsets),
-    /// Draw a calibration board to scale, for a camera; or correct its squares by what a ruler shows of the print
-    #[cfg(any(unix, windows))]
-    Board(Board),
     /// Repeat the experiment of a paper and check its claims, or show the effect of gross errors
     Reproduce(Reproduce),
-    /// Show what measurements in given configurations would determine, before anything is measured
-    Identify(Identify),
-    /// Choose the configurations to measure: which, how many, and the error to expect
+    /// Choose the configurations to measure: which, how many, and the error to expect; or judge a list of them
     Plan(Box<Plan>),
     /// Judge measurements while they are made: is a row wrong, what to measure next, is it enough
     ///
-    /// Ends with code 0 where the error of --until is reached, or --once the rows are as expected; 1 where it is not, or a row is named.
+    /// Ends with code 0 where the error of --target-error is reached, or --batch the rows are as expected; 1 where it is not, or a row is named.
     Watch(Box<Watch>),
     /// Print the JSON Schema of calibration.json
     Schema,
@@ -216,15 +195,10 @@ pub(crate) struct Validate {
     pub(crate) measurements: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) meaning: Meaning,
-    /// Refit the measuring device's frame to these measurements
-    #[arg(long, help_heading = JUDGED)]
-    pub(crate) refit_frame: bool,
-    /// Refit the targets to these measurements
-    #[arg(long, help_heading = JUDGED)]
-    pub(crate) refit_tool: bool,
-    /// Refit the device's frame where these measurements show that the device stands elsewhere; without, that is said
-    #[arg(long, value_parser = one_of(REFIT), value_name = "WHEN", default_value = "never", action = clap::ArgAction::Set, conflicts_with = "refit_frame", help_heading = JUDGED)]
-    pub(crate) refit: bool,
+    /// Refit to these measurements: the frame of the measuring device, the targets on the tool, or both; auto refits the device where the rows show that
+    /// it stands elsewhere, which is stated otherwise
+    #[arg(long, value_parser = one_of(REFIT), value_name = "WHAT", value_delimiter = ',', help_heading = JUDGED)]
+    pub(crate) refit: Vec<Refit>,
     /// End with code 1 unless the measurements confirm this: `good` if 80 % of all errors are inside their own 95 % bounds and the error
     /// (RMS) is at most twice the expected one; `inside_sampled_range` if that holds of the rows inside the sampled range
     #[arg(long, value_parser = one_of(REQUIRED_LEVEL), value_name = "VERDICT", help_heading = JUDGED)]
@@ -281,7 +255,7 @@ pub(crate) struct Predict {
     pub(crate) columns: ColumnArgs,
     /// The frame of the poses
     #[arg(long, value_parser = one_of(PREDICT_IN), default_value = "base")]
-    pub(crate) frame: PredictionFrame,
+    pub(crate) output_frame: PredictionFrame,
     /// Add the expected error of each prediction, and whether it lies in the sampled range (of a calibration.json); without --target of the first
     /// target that was measured
     #[arg(long)]
@@ -312,7 +286,7 @@ pub(crate) struct Check {
     pub(crate) reading: Reading,
     /// The measuring device's frame: `base` looks for mistakes in it too
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
-    pub(crate) frame: DeviceFrameKnowledge,
+    pub(crate) device_frame: DeviceFrameKnowledge,
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
@@ -347,7 +321,7 @@ pub(crate) struct Export {
     pub(crate) model: PathBuf,
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
-    /// The form
+    /// The form [default: by the extension of --out, and URDF with --onto]
     #[arg(long, value_parser = export_form(), long_help = export_form_help())]
     pub(crate) format: Option<ExportForm>,
     /// Which model of the calibration: geometry alone, or the corrected one, whose terms of the joints go to a file beside, FILE.joints.json
@@ -356,43 +330,16 @@ pub(crate) struct Export {
     /// The URDF into which the numbers are written [default: the one that was calibrated]; for --format urdf
     #[arg(long, value_name = "ROBOT.urdf")]
     pub(crate) onto: Option<PathBuf>,
+    /// Write the screws and home pose of the robot with this added to the joint's value, like joint2=0.5deg or slide=1.2mm
+    /// (repeatable). Mimic joints that follow it stay: an error of its encoder would move them too
+    #[arg(long, value_name = "JOINT=ANGLE|LENGTH", conflicts_with = "onto")]
+    pub(crate) offset: Vec<String>,
     /// The controller's checksum, which the driver compares, like calib_12788084448423163542; for --format ur
     #[arg(long)]
     pub(crate) hash: Option<String>,
     /// The calibration of motors whose offsets are corrected; for --format lerobot
     #[arg(long, value_name = "FILE")]
     pub(crate) motors: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) place: OutFile,
-}
-
-/// Arguments of `poecal apply`.
-#[derive(Args, Debug)]
-pub(crate) struct Apply {
-    /// The calibration (calibration.json)
-    pub(crate) calibration: PathBuf,
-    /// The URDF: the one that was calibrated, or one with the same kinematics
-    pub(crate) urdf: PathBuf,
-    #[command(flatten)]
-    pub(crate) chain: TreeArgs,
-    #[command(flatten)]
-    pub(crate) place: OutFile,
-}
-
-/// Arguments of `poecal convert`.
-#[derive(Args, Debug)]
-pub(crate) struct Convert {
-    /// Robot model: URDF, MJCF, SDF, TOML, a maker's YAML or conf, or calibration.json
-    pub(crate) model: PathBuf,
-    #[command(flatten)]
-    pub(crate) chain: TreeArgs,
-    /// The form to write [default: as the extension of --out says]
-    #[arg(long, value_parser = one_of(FORM))]
-    pub(crate) to: Option<ModelFormat>,
-    /// Write the screws and home pose of the robot with this added to the joint's value, like joint2=0.5deg or slide=1.2mm
-    /// (repeatable). Mimic joints that follow it stay: an error of its encoder would move them too
-    #[arg(long, value_name = "JOINT=ANGLE|LENGTH")]
-    pub(crate) offset: Vec<String>,
     #[command(flatten)]
     pub(crate) place: OutFile,
 }

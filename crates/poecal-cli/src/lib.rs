@@ -14,11 +14,14 @@ mod console;
 mod help;
 mod progress;
 mod quantity;
+mod renamed;
 mod settings;
 mod signals;
 mod style;
 mod timings;
 mod without_json;
+#[doc(hidden)]
+pub mod words;
 
 use std::error::Error as _;
 use std::ffi::OsString;
@@ -81,10 +84,12 @@ fn understood(typed: Vec<OsString>) -> Result<(Vec<OsString>, Arguments), u8> {
         Ok((matches, arguments))
     };
     let told = |words: &[OsString], error: clap::Error| match parsed(&shown(words)) {
-        Err(shown) => match without_json::sentence(words, &shown) {
-            Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
-            None => usage(&shown),
-        },
+        Err(shown) => {
+            match renamed::sentence(words, &shown).or_else(|| without_json::sentence(words, &shown)) {
+                Some(sentence) => refused(&ErrorKind::Option.error(sentence)),
+                None => usage(&shown),
+            }
+        }
         // Words that are valid without control characters can only be wrong because of these.
         Ok(_) => {
             let message = error.to_string();
@@ -139,7 +144,7 @@ pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
 /// Refuses commands of pictures and drawings where the program has no part for them: without an operating system.
 fn need_pictures(typed: &[OsString]) -> Result<(), poecal_numerics::error::Error> {
     match typed.get(1).and_then(|word| word.to_str()) {
-        Some(command @ ("detect" | "board" | "fleet")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
+        Some(command @ ("detect" | "fleet")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
             "found {command}, which this build of the program does not have, expected the program of an operating system or of the Python package"
         )),
         _ => Ok(()),
@@ -218,18 +223,12 @@ fn run_command(
         Command::Predict(options) => commands::predict(options, console),
         Command::Check(options) => commands::check(options, console),
         Command::Import(options) => commands::import(options, console),
-        Command::Convert(options) => commands::convert(options, console),
         Command::Export(options) => commands::export(options, console),
-        Command::Apply(options) => commands::apply(options, console),
         Command::Compensate(options) => commands::compensate(options, console),
         Command::Offsets(options) => commands::offsets(options, console),
-        #[cfg(any(unix, windows))]
-        Command::Board(options) => commands::board(options, console),
         Command::Reproduce(options) => commands::reproduce(options, console),
-        Command::Identify(options) => commands::identify(options, console),
         Command::Plan(options) => commands::plan(options, console),
         Command::Report(options) => commands::report(options, console),
-        Command::Certificate(options) => commands::certificate(options, console),
         Command::Watch(options) => commands::watch(options, console),
         Command::Schema => commands::schema(console),
         Command::Completions(options) => commands::completions(options, console),

@@ -224,7 +224,7 @@ pub(crate) fn distances_m(text: &str) -> std::result::Result<[f64; 2], String> {
 
 /// Where a robot will work.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Over {
+pub(crate) enum Workspace {
     /// Within its limits.
     Limits,
     /// In the configurations of a file.
@@ -233,16 +233,16 @@ pub(crate) enum Over {
     Box([[f64; 3]; 2]),
 }
 
-impl FromStr for Over {
+impl FromStr for Workspace {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         if text == "limits" {
-            return Ok(Over::Limits);
+            return Ok(Workspace::Limits);
         }
-        box_m(text).map(Over::Box).or_else(|message| {
+        box_m(text).map(Workspace::Box).or_else(|message| {
             let is_box = text.split(':').all(|corner| corner.split(',').count() == 3);
-            if is_box { Err(message) } else { Ok(Over::Tasks(text.into())) }
+            if is_box { Err(message) } else { Ok(Workspace::Tasks(text.into())) }
         })
     }
 }

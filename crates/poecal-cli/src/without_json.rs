@@ -5,17 +5,13 @@ use std::ffi::OsString;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// Each command without `--json`, what it prints or writes, and where the same is as JSON.
-const COMMANDS: [(&str, &str, &str); 15] = [
+const COMMANDS: [(&str, &str, &str); 11] = [
     ("simulate", "it writes the files of a session", "use `poecal check … --json` on them"),
-    ("board", "it writes a drawing", "leave --json away"),
     ("import", "it writes a table and a mapping", "use `poecal check … --json` on the table"),
     ("detect", "it writes a table of corners", "use `poecal check … --json` on the table"),
     ("report", "it writes a page", "use the calibration.json that it shows"),
-    ("certificate", "it writes a page", "use the calibration.json that it states"),
     ("export", "it writes a model in the form of --format", "use `--format poe` for JSON"),
-    ("apply", "it writes a URDF", "use `poecal export … --format poe` for JSON"),
     ("predict", "it prints a table of poses", "use the table, or `predict` in Python"),
-    ("convert", "it writes a model", "use `poecal export … --format poe` for JSON"),
     (
         "fleet",
         "it writes a folder for each robot",

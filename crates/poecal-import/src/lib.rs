@@ -34,10 +34,10 @@ pub use crate::poses::pose_table::pose_table;
 pub use crate::read::joints::{JointsTable, parse_joints, read_joints};
 pub use crate::read::socket_distance::SocketDistances;
 pub use crate::table::cells::{Cell, Separator, split};
-pub use crate::table::fit_where::FitWhere;
 pub use crate::table::lost::lost_words;
 pub use crate::table::mapping::ColumnMap;
 pub use crate::table::number::DecimalSign;
+pub use crate::table::train_where::FitWhere;
 pub use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use crate::write::growing::{GrowingFile, News};
 pub use crate::write::own_rows::imported_table;
@@ -70,7 +70,7 @@ use poecal_numerics::error::Result;
 /// #     pub use poecal_import::{ReadOptions, read as read_measurements};
 /// # }
 /// use poecal::ReadOptions;
-/// let options = ReadOptions { fit_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
+/// let options = ReadOptions { train_where: Some("stage=1,2".parse()?), ..ReadOptions::default() };
 /// assert!(options.mapping.is_none());
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```
@@ -82,8 +82,8 @@ pub struct ReadOptions {
     /// joints precedes it.
     pub controller: Option<Controller>,
     /// Training rows; precedes the `set` column and the mapping's `set`.
-    pub fit_where: Option<FitWhere>,
-    /// Whether sets are ignored ([`ReadOptions::fit_where`], the mapping's `set`, the `set` column), as for files that only judge a
+    pub train_where: Option<FitWhere>,
+    /// Whether sets are ignored ([`ReadOptions::train_where`], the mapping's `set`, the `set` column), as for files that only judge a
     /// calibration.
     pub ignore_sets: bool,
     /// Whether a lost beam, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.

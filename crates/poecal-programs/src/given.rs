@@ -58,8 +58,8 @@ impl Given {
     /// # Errors
     /// [`ErrorKind::Option`].
     pub fn add_tool(&mut self, words: &str, language: Language) -> Result<()> {
-        let found = named_pose(words, language, "--tool")?;
-        add(&mut self.tools, found, words, "--tool")
+        let found = named_pose(words, language, "--tool-data")?;
+        add(&mut self.tools, found, words, "--tool-data")
     }
 
     /// Adds a frame as words say it: `[NAME=]NUMBERS`, the numbers as the language writes poses.
@@ -67,8 +67,8 @@ impl Given {
     /// # Errors
     /// [`ErrorKind::Option`].
     pub fn add_frame(&mut self, words: &str, language: Language) -> Result<()> {
-        let found = named_pose(words, language, "--frame")?;
-        add(&mut self.frames, found, words, "--frame")
+        let found = named_pose(words, language, "--work-object")?;
+        add(&mut self.frames, found, words, "--work-object")
     }
 
     /// Sets the controller's base in the model's, by numbers as the language writes poses.
@@ -76,7 +76,7 @@ impl Given {
     /// # Errors
     /// [`ErrorKind::Option`].
     pub fn set_base(&mut self, words: &str, language: Language) -> Result<()> {
-        self.base = plain_pose(words, language, "--base")?;
+        self.base = plain_pose(words, language, "--controller-base")?;
         Ok(())
     }
 
@@ -85,7 +85,7 @@ impl Given {
     /// # Errors
     /// [`ErrorKind::Option`].
     pub fn set_flange(&mut self, words: &str, language: Language) -> Result<()> {
-        self.flange = plain_pose(words, language, "--flange")?;
+        self.flange = plain_pose(words, language, "--controller-flange")?;
         Ok(())
     }
 }

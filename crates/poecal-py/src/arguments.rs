@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use poecal_calibrate::{AcceptanceLimits, Corrections, RepairLimits};
+use poecal_cli::words;
 use poecal_formats::urdf::ChainSelection;
 use poecal_model::robot::GravityDirection;
 use poecal_numerics::error::Error;
@@ -17,7 +18,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 
 use crate::errors::argument;
 use crate::units;
-use crate::words::{from_mm, shortened};
+use crate::words::{from_mm, one_of, shortened};
 
 /// What an argument can be read as.
 pub(crate) trait Argument<'a, 'py>: Sized {
@@ -35,15 +36,17 @@ macro_rules! named {
 }
 
 named! {
-    accept accept_model acceptance_deg actual angle_unit angular_first base base_link body camera cameras check columns cone_deg contact
-    convention corrections count criterion device device_looks_at_mm device_mm distance_mm earlier error_position_mm error_rotation_deg
-    experiment facing fit_where fix flange floor_mm folder force format formulation frame frames free gravity harmonics hash held_out
-    held_out_count history id ids ignore_sets instrument_noise instruments join judge kind kinds lag language length_unit level limit_mm
-    limits logo margin_deg_mm markers measurements method model most_slide_m most_slide_mm most_turn_deg most_turn_rad motors move_tip name names nearest
-    noise_position_mm noise_rotation_deg nominal offset out part parts path paths points progress purpose quantity readings record refit refit_frame
-    refit_tool repair repair_limit repeatability_mm replace report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets
-    sheet sigma_position_mm sigma_rotation_deg socket_distance start starts stop_s strict summary target target_offset_mm targets terms text
-    third_axis tip tip_link tips to tolerance_deg_mm tool tools topics trials units valid_until with_uncertainty
+    accept accept_model actual angle_unit angular_first base_link body camera cameras check columns contact controller_base
+    controller_flange convention corrections count criterion device device_aim_mm device_frame device_frames device_half_angle_deg device_mm
+    distance_mm earlier error_position_mm error_rotation_deg experiment fix flange floor_height_mm folder force format formulation
+    frame_names free gravity harmonics hash held_out held_out_count history id ids ignore_sets instrument_noise instruments join kind kinds
+    lag language length_unit level limit_mm limits logo margin_deg_mm markers max_slide_m max_slide_mm max_turn_deg max_turn_rad
+    measurements method model motors move_tip name names nearest noise_position_mm noise_rotation_deg nominal offset out output_frame part
+    parts path paths points progress purpose quantity readings record refit repair repair_limit repeatability_mm
+    replace_rows report residual residuals robot robot_error_mm robust seed self_collision separation_deg sets sheet sigma_position_mm
+    sigma_rotation_deg socket_distance start starts stop_s strict summary target target_half_angle_deg target_normal target_offset_mm
+    targets terms text third_axis tip_link tips tolerance_deg_mm tool tool_data topics train_where trials units with_uncertainty
+    work_objects
 }
 
 /// Refuses keywords that a class does not have, as `poecal._keywords` does for functions.
@@ -153,6 +156,27 @@ impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
             value.extract().map_err(|_| unexpected(name, value, "a list"))?;
         let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::of(entry, &format!("{name}[{at}]"));
         entries.iter().enumerate().map(entry).collect()
+    }
+}
+
+/// Some of a few words: a list, or a text with commas as the program has it.
+pub(crate) struct Words(Vec<String>);
+
+impl Words {
+    /// Their meanings.
+    pub(crate) fn chosen<T: Copy>(&self, name: &str, words: words::Words<T>) -> PyResult<Vec<T>> {
+        self.0.iter().map(|word| one_of(name, word, words)).collect()
+    }
+}
+
+impl<'a, 'py> Argument<'a, 'py> for Words {
+    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_instance_of::<PyString>() {
+            return Ok(Words(
+                <&str>::of(value, name)?.split(',').map(|word| word.trim().to_owned()).collect(),
+            ));
+        }
+        Vec::of(value, name).map(Words)
     }
 }
 

@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use poecal_calibrate::{
     AcceptanceLimits, AcceptedModel, BlockChoice, CalibrationOptions, Corrections, RepairLimits, Repaired,
-    Repairs, Stage, calibrate_repairing, settle_sets,
+    Stage, calibrate_repairing, settle_sets,
 };
+use poecal_cli::words;
 use poecal_formats::abb::AbbCalibration;
 use poecal_import::MeasurementFile;
-use poecal_lou2009::{Formulation, Method, Residual, formulated};
+use poecal_lou2009::{Residual, formulated};
 use poecal_model::measurement::{ByQuantity, Dataset, Quantity};
 use poecal_model::robot::{GravityDirection, Tolerance};
 use poecal_numerics::error::ErrorKind;
@@ -26,7 +27,7 @@ use crate::errors::{argument, raise};
 use crate::measurements::Measurements;
 use crate::paths;
 use crate::robot::Robot;
-use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, sigma, sigmas};
+use crate::words::{frame as frame_word, from_mm, one_of, sigma, sigmas};
 
 /// Calibrates a robot from measurements.
 ///
@@ -36,7 +37,7 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 ///     The nominal robot, or the path of its model.
 /// measurements
 ///     Its measurements, or the path of their file, or several paths.
-/// frame
+/// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component, default estimated from the data.
@@ -105,15 +106,15 @@ use crate::words::{chosen, frame as frame_word, from_mm, robust as robust_word, 
 /// SolverError
 ///     No finite result is reached.
 #[pyfunction]
-#[pyo3(signature = (robot, measurements, *, frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
+#[pyo3(signature = (robot, measurements, *, device_frame="unknown", sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=Believed::Given((0.5, 5.0)),
                     corrections=None, harmonics=2, gravity=None, fix=None, free=None, move_tip=false, held_out=None, seed=None, robust="auto", repair="auto", repair_limit=None, formulation="adjoint", residual="tool", method=None, validate=None, accept=None, accept_model="corrected", record=None, progress=None),
-        text_signature = "(robot, measurements, *, frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', repair_limit=None, formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
+        text_signature = "(robot, measurements, *, device_frame='unknown', sigma_position_mm=None, sigma_rotation_deg=None, tolerance_deg_mm=(0.5, 5.0), corrections='auto', harmonics=2, gravity=(0, 0, -1), fix=None, free=None, move_tip=False, held_out=None, seed=None, robust='auto', repair='auto', repair_limit=None, formulation='adjoint', residual='tool', method=None, validate=None, accept=None, accept_model='corrected', record=None, progress=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn calibrate(
     py: Python<'_>,
     robot: &Bound<'_, PyAny>,
     measurements: &Bound<'_, PyAny>,
-    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
@@ -145,7 +146,7 @@ pub(crate) fn calibrate(
     let usual = CalibrationOptions::default();
     let (formulation, residual) = written(formulation, residual, method)?;
     let options = CalibrationOptions {
-        frame: frame_word(frame)?,
+        frame: frame_word(device_frame)?,
         blocks: BlockChoice { free: free.unwrap_or_default(), fix: fix.unwrap_or_default() },
         sigma: stated(sigmas(sigma_position_mm, sigma_rotation_deg)?),
         tolerance: tolerance(&tolerance_deg_mm)?,
@@ -155,8 +156,8 @@ pub(crate) fn calibrate(
         gravity: gravity.unwrap_or(usual.gravity),
         held_out,
         seed: seed.unwrap_or(usual.seed),
-        robust: robust_word(robust)?,
-        repair: chosen("repair", repair, &[("auto", Repairs::Auto), ("off", Repairs::Off)])?,
+        robust: one_of("robust", robust, words::ROBUST)?,
+        repair: one_of("repair", repair, words::REPAIR)?,
         repair_limits: repair_limit.unwrap_or_default(),
         move_tip,
         accept: accept_limits(accept, accept_model)?,
@@ -195,10 +196,9 @@ fn written(
     residual: &str,
     method: Option<&str>,
 ) -> PyResult<(poecal_calibrate::Formulation, Residual)> {
-    let formulation = chosen("formulation", formulation, &Formulation::ALL.map(|it| (it.word(), it)))?;
-    let residual = chosen("residual", residual, &Residual::ALL.map(|it| (it.word(), it)))?;
-    let methods = Method::ALL.map(|it| (it.word(), it));
-    let method = method.map(|word| chosen("method", word, &methods)).transpose()?;
+    let formulation = one_of("formulation", formulation, words::FORMULATION)?;
+    let residual = one_of("residual", residual, words::RESIDUAL)?;
+    let method = method.map(|word| one_of("method", word, words::METHOD)).transpose()?;
     let method = method.unwrap_or_else(|| formulation.usual_method());
     Ok((formulated(formulation, residual, method), residual))
 }
@@ -208,8 +208,7 @@ pub(crate) fn accept_limits(
     accept: Option<AcceptanceLimits>,
     model: &str,
 ) -> PyResult<Option<AcceptanceLimits>> {
-    let models = [AcceptedModel::Corrected, AcceptedModel::Calibrated].map(|it| (it.word(), it));
-    let model = chosen("accept_model", model, &models)?;
+    let model = one_of("accept_model", model, words::MODEL)?;
     let limits = accept.map(|it| it.limits).unwrap_or_default();
     // The default may have been written out, which asks for nothing.
     let named = (model != AcceptedModel::default()).then_some(model);
@@ -276,7 +275,7 @@ fn rows<'a>(
     }
     let stated_by = match validate {
         Some(_) => "--validate",
-        None if measurements.source.fit_where => "--fit-where",
+        None if measurements.source.train_where => "--train-where",
         None => "what each row says of its set",
     };
     settle_sets(data.to_mut(), held_out, stated_by).map_err(raise)?;

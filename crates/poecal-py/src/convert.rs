@@ -1,4 +1,4 @@
-//! `convert`, the schema, and joint readings of files.
+//! `export`, the schema, and joint readings of files.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ use crate::robot::{Robot, form};
 /// ----------
 /// robot
 ///     The robot.
-/// to
+/// format
 ///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
 /// offset
 ///     Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
@@ -40,16 +40,16 @@ use crate::robot::{Robot, form};
 /// str
 ///     The text.
 #[pyfunction]
-#[pyo3(signature = (robot, *, to=None, offset=None, out=None, force=false))]
-pub(crate) fn convert(
+#[pyo3(signature = (robot, *, format=None, offset=None, out=None, force=false))]
+pub(crate) fn export(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::robot)] robot: &Robot,
-    #[pyo3(from_py_with = arg::to)] to: Option<&str>,
+    #[pyo3(from_py_with = arg::format)] format: Option<&str>,
     #[pyo3(from_py_with = arg::offset)] offset: Option<BTreeMap<String, f64>>,
     #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
     #[pyo3(from_py_with = arg::force)] force: bool,
 ) -> PyResult<String> {
-    let form = form(to, out.as_deref())?;
+    let form = form(format, out.as_deref())?;
     let reserved = |out| reserved_file(py, out, Existing::forced(force), &[&robot.model.path]);
     let place = out.as_deref().map(reserved).transpose()?;
     let mut model = Model::clone(&robot.model);

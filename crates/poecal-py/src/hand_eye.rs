@@ -1,7 +1,8 @@
 //! `hand_eye` and `tcp`: a camera, or the tip of a tool, from poses of the flange.
 
 use poecal_arm::lie::Pose;
-use poecal_fit::hand_eye::{self as solved, CameraPlace, HandEyeOptions, Touches};
+use poecal_cli::words::{self, Words};
+use poecal_fit::hand_eye::{self as solved, HandEyeOptions, Touches};
 use poecal_import::{FlangePoses, PosePairs};
 use poecal_report as report;
 use poecal_results::hand_eye::{FrameNames, HandEyeResult};
@@ -12,7 +13,7 @@ use crate::arguments as arg;
 use crate::arrays::{Numbers, pose_of};
 use crate::errors::{argument, raise};
 use crate::findings::Findings;
-use crate::words::chosen;
+use crate::words::one_of;
 
 /// Poses of an array of shape (m, 4, 4).
 fn stacked(value: &Bound<'_, PyAny>, name: &str, count: Option<usize>) -> PyResult<Vec<Pose>> {
@@ -41,8 +42,8 @@ fn row_names(names: Vec<String>, count: usize) -> Vec<String> {
 }
 
 /// What an inversion is called.
-fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResult<Option<bool>> {
-    word.map(|word| chosen(name, word, &[(words[0], false), (words[1], true)])).transpose()
+fn inverted(name: &str, word: Option<&str>, words: Words<bool>) -> PyResult<Option<bool>> {
+    word.map(|word| one_of(name, word, words)).transpose()
 }
 
 /// Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
@@ -62,7 +63,7 @@ fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResul
 ///     said under "findings".
 /// names
 ///     What messages call each row.
-/// frames
+/// frame_names
 ///     Names of base, flange, camera and target in the result.
 ///
 /// Returns
@@ -72,7 +73,7 @@ fn inverted(name: &str, word: Option<&str>, words: [&'static str; 2]) -> PyResul
 ///     was held out, and "findings": all that `hand_eye.json` has.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
-#[pyo3(signature = (base_from_flange, camera_from_target, *, camera, flange=None, target=None, names=None, frames=None))]
+#[pyo3(signature = (base_from_flange, camera_from_target, *, camera, flange=None, target=None, names=None, frame_names=None))]
 pub(crate) fn hand_eye(
     py: Python<'_>,
     base_from_flange: &Bound<'_, PyAny>,
@@ -81,23 +82,22 @@ pub(crate) fn hand_eye(
     #[pyo3(from_py_with = arg::flange)] flange: Option<&str>,
     #[pyo3(from_py_with = arg::target)] target: Option<&str>,
     #[pyo3(from_py_with = arg::names)] names: Option<Vec<String>>,
-    #[pyo3(from_py_with = arg::frames)] frames: Option<Vec<String>>,
+    #[pyo3(from_py_with = arg::frame_names)] frame_names: Option<Vec<String>>,
 ) -> PyResult<Findings> {
     let arm = stacked(base_from_flange, "base_from_flange", None)?;
     let seen = stacked(camera_from_target, "camera_from_target", Some(arm.len()))?;
-    let places = [CameraPlace::InHand, CameraPlace::Beside].map(|place| (place.word(), place));
     let options = HandEyeOptions {
-        camera: chosen("camera", camera, &places)?,
-        flange_inverted: inverted("flange", flange, ["base-from-flange", "flange-from-base"])?,
-        target_inverted: inverted("target", target, ["camera-from-target", "target-from-camera"])?,
+        camera: one_of("camera", camera, words::HAND_EYE_CAMERA)?,
+        flange_inverted: inverted("flange", flange, words::FLANGE_POSES)?,
+        target_inverted: inverted("target", target, words::TARGET_POSES)?,
     };
     let names = row_names(texts(names, "names", arm.len())?, arm.len());
-    let frames = match frames {
+    let frames = match frame_names {
         None => FrameNames::default(),
         Some(frames) => frames
             .join(",")
             .parse()
-            .map_err(|error: poecal_numerics::error::Error| argument("frames", error.message()))?,
+            .map_err(|error: poecal_numerics::error::Error| argument("frame_names", error.message()))?,
     };
     let poses = PosePairs { flange: arm.into(), target: seen.into(), names, ..PosePairs::default() };
     let name = |row: usize| poses.names.get(row).cloned().unwrap_or_default();

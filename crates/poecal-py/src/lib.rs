@@ -80,7 +80,7 @@ mod _poecal {
     #[pymodule_export]
     use crate::calibration::Calibration;
     #[pymodule_export]
-    use crate::convert::{convert, read_joints, schema};
+    use crate::convert::{export, read_joints, schema};
     #[pymodule_export]
     use crate::covariance::Covariance;
     #[pymodule_export]
@@ -209,6 +209,13 @@ mod _poecal {
     #[pyfunction]
     fn _shown(text: &str, warnings: Vec<String>) -> String {
         crate::notebook::findings(text, &warnings)
+    }
+
+    /// The keyword that an old one is now, among these.
+    #[pyfunction]
+    fn _renamed(word: &str, words: Vec<String>) -> Option<String> {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        poecal_results::renamed::new_key(word, &words).map(str::to_owned)
     }
 
     /// The word that one is likely to be.

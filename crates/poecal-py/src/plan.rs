@@ -32,18 +32,18 @@ use crate::visit_plan::VisitOptions;
 ///     Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
 /// count
 ///     Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
-/// judge
+/// held_out_count
 ///     Number of further rows to judge by, at random over the workspace (default a third of `count`).
 /// candidates
 ///     Configurations to choose from alone, shape (m, n).
-/// over
+/// workspace
 ///     Configurations in which the robot will work, shape (m, n), where predictions shall be good (default anywhere within the limits).
-/// over_box_mm
-///     Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
-/// keep
+/// workspace_box_mm
+///     Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
+/// keep_rows
 ///     Rows that are there already, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
-/// replace
-///     Rows of `keep`, from 0, that could not be measured: others take their places, and all other rows stay.
+/// replace_rows
+///     Rows of `keep_rows`, from 0, that could not be measured: others take their places, and all other rows stay.
 /// criterion
 ///     "expected" (expected error of the calibrated and the corrected model), or a measure of the design: "D", "A", "E", "G".
 /// targets
@@ -55,7 +55,7 @@ use crate::visit_plan::VisitOptions;
 /// robot_error_mm
 ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm per
 ///     metre of reach is assumed).
-/// frame
+/// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// tolerance_deg_mm
 ///     Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
@@ -67,17 +67,17 @@ use crate::visit_plan::VisitOptions;
 ///     How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
 /// keep_out_mm
 ///     Boxes into which no part of the robot may reach, each two corners in the base frame.
-/// floor_mm
+/// floor_height_mm
 ///     Height above which all links that move stay.
 /// separation_deg
 ///     Least change of some joint between any two configurations.
 /// device_mm
 ///     Where the measuring device is, in the base frame; targets that links hide from it are left out.
-/// cone_deg, device_looks_at_mm
+/// device_half_angle_deg, device_aim_mm
 ///     Half the angle of the device's cone, and where it looks (default the base).
 /// distance_mm
 ///     Least and largest distance of the target from the device.
-/// acceptance_deg, facing
+/// target_half_angle_deg, target_normal
 ///     Largest angle between the direction in which the target looks, in its own frame (default (0, 0, 1)), and the line to the device.
 /// self_collision
 ///     "avoid" links that overlap by their shapes in the URDF, or "ignore" shapes.
@@ -88,9 +88,9 @@ use crate::visit_plan::VisitOptions;
 /// earlier
 ///     For "drift": rows of the calibration or of an earlier visit whose configurations may be repeated (default those of the calibration).
 /// device
-///     For "drift": "known" if the device will stand where it stood, "anew" if not (default "known" of a calibration with frame="base").
+///     For "drift": "known" if the device will stand where it stood, "refit" if not (default "known" of a calibration with device_frame="base").
 /// tool
-///     For "drift": "same" if the tool will be on the flange as it was, "anew" if not (default "same").
+///     For "drift": "same" if the tool will be on the flange as it was, "refit" if not (default "same").
 /// target
 ///     For "drift": the target that will be measured, of several (default all that the rows have).
 /// repeatability_mm
@@ -102,13 +102,13 @@ use crate::visit_plan::VisitOptions;
 ///     The rows in the order in which to measure them, with the errors to expect; with "drift" what each joint would show. Only configurations are
 ///     checked, never the way between them.
 #[pyfunction]
-#[pyo3(signature = (robot, *, purpose="calibration", kind="point", count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None,
+#[pyo3(signature = (robot, *, purpose="calibration", kind="point", count=None, held_out_count=None, candidates=None, workspace=None, workspace_box_mm=None, keep_rows=None, replace_rows=None,
                     criterion="expected", targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
-                    frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=None,
-                    keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None,
-                    distance_mm=None, acceptance_deg=None, facing=None, self_collision="avoid", stop_s=30.0, seed=1,
+                    device_frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, margin_deg_mm=None,
+                    keep_out_mm=None, floor_height_mm=None, separation_deg=None, device_mm=None, device_half_angle_deg=None, device_aim_mm=None,
+                    distance_mm=None, target_half_angle_deg=None, target_normal=None, self_collision="avoid", stop_s=30.0, seed=1,
                     earlier=None, device=None, tool=None, repeatability_mm=None, target=None),
-        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, judge=None, candidates=None, over=None, over_box_mm=None, keep=None, replace=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=None, keep_out_mm=None, floor_mm=None, separation_deg=None, device_mm=None, cone_deg=None, device_looks_at_mm=None, distance_mm=None, acceptance_deg=None, facing=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None, target=None)")]
+        text_signature = "(robot, *, purpose='calibration', kind='point', count=None, held_out_count=None, candidates=None, workspace=None, workspace_box_mm=None, keep_rows=None, replace_rows=None, criterion='expected', targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, device_frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), margin_deg_mm=None, keep_out_mm=None, floor_height_mm=None, separation_deg=None, device_mm=None, device_half_angle_deg=None, device_aim_mm=None, distance_mm=None, target_half_angle_deg=None, target_normal=None, self_collision='avoid', stop_s=30.0, seed=1, earlier=None, device=None, tool=None, repeatability_mm=None, target=None)")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
@@ -116,32 +116,32 @@ pub(crate) fn plan<'py>(
     #[pyo3(from_py_with = arg::purpose)] purpose: &str,
     #[pyo3(from_py_with = arg::kind)] kind: &str,
     #[pyo3(from_py_with = arg::count)] count: Option<usize>,
-    #[pyo3(from_py_with = arg::judge)] judge: Option<usize>,
+    #[pyo3(from_py_with = arg::held_out_count)] held_out_count: Option<usize>,
     candidates: Option<&Bound<'py, PyAny>>,
-    over: Option<&Bound<'py, PyAny>>,
-    over_box_mm: Option<&Bound<'py, PyAny>>,
-    keep: Option<&Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = arg::replace)] replace: Option<Vec<usize>>,
+    workspace: Option<&Bound<'py, PyAny>>,
+    workspace_box_mm: Option<&Bound<'py, PyAny>>,
+    keep_rows: Option<&Bound<'py, PyAny>>,
+    #[pyo3(from_py_with = arg::replace_rows)] replace_rows: Option<Vec<usize>>,
     #[pyo3(from_py_with = arg::criterion)] criterion: &str,
     #[pyo3(from_py_with = arg::targets)] targets: usize,
     #[pyo3(from_py_with = arg::target_offset_mm)] target_offset_mm: Option<[f64; 3]>,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
-    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
     #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
     #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
     #[pyo3(from_py_with = arg::margin_deg_mm)] margin_deg_mm: Option<(f64, f64)>,
     keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
-    #[pyo3(from_py_with = arg::floor_mm)] floor_mm: Option<f64>,
+    #[pyo3(from_py_with = arg::floor_height_mm)] floor_height_mm: Option<f64>,
     #[pyo3(from_py_with = arg::separation_deg)] separation_deg: Option<f64>,
     #[pyo3(from_py_with = arg::device_mm)] device_mm: Option<[f64; 3]>,
-    #[pyo3(from_py_with = arg::cone_deg)] cone_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::device_looks_at_mm)] device_looks_at_mm: Option<[f64; 3]>,
+    #[pyo3(from_py_with = arg::device_half_angle_deg)] device_half_angle_deg: Option<f64>,
+    #[pyo3(from_py_with = arg::device_aim_mm)] device_aim_mm: Option<[f64; 3]>,
     #[pyo3(from_py_with = arg::distance_mm)] distance_mm: Option<(f64, f64)>,
-    #[pyo3(from_py_with = arg::acceptance_deg)] acceptance_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::facing)] facing: Option<[f64; 3]>,
+    #[pyo3(from_py_with = arg::target_half_angle_deg)] target_half_angle_deg: Option<f64>,
+    #[pyo3(from_py_with = arg::target_normal)] target_normal: Option<[f64; 3]>,
     #[pyo3(from_py_with = arg::self_collision)] self_collision: &str,
     #[pyo3(from_py_with = arg::stop_s)] stop_s: f64,
     #[pyo3(from_py_with = arg::seed)] seed: u64,
@@ -156,15 +156,16 @@ pub(crate) fn plan<'py>(
         sigma_position_mm,
         sigma_rotation_deg,
         robot_error_mm,
-        frame,
+        device_frame,
         tolerance_deg_mm: &tolerance_deg_mm,
         corrections,
         gravity,
     };
-    let rows = Rows { count, judge, candidates, keep, replace };
-    let aim = Aim { kind, criterion, over, over_box_mm, targets, target_offset_mm };
-    let room = Room { margin_deg_mm, keep_out_mm, floor_mm, separation_deg, self_collision };
-    let view = View { device_mm, cone_deg, device_looks_at_mm, distance_mm, acceptance_deg, facing };
+    let rows = Rows { count, held_out_count, candidates, keep_rows, replace_rows };
+    let aim = Aim { kind, criterion, workspace, workspace_box_mm, targets, target_offset_mm };
+    let room = Room { margin_deg_mm, keep_out_mm, floor_height_mm, separation_deg, self_collision };
+    let of_target = (target_half_angle_deg, target_normal);
+    let view = View { device_mm, device_half_angle_deg, device_aim_mm, distance_mm, of_target };
     let session = Session { rows, aim, believe, room, view, stop_s, seed };
     session.plan_for(purpose, py, robot, &visits)
 }

@@ -135,8 +135,8 @@ pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
     let turn = [most.turn_deg, most.turn_rad];
     let slide = [most.slide_mm, most.slide_m];
     let most_change = MostChange {
-        turning_rad: one_of(["most_turn_deg", "most_turn_rad"], turn, f64::to_radians, usual.turning_rad)?,
-        sliding_m: one_of(["most_slide_mm", "most_slide_m"], slide, from_mm, usual.sliding_m)?,
+        turning_rad: one_of(["max_turn_deg", "max_turn_rad"], turn, f64::to_radians, usual.turning_rad)?,
+        sliding_m: one_of(["max_slide_mm", "max_slide_m"], slide, from_mm, usual.sliding_m)?,
     };
     Ok(ChangeOptions { most_change, nearest })
 }

@@ -183,16 +183,16 @@ impl Robot {
     ///
     /// Parameters
     /// ----------
-    /// to
+    /// format
     ///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws).
     ///
     /// Returns
     /// -------
     /// str
     ///     The text.
-    #[pyo3(signature = (to))]
-    fn to_text(&self, py: Python<'_>, #[pyo3(from_py_with = arg::to)] to: &str) -> PyResult<String> {
-        self.converted(py, form(Some(to), None)?)
+    #[pyo3(signature = (format))]
+    fn to_text(&self, py: Python<'_>, #[pyo3(from_py_with = arg::format)] format: &str) -> PyResult<String> {
+        self.converted(py, form(Some(format), None)?)
     }
 
     /// Writes the model to a file.
@@ -201,19 +201,19 @@ impl Robot {
     /// ----------
     /// path
     ///     The file.
-    /// to
+    /// format
     ///     "urdf" or "toml", default as the extension says.
     /// force
     ///     Whether to write over a file that exists.
-    #[pyo3(signature = (path, *, to=None, force=false))]
+    #[pyo3(signature = (path, *, format=None, force=false))]
     fn write(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
-        #[pyo3(from_py_with = arg::to)] to: Option<&str>,
+        #[pyo3(from_py_with = arg::format)] format: Option<&str>,
         #[pyo3(from_py_with = arg::force)] force: bool,
     ) -> PyResult<()> {
-        let form = form(to, Some(&path))?;
+        let form = form(format, Some(&path))?;
         let place = reserved_file(py, &path, Existing::forced(force), &[&self.model.path])?;
         place.write(vec![self.converted(py, form)?.into()]).map_err(raise)
     }

@@ -123,7 +123,7 @@ impl Simulation {
 ///     Distance and angle by which every axis, and the tip, is off.
 /// noise_position_mm, noise_rotation_deg
 ///     Standard deviation of each measured component.
-/// frame
+/// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// held_out_count
 ///     Number of further measurements, free of noise, to judge a calibration by.
@@ -139,8 +139,8 @@ impl Simulation {
 ///     Both robots, and the measurements of the actual one.
 #[pyfunction]
 #[pyo3(signature = (robot, *, kind="pose", count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05,
-                    noise_rotation_deg=0.01, frame="unknown", held_out_count=0, terms=None, gravity=None),
-        text_signature = "(robot, *, kind='pose', count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05, noise_rotation_deg=0.01, frame='unknown', held_out_count=0, terms='off', gravity=(0, 0, -1))")]
+                    noise_rotation_deg=0.01, device_frame="unknown", held_out_count=0, terms=None, gravity=None),
+        text_signature = "(robot, *, kind='pose', count=50, seed=1, error_position_mm=2.0, error_rotation_deg=1.0, noise_position_mm=0.05, noise_rotation_deg=0.01, device_frame='unknown', held_out_count=0, terms='off', gravity=(0, 0, -1))")]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -152,7 +152,7 @@ pub(crate) fn simulate(
     #[pyo3(from_py_with = arg::error_rotation_deg)] error_rotation_deg: f64,
     #[pyo3(from_py_with = arg::noise_position_mm)] noise_position_mm: f64,
     #[pyo3(from_py_with = arg::noise_rotation_deg)] noise_rotation_deg: f64,
-    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
     #[pyo3(from_py_with = arg::held_out_count)] held_out_count: usize,
     #[pyo3(from_py_with = arg::terms)] terms: Option<Corrections>,
     #[pyo3(from_py_with = arg::gravity)] gravity: Option<[f64; 3]>,
@@ -169,7 +169,7 @@ pub(crate) fn simulate(
         noise_rotation_rad: size("noise_rotation_deg", noise_rotation_deg, f64::to_radians)?,
         count,
         seed,
-        device_anywhere: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
+        device_anywhere: frame_word(device_frame)? == DeviceFrameKnowledge::Unknown,
         terms: sizes(terms)?,
         gravity: direction(gravity.unwrap_or([0.0, 0.0, -1.0]))?,
     };
@@ -187,7 +187,7 @@ pub(crate) fn simulate(
     let command = format!(
         "poecal.simulate({}, kind=\"{}\", count={count}, seed={seed}, error_position_mm={error_position_mm:?}, \
          error_rotation_deg={error_rotation_deg:?}, noise_position_mm={noise_position_mm:?}, noise_rotation_deg={noise_rotation_deg:?}, \
-         frame=\"{frame}\", held_out_count={held_out_count})",
+         device_frame=\"{device_frame}\", held_out_count={held_out_count})",
         visible(&robot.model.path.display().to_string()),
         kind.word()
     );

@@ -16,7 +16,7 @@ use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::from_arrays::{ArrayColumns, dataset};
 use crate::measurements::Measurements;
-use crate::plan_options::{Believe, configurations, workspace};
+use crate::plan_options::{Believe, configurations, workspace as workspace_of};
 use crate::robot::Robot;
 
 /// Rows that were added, and the session that judges them.
@@ -33,15 +33,15 @@ struct Session {
 ///     The nominal robot, or a calibrated one.
 /// candidates
 ///     Configurations to choose the next from, shape (m, n) (default random ones within the limits).
-/// over
+/// workspace
 ///     Configurations in which the robot will work, shape (m, n) (default anywhere within the limits).
-/// over_box_mm
-///     Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
+/// workspace_box_mm
+///     Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
 /// robot_error_mm
 ///     Error of the tip (RMS) that a calibration leaves however much is measured, as of `plan`.
-/// frame
+/// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// tolerance_deg_mm
 ///     Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
@@ -61,20 +61,20 @@ pub(crate) struct Watch {
 #[pymethods]
 impl Watch {
     #[new]
-    #[pyo3(signature = (robot, *, candidates=None, over=None, over_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
-                        frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, seed=1, **unknown),
-            text_signature = "(robot, *, candidates=None, over=None, over_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), seed=1)")]
+    #[pyo3(signature = (robot, *, candidates=None, workspace=None, workspace_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,
+                        device_frame="unknown", tolerance_deg_mm=Believed::Given((0.5, 5.0)), corrections=None, gravity=None, seed=1, **unknown),
+            text_signature = "(robot, *, candidates=None, workspace=None, workspace_box_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None, device_frame='unknown', tolerance_deg_mm=(0.5, 5.0), corrections='auto', gravity=(0, 0, -1), seed=1)")]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python class")]
     fn new(
         py: Python<'_>,
         #[pyo3(from_py_with = arg::robot)] robot: &Robot,
         candidates: Option<&Bound<'_, PyAny>>,
-        over: Option<&Bound<'_, PyAny>>,
-        over_box_mm: Option<&Bound<'_, PyAny>>,
+        workspace: Option<&Bound<'_, PyAny>>,
+        workspace_box_mm: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
         #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
-        #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
         #[pyo3(from_py_with = arg::tolerance_deg_mm)] tolerance_deg_mm: Believed,
         #[pyo3(from_py_with = arg::corrections)] corrections: Option<Corrections>,
         #[pyo3(from_py_with = arg::gravity)] gravity: Option<GravityDirection>,
@@ -86,7 +86,7 @@ impl Watch {
             sigma_position_mm,
             sigma_rotation_deg,
             robot_error_mm,
-            frame,
+            device_frame,
             tolerance_deg_mm: &tolerance_deg_mm,
             corrections,
             gravity,
@@ -95,7 +95,7 @@ impl Watch {
         let options = WatchOptions {
             fit: believe.fit(&robot.model, Kind::POINT, PlannedFit::default().count)?,
             candidates: configurations(candidates, robot)?,
-            workspace: workspace(robot, over, over_box_mm, seed)?,
+            workspace: workspace_of(robot, workspace, workspace_box_mm, seed)?,
             seed,
         };
         Ok(Watch { robot: robot.clone(), options, session: Mutex::new(Session { data, watched: None }) })

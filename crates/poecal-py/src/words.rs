@@ -1,9 +1,9 @@
 //! Arguments that are one of a few words, and numbers with a unit in their name.
 
 use nalgebra::Vector3;
-use poecal_calibrate::{DeviceFrameKnowledge, Loss, Robust};
+use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_cli::words::{self, Words};
 use poecal_model::measurement::Quantity;
-use poecal_model::offsets::End;
 use poecal_model::simulate::Kind;
 use poecal_numerics::error::nearest;
 use poecal_numerics::text::visible;
@@ -25,8 +25,14 @@ pub(crate) fn chosen<T: Copy>(name: &str, word: &str, words: &[(&str, T)]) -> Py
     Err(argument(name, format!("found `{word}`, expected one of {}{hint}", known.join(", "))))
 }
 
+/// Meaning of one of the words of an option of the program.
+pub(crate) fn one_of<T: Copy>(name: &str, word: &str, words: Words<T>) -> PyResult<T> {
+    let words: Vec<(&str, T)> = words.iter().map(|(word, _, meaning)| (*word, *meaning)).collect();
+    chosen(name, word, &words)
+}
+
 pub(crate) fn frame(word: &str) -> PyResult<DeviceFrameKnowledge> {
-    chosen("frame", word, &[("unknown", DeviceFrameKnowledge::Unknown), ("base", DeviceFrameKnowledge::Base)])
+    one_of("device_frame", word, words::FRAME)
 }
 
 pub(crate) fn kind(word: &str) -> PyResult<Kind> {
@@ -36,21 +42,6 @@ pub(crate) fn kind(word: &str) -> PyResult<Kind> {
 
 pub(crate) fn quantity(word: &str) -> PyResult<Quantity> {
     chosen("quantity", word, &Quantity::ALL.map(|quantity| (quantity.name(), quantity)))
-}
-
-pub(crate) fn robust(word: &str) -> PyResult<Robust> {
-    let words = [
-        ("auto", Robust::Auto),
-        ("off", Robust::Off),
-        ("huber", Robust::Loss(Loss::Huber)),
-        ("cauchy", Robust::Loss(Loss::Cauchy)),
-        ("tukey", Robust::Loss(Loss::Tukey)),
-    ];
-    chosen("robust", word, &words)
-}
-
-pub(crate) fn end(name: &str, word: &str) -> PyResult<End> {
-    chosen(name, word, &[End::Free, End::Kept].map(|end| (end.word(), end)))
 }
 
 /// Millimetres in metres.

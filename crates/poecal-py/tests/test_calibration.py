@@ -45,7 +45,7 @@ def test_a_prediction_is_forward_kinematics(calibration):
     assert poses.shape == (20, 4, 4)
     assert (poses == calibration.robot.forward_kinematics(joints)).all()
     assert calibration.predict(joints[0]).shape == (4, 4)
-    device = calibration.predict(joints, frame="device")
+    device = calibration.predict(joints, output_frame="device")
     # The device sees the target, which is not the tip.
     target = calibration.predict(joints, target="measured")
     assert np.allclose(calibration.base_from_device @ device, target, atol=1e-12) and not np.allclose(target, poses, atol=1e-4)
@@ -53,7 +53,7 @@ def test_a_prediction_is_forward_kinematics(calibration):
 
 def test_a_prediction_says_what_to_expect(made, calibration):
     # Compared in the device's frame: the base frame is a choice.
-    found = calibration.predict(made.held_out.joints, with_uncertainty=True, frame="device")
+    found = calibration.predict(made.held_out.joints, with_uncertainty=True, output_frame="device")
     errors = np.linalg.norm(found.poses[:, :3, 3] - made.held_out.positions, axis=1)
     print(f"errors {1e3 * errors.mean():.4f} mm, expected {1e3 * found.sigma_position_m.mean():.4f} mm")
     assert found.sigma_position_m.shape == found.sigma_rotation_rad.shape == found.inside_sampled_range.shape == (40,)
@@ -65,7 +65,7 @@ def test_a_prediction_says_what_to_expect(made, calibration):
 
 def test_all_options_are_taken(made):
     options = {
-        "frame": "unknown", "sigma_position_mm": 0.05, "sigma_rotation_deg": 0.01, "held_out": 0.2, "seed": 3, "robust": "huber",
+        "device_frame": "unknown", "sigma_position_mm": 0.05, "sigma_rotation_deg": 0.01, "held_out": 0.2, "seed": 3, "robust": "huber",
         "formulation": "screw", "residual": "spatial", "method": "gauss-newton",
     }  # fmt: skip
     told = []

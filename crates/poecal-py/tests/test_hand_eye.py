@@ -34,7 +34,7 @@ def session(count=15):
 
 def test_a_camera_is_found_within_its_bounds():
     arm, seen = session()
-    found = poecal.hand_eye(arm, seen, camera="in-hand", frames=["base", "flange", "eye", "board"])
+    found = poecal.hand_eye(arm, seen, camera="in-hand", frame_names=["base", "flange", "eye", "board"])
     frame = found["camera_frame"]
     off_mm = 1e3 * np.linalg.norm(np.array(frame["matrix"])[:3, 3] - CAMERA[:3, 3])
     print(f"{off_mm:.3f} mm off, bound {frame['bound95_mm']:.3f}")
@@ -92,4 +92,4 @@ def test_words_are_chosen_among_those_that_there_are():
     with pytest.raises(poecal.Error, match="in-hand"):
         poecal.hand_eye(*session(), camera="hand")
     with pytest.raises(poecal.Error, match="four names"):
-        poecal.hand_eye(*session(), camera="beside", frames=["base"])
+        poecal.hand_eye(*session(), camera="beside", frame_names=["base"])

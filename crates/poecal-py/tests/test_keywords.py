@@ -99,15 +99,15 @@ def test_a_text_has_its_own_unit(made):
     assert np.allclose(near.robot.screws, same.robot.screws, atol=1e-9)
     assert near.to_dict()["noise"] == pytest.approx(same.to_dict()["noise"]) if "noise" in same.to_dict() else True
     joints = rows.joints
-    numbers = poecal.plan(robot, count=8, judge=0, robot_error_mm=(0.2, 0.1), device_mm=(3000, 0, 500), distance_mm=(500, 6000), floor_mm=-700)
+    numbers = poecal.plan(robot, count=8, held_out_count=0, robot_error_mm=(0.2, 0.1), device_mm=(3000, 0, 500), distance_mm=(500, 6000), floor_height_mm=-700)
     texts = poecal.plan(
-        robot, count=8, judge=0, robot_error_mm="0.2,0.1mm", device_mm="3000,0,500mm", distance_mm="500mm,6m", floor_mm="-70cm"
+        robot, count=8, judge=0, robot_error_mm="0.2,0.1mm", device_mm="3000,0,500mm", distance_mm="500mm,6m", floor_height_mm="-70cm"
     )
     assert np.array_equal(texts.joints, numbers.joints)
-    turned = poecal.convert(robot, to="toml", offset={"joint2": "0.5deg"})
-    assert turned == poecal.convert(robot, to="toml", offset={"joint2": np.radians(0.5)})
+    turned = poecal.export(robot, format="toml", offset={"joint2": "0.5deg"})
+    assert turned == poecal.export(robot, format="toml", offset={"joint2": np.radians(0.5)})
     calibration = same
-    one, other = (calibration.compensate(joints, **most) for most in ({"most_turn_deg": 5, "most_slide_mm": "1cm"}, {"most_turn_rad": np.radians(5), "most_slide_m": 0.01}))
+    one, other = (calibration.compensate(joints, **most) for most in ({"max_turn_deg": 5, "max_slide_mm": "1cm"}, {"max_turn_rad": np.radians(5), "max_slide_m": 0.01}))
     assert np.array_equal(one, other)
     arrays = [poecal.Measurements.from_arrays(robot, joints=joints, positions=rows.positions, sigma_position_mm=it) for it in (0.05, "0.05mm")]
     assert arrays[0] == arrays[1]
@@ -134,7 +134,7 @@ def test_a_wrong_unit_is_one_sentence(made, option, said):
 
 def test_both_spellings_of_one_option_are_refused(made):
     calibration = poecal.calibrate(made.nominal, made.measurements)
-    with pytest.raises(poecal.OptionError, match="most_turn_deg: found most_turn_rad too, expected one of the two"):
-        calibration.compensate(made.measurements.joints, most_turn_deg=2, most_turn_rad=0.03)
-    with pytest.raises(poecal.OptionError, match="most_slide_mm: found 0, expected a number above 0"):
-        calibration.compensate(made.measurements.joints, most_slide_mm=0)
+    with pytest.raises(poecal.OptionError, match="max_turn_deg: found max_turn_rad too, expected one of the two"):
+        calibration.compensate(made.measurements.joints, max_turn_deg=2, max_turn_rad=0.03)
+    with pytest.raises(poecal.OptionError, match="max_slide_mm: found 0, expected a number above 0"):
+        calibration.compensate(made.measurements.joints, max_slide_mm=0)

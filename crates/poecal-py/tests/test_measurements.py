@@ -112,7 +112,7 @@ def test_data_frames_have_the_columns_of_files(library):
         seen = poecal.Measurements.from_dataframe(frame, elbow())
     assert set(seen.targets) == {"ball, left"} and seen.sets.count("held_out") == 10 and seen.ids[7] == "p7"
     assert seen.warnings == ["dataframe: ignored the columns `run`"]
-    by_run = poecal.Measurements.from_dataframe(frame, elbow(), fit_where="run=1,2,3")
+    by_run = poecal.Measurements.from_dataframe(frame, elbow(), train_where="run=1,2,3")
     assert by_run.sets.count("fit") == 3
     assert set(poecal.Measurements.from_dataframe(frame, elbow(), ignore_sets=True).sets) == {None}
 
@@ -199,6 +199,6 @@ def test_each_instrument_has_a_frame_of_its_own(tmp_path):
     header = ",".join(f"joint{i}" for i in range(1, 7)) + ",x,y,z\n"
     for path, rows in zip(files, np.split(np.hstack([seen.joints, positions]), 2), strict=True):
         path.write_text(header + "".join(",".join(repr(float(it)) for it in row) + "\n" for row in rows))
-    of_files = poecal.Measurements.from_csv(files, elbow(), frames="per-file")
+    of_files = poecal.Measurements.from_csv(files, elbow(), device_frames="per-file")
     assert of_files.instruments == [str(files[0])] * 40 + [str(files[1])] * 40
     assert poecal.calibrate(elbow(), of_files).accuracy == calibration.accuracy

@@ -92,7 +92,7 @@ def test_objects_say_in_one_line_what_they_are():
 
 
 def test_options_are_keywords_only():
-    for function in [poecal.calibrate, poecal.simulate, poecal.identify, poecal.convert, poecal.offsets, poecal.reproduce]:
+    for function in [poecal.calibrate, poecal.simulate, poecal.identify, poecal.export, poecal.offsets, poecal.reproduce]:
         parameters = inspect.signature(function).parameters.values()
         with_default = [it for it in parameters if it.default is not inspect.Parameter.empty]
         assert with_default

@@ -28,14 +28,14 @@ def test_compensated_joints_reach_what_the_nominal_robot_means(calibration):
     joints = generator.uniform(-1, 1, (200, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
     meant = calibration.taught().forward_kinematics(joints)
     # Errors of a degree take more than two of some joints.
-    commanded = calibration.compensate(joints, most_turn_rad=1.0)
+    commanded = calibration.compensate(joints, max_turn_rad=1.0)
     assert commanded.shape == joints.shape
     reached = poses_of(calibration, commanded)
     print(f"without correction {np.linalg.norm((poses_of(calibration, joints) - reached)[:, :3, 3], axis=1).max() * 1e3:.2f} mm")
     assert apart(reached, meant) < 1e-10
     assert 1e-4 < np.median(np.abs(commanded - joints)) < 0.05
-    assert apart(calibration.compensate(joints[3], most_turn_rad=1.0), commanded[3]) < 1e-10
-    assert calibration.compensate(joints[3], most_turn_rad=1.0).shape == (6,)
+    assert apart(calibration.compensate(joints[3], max_turn_rad=1.0), commanded[3]) < 1e-10
+    assert calibration.compensate(joints[3], max_turn_rad=1.0).shape == (6,)
 
 
 def test_rows_that_stay_as_they_are_are_named(calibration):
@@ -48,7 +48,7 @@ def test_rows_that_stay_as_they_are_are_named(calibration):
     assert (commanded[listed] == joints[listed]).all()
     others = sorted(set(range(200)) - set(listed))
     assert np.abs(commanded - joints)[others].max(axis=1) == pytest.approx([it["change"] for it in summary["targets"]], abs=1e-15)
-    for name in ("most_turn_rad", "most_slide_m"):
+    for name in ("max_turn_rad", "max_slide_m"):
         for value in (0, -1.0, float("nan"), float("inf")):
             with pytest.raises(ValueError, match=f"{name}: found .*, expected a number above 0"):
                 calibration.compensate(joints, **{name: value})

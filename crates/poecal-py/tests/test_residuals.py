@@ -18,7 +18,7 @@ DIAGNOSTICS = ["weight", "leverage", "studentized", "suspected"]
 
 
 def calibrated(kind: str, **options) -> poecal.Calibration:
-    made = session(kind, count=80, frame=options.get("frame", "unknown"))
+    made = session(kind, count=80, device_frame=options.get("device_frame", "unknown"))
     return poecal.calibrate(made.nominal, made.measurements, **options)
 
 
@@ -116,7 +116,7 @@ def moved(calibration, name, step) -> poecal.Robot:
 @pytest.mark.parametrize("kind", ["pose", "point"])
 @pytest.mark.parametrize("frame", ["unknown", "base"])
 def test_the_covariance_is_that_of_predictions(kind, frame):
-    calibration = calibrated(kind, frame=frame, move_tip=True)
+    calibration = calibrated(kind, device_frame=frame, move_tip=True)
     covariance = calibration.covariance
     joints = configurations(40)
     found = calibration.predict(joints, with_uncertainty=True, model="calibrated")

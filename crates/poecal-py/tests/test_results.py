@@ -42,7 +42,7 @@ def results(made, calibration, tmp_path_factory) -> dict[str, poecal.Findings]:
         "WatchedRow": poecal.Watch(made.nominal).add_all(made.measurements[:12])[-1],
         "HandEye": poecal.hand_eye(arm, seen, camera="in-hand"),
         "ToolTip": poecal.tcp(np.array([arm[k] for k in range(12)])),
-        "Compensation": calibration.compensate(joints, summary=True, most_turn_deg=60)[1],
+        "Compensation": calibration.compensate(joints, summary=True, max_turn_deg=60)[1],
         "Reproduction": poecal.reproduce("lou2009", trials=2, starts=1),
     }
 

@@ -102,13 +102,13 @@ def test_files_read_back(tmp_path):
         assert np.abs(again.forward_kinematics(joints) - robot.forward_kinematics(joints)).max() < 1e-12
         assert again.path == str(tmp_path / name)
     assert robot.to_text("toml") == (tmp_path / "a.toml").read_text()
-    assert poecal.convert(robot, out=tmp_path / "b.toml") == robot.to_text("toml")
+    assert poecal.export(robot, out=tmp_path / "b.toml") == robot.to_text("toml")
 
 
 def test_nothing_is_replaced_without_force(tmp_path):
     robot, mine = elbow(), tmp_path / "mine.toml"
     mine.write_text("mine")
-    for write in [lambda **more: robot.write(mine, **more), lambda **more: poecal.convert(robot, out=mine, **more)]:
+    for write in [lambda **more: robot.write(mine, **more), lambda **more: poecal.export(robot, out=mine, **more)]:
         with pytest.raises(poecal.FileError, match="found this file, expected none"):
             write()
         assert mine.read_text() == "mine"
@@ -118,19 +118,19 @@ def test_nothing_is_replaced_without_force(tmp_path):
     robot.write(tmp_path / "robot.toml")
     robot = poecal.Robot.read(tmp_path / "robot.toml")
     with pytest.raises(poecal.FileError, match="found a file that this run reads"):
-        poecal.convert(robot, out=tmp_path / "robot.toml", force=True)
+        poecal.export(robot, out=tmp_path / "robot.toml", force=True)
     assert [path.name for path in sorted(tmp_path.iterdir())] == ["mine.toml", "robot.toml"]
 
 
 def test_offsets_of_unknown_joints_are_refused():
     robot = elbow()
     with pytest.raises(poecal.OptionError, match="found no moving joint `joint7`.*did you mean `joint1`"):
-        poecal.convert(robot, to="toml", offset={"joint7": 0.1})
+        poecal.export(robot, format="toml", offset={"joint7": 0.1})
 
 
 def test_offsets_become_screws_and_back(tmp_path):
     robot, joints = elbow(), configurations(9)
-    poecal.convert(robot, out=tmp_path / "moved.toml", offset={"joint2": 0.1, "joint5": -0.2})
+    poecal.export(robot, out=tmp_path / "moved.toml", offset={"joint2": 0.1, "joint5": -0.2})
     moved = poecal.Robot.read(tmp_path / "moved.toml")
     shifted = joints + [0, 0.1, 0, 0, -0.2, 0]
     assert np.abs(moved.forward_kinematics(joints) - robot.forward_kinematics(shifted)).max() < 1e-12

@@ -142,8 +142,8 @@ impl Track {
             record: Record::default(),
             state: found.state,
             judged_by: found.judged_by,
-            device: if found.options.device_is_known { "known" } else { "anew" },
-            tool: if found.options.tool_is_anew { "anew" } else { "same" },
+            device: if found.options.device_is_known { "known" } else { "refit" },
+            tool: if found.options.tool_is_anew { "refit" } else { "same" },
             rows: found.rows,
             repeated: found.repeated,
             explanation: found.explanation.as_ref().map(ExplanationEntry::of),
@@ -242,7 +242,7 @@ impl Track {
     }
 
     pub(crate) fn tool_words(&self) -> &'static str {
-        if self.tool == "anew" { "mounted anew: its targets are fitted" } else { "on the flange as it was" }
+        if self.tool == "refit" { "mounted anew: its targets are fitted" } else { "on the flange as it was" }
     }
 
     /// The table.

@@ -206,7 +206,7 @@ pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
         ),
         Kind::Tool => (
             Use::Axes,
-            "Look at the tool and its mounting. Measure its tip again (`poecal tcp`), or state `--tool anew` if it was taken off".to_owned(),
+            "Look at the tool and its mounting. Measure its tip again (`poecal tcp`), or state `--tool refit` if it was taken off".to_owned(),
         ),
         Kind::Target => {
             (Use::Axes, format!("Fasten the {named}, or do without it: measure the visit again with the other targets"))

@@ -214,7 +214,7 @@ fn seen(model: &Model) -> Result<Option<&str>> {
         (_, Some(only)) => Ok(Some(only)),
         (several, None) => {
             Err(ErrorKind::Option.error(format!(
-                "found {} targets that the device may see ({}), expected the name of one for --frame device: write --target {}",
+                "found {} targets that the device may see ({}), expected the name of one for --output-frame device: write --target {}",
                 several.len(),
                 first_few(several),
                 several[0]
@@ -273,7 +273,7 @@ fn device_from_base(model: &Model) -> Result<Pose> {
             };
             if let Some(name) = first.filter(is_moved) {
                 return Err(ErrorKind::Option.error(format!(
-                    "found the instrument `{name}` on the robot, expected one beside it for --frame device: use --frame base"
+                    "found the instrument `{name}` on the robot, expected one beside it for --output-frame device: use --output-frame base"
                 )).in_file(&model.path));
             }
             let found = match file.last_station() {
@@ -286,7 +286,7 @@ fn device_from_base(model: &Model) -> Result<Pose> {
         ModelSource::Urdf(_) | ModelSource::Toml => Err(ErrorKind::Option
             .error(
                 "found a robot model without a measuring device, expected a calibration.json for \
-                           --frame device: use --frame base",
+                           --output-frame device: use --output-frame base",
             )
             .in_file(&model.path)),
     }

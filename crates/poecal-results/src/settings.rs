@@ -9,6 +9,8 @@ use poecal_numerics::error::{Error, ErrorKind, Result, nearest_or_all, position}
 use poecal_storage::limits::Limit;
 use poecal_storage::source_text;
 
+use crate::renamed::new_key;
+
 /// Key with the version of the file.
 const VERSION_KEY: &str = "poecal_settings";
 
@@ -86,7 +88,8 @@ impl Settings {
                 continue;
             }
             if !keys.contains(&key.get_ref().as_ref()) {
-                let near = nearest_or_all(key.get_ref(), keys);
+                let near = new_key(key.get_ref(), keys)
+                    .map_or_else(|| nearest_or_all(key.get_ref(), keys), |new| format!("it is now `{new}`"));
                 let message = format!("found the key `{}`, expected a setting: {near}", key.get_ref());
                 return Err(at(key.span().start, message));
             }

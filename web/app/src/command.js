@@ -1,9 +1,9 @@
 // The program's command line, from files with their roles and from options.
 
 /** Options of `poecal calibrate` that `poecal check` and `poecal validate` take too. */
-const READING = ["--columns", "--strict", "--frames", "--join", "--socket-distance", "--contact", "--instrument-noise"];
-const CHECKING = [...READING, "--base-link", "--tip-link", "--instrument", "--target", "--fit-where", "--frame"];
-const JUDGING = [...READING, "--refit-frame", "--refit-tool", "--require", "--accept", "--accept-model"];
+const READING = ["--columns", "--strict", "--device-frames", "--join", "--socket-distance", "--contact", "--instrument-noise"];
+const CHECKING = [...READING, "--base-link", "--tip-link", "--instrument", "--target", "--train-where", "--device-frame"];
+const JUDGING = [...READING, "--refit", "--require", "--accept", "--accept-model"];
 
 /** Words as a shell takes them apart: blanks separate, quotes and backslashes keep together. */
 export function wordsOf(line) {

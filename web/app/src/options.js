@@ -4,8 +4,8 @@ import { wordsOf } from "./command.js";
 import { element } from "./dom.js";
 
 const CONTROLS = [
-  { flag: "--frame", label: "Device frame", note: "where the measuring device stands", values: { "": "unknown: found by the fit", base: "the robot's base frame" } },
-  { flag: "--frames", label: "Device moved", note: "between the measurement files", values: { "": "no: one frame for all", "per-file": "yes: a frame for each file" } },
+  { flag: "--device-frame", label: "Device frame", note: "where the measuring device stands", values: { "": "unknown: found by the fit", base: "the robot's base frame" } },
+  { flag: "--device-frames", label: "Device moved", note: "between the measurement files", values: { "": "no: one frame for all", "per-file": "yes: a frame for each file" } },
   { flag: "--held-out", label: "Held out", note: "share of configurations kept for validation", hint: "0.3" },
   { flag: "--tolerance", label: "Tolerance", note: "deviation of an axis from nominal", hint: "0.5deg,5mm", offers: ["auto", "none", "0.2deg,2mm", "3deg,10mm"] },
   { flag: "--corrections", label: "Corrections", note: "what joints do beyond geometry", values: { "": "auto: those that predict better", all: "all: look among more", off: "off: geometry alone" } },

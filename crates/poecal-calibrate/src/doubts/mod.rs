@@ -32,7 +32,7 @@ pub(crate) fn doubts(
     };
     if error_mm > MISFIT * spread_mm {
         let base = match frame {
-            DeviceFrameKnowledge::Base => ", a device that does not stand at the base (--frame base)",
+            DeviceFrameKnowledge::Base => ", a device that does not stand at the base (--device-frame base)",
             DeviceFrameKnowledge::Unknown => "",
         };
         doubts.push(format!(

@@ -127,7 +127,7 @@ fn statement(step: &Step, far: &str, data: &Dataset, robot: &Robot) -> Statement
             let name = named(&data.stations, station);
             let is = match files_apart(data, step.first) {
                 Some((before, after)) if name.is_empty() => format!(
-                    "the files {before} and {after} do not share one device frame, as --frames per-file says: the measuring device is {far} \
+                    "the files {before} and {after} do not share one device frame, as --device-frames per-file says: the measuring device is {far} \
                          from where it was{or}"
                 ),
                 _ => format!(

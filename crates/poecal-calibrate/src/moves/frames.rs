@@ -66,7 +66,7 @@ impl FrameSearch<'_> {
         let left = self.better(own_m)?;
         let statement = format!(
             "the files {names} do not share one device frame: with a frame for each, {left}; the measuring device seems to have been moved \
-             between them; calibrate with --frames per-file"
+             between them; calibrate with --device-frames per-file"
         );
         Some(FramesApart { statement, data, estimate })
     }

@@ -194,7 +194,7 @@ impl ChangeSearch<'_> {
         {
             return format!(
                 "from {place} on the measurements are shifted by {far_mm:.2} mm: the files {before} and {after} do not share one \
-                 device frame, the measuring device seems to have been moved between them; give each file its own with --frames per-file"
+                 device frame, the measuring device seems to have been moved between them; give each file its own with --device-frames per-file"
             );
         }
         let remedy = if self.session.device_free {

@@ -161,7 +161,7 @@ pub(crate) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     match choice.free.iter().find(frees) {
         Some(word) => {
             ErrorKind::Option.refuse(format!(
-                "found `{word}` to be fitted beside measurements in the base frame (--frame base), expected one of the two: leave one out"
+                "found `{word}` to be fitted beside measurements in the base frame (--device-frame base), expected one of the two: leave one out"
             ))
         }
         None => Ok(()),

@@ -33,7 +33,7 @@ pub(crate) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();
     let needed = screws + targets + devices;
     if needed == 0 {
-        return ErrorKind::Option.refuse("found nothing that is unknown, expected at least one block to fit: fix fewer, or leave --frame base out");
+        return ErrorKind::Option.refuse("found nothing that is unknown, expected at least one block to fit: fix fewer, or leave --device-frame base out");
     }
     if needed > MOST_UNKNOWNS {
         return ErrorKind::Problem.refuse(format!(

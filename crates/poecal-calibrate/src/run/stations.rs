@@ -30,8 +30,8 @@ pub(crate) fn check_stations(
     }
     if options.frame == DeviceFrameKnowledge::Base {
         return ErrorKind::Option.refuse(format!(
-            "found measurements of {stations} instruments that are to be in the base frame (--frame base), expected one of the two: leave \
-             the instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own"
+            "found measurements of {stations} instruments that are to be in the base frame (--device-frame base), expected one of the two: leave \
+             the instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own"
         ));
     }
     for station in (0..stations).filter(|&station| unknowns.moves_frame(station)) {

@@ -269,7 +269,7 @@ pub(crate) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
     if tool > MOST_UNKNOWNS {
         return ErrorKind::Problem.refuse(format!(
             "found {tool} unknowns of {} targets to be refitted, expected at most {MOST_UNKNOWNS} in one fit: \
-             leave --refit-tool out, or judge fewer targets",
+             leave --refit tool out, or judge fewer targets",
             data.targets.len()
         ));
     }

@@ -122,7 +122,7 @@ fn files_with_two_device_frames_are_named() {
                 "{kind:?} {count}: {}",
                 said(&found)
             );
-            assert!(says(&found, "--frames per-file"), "{}", said(&found));
+            assert!(says(&found, "--device-frames per-file"), "{}", said(&found));
             assert!(!says(&found, "unit of the noise") && !says(&found, "outlier"), "{}", said(&found));
             assert!(found.diagnosis.is_empty(), "{}", said(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);

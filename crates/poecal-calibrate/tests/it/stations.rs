@@ -167,8 +167,8 @@ fn places_that_cannot_be_found_are_refused() {
     let base = CalibrationOptions { frame: DeviceFrameKnowledge::Base, ..Default::default() };
     assert_eq!(
         refusal(&robot, &data, &base),
-        "found measurements of 2 instruments that are to be in the base frame (--frame base), expected one of the two: leave the \
-         instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own"
+        "found measurements of 2 instruments that are to be in the base frame (--device-frame base), expected one of the two: leave the \
+         instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own"
     );
     let mut few = data.clone();
     few.observations.iter_mut().skip(32).for_each(|observation| observation.station = 0);

@@ -13,8 +13,8 @@ use poecal_results::record::Record;
 
 use super::report::ReportPlace;
 use super::shared::{FIT, JUDGED, RESULTS, Reading, TreeArgs};
-use super::words::{FORMULATION, FRAME, METHOD, MODEL, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 use crate::quantity::{BelievedTolerance, share, sigma_m, sigma_rad, whole};
+use crate::words::{FORMULATION, FRAME, METHOD, MODEL, REPAIR, REQUIRED_LEVEL, RESIDUAL, ROBUST, one_of};
 
 /// Arguments of `poecal calibrate`.
 #[derive(Args, Debug)]
@@ -32,7 +32,7 @@ pub(crate) struct Calibrate {
     pub(crate) reading: Reading,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown", help_heading = FIT)]
-    pub(crate) frame: DeviceFrameKnowledge,
+    pub(crate) device_frame: DeviceFrameKnowledge,
     /// Standard deviation of each measured position component, like 0.05mm [default: estimated from the data]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, allow_hyphen_values = true, help_heading = FIT)]
     pub(crate) sigma_position: Option<f64>,
@@ -72,7 +72,7 @@ pub(crate) struct Calibrate {
     /// model, and the point is the target `measured`
     #[arg(long, help_heading = FIT)]
     pub(crate) move_tip: bool,
-    /// Share of the configurations held out at random, unless a column `set`, --fit-where or --validate chooses them; 0 fits every row [default: 0.3;
+    /// Share of the configurations held out at random, unless a column `set`, --train-where or --validate chooses them; 0 fits every row [default: 0.3;
     /// 0 if fewer than 12 would be held out, but for pictures, rows in motion and --accept]
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true, help_heading = JUDGED)]
     pub(crate) held_out: Option<f64>,
@@ -90,17 +90,17 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "THING=SIZE", value_delimiter = ',', help_heading = FIT)]
     pub(crate) repair_limit: Vec<RepairLimit>,
     /// Parameterisation of joint errors; all but the default are for comparison
-    #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(FORMULATION), default_value = "adjoint", hide = true)]
     pub(crate) formulation: Formulation,
     /// Residual of measured frames; the paper's is for comparison. Points have one residual only
-    #[arg(long, value_parser = one_of(RESIDUAL), default_value = "tool", help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(RESIDUAL), default_value = "tool", hide = true)]
     pub(crate) residual: Residual,
     /// Steps of the solver; plain Gauss-Newton may diverge [default: gauss-newton for formulations with free screws, else
     /// levenberg-marquardt]
-    #[arg(long, value_parser = one_of(METHOD), help_heading = "Comparison")]
+    #[arg(long, value_parser = one_of(METHOD), hide = true)]
     pub(crate) method: Option<Method>,
     /// Measurement file to judge by: all other rows are fitted
-    #[arg(long, value_name = "FILE", conflicts_with = "fit_where", help_heading = JUDGED)]
+    #[arg(long, value_name = "FILE", conflicts_with = "train_where", help_heading = JUDGED)]
     pub(crate) validate: Vec<PathBuf>,
     /// Folder for the results [default: poecal-out; if it is there and --force is not stated, poecal-out-2, and so on]
     #[arg(long, value_name = "DIR", help_heading = RESULTS)]
@@ -138,7 +138,7 @@ pub(crate) struct Calibrate {
     #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
     /// Print where the time went, as a line of JSON on standard error; the solve is repeated for that
-    #[arg(long, help_heading = RESULTS)]
+    #[arg(long, hide = true)]
     pub(crate) timings: bool,
 }
 

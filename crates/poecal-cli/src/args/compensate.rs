@@ -8,8 +8,8 @@ use poecal_compensate::MostChange;
 use poecal_model::robot::ThirdAxis;
 
 use super::shared::{ColumnArgs, OutFile};
-use super::words::{LANGUAGE, MODEL, ProgramLanguage, THIRD_AXIS, one_of};
 use crate::quantity::most_change;
+use crate::words::{LANGUAGE, MODEL, ProgramLanguage, THIRD_AXIS, one_of};
 
 /// Arguments of `poecal compensate`.
 #[derive(Args, Debug)]
@@ -26,17 +26,17 @@ pub(crate) struct Compensate {
     pub(crate) language: Option<ProgramLanguage>,
     /// Tool of a robot program, in the controller's flange: by its number or name, or that of programs that set none; the numbers as the
     /// language writes poses
-    #[arg(long = "tool", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
-    pub(crate) tools: Vec<String>,
-    /// Frame of a robot program's poses (work object, base, user frame), in the controller's base: as --tool
-    #[arg(long = "frame", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
-    pub(crate) frames: Vec<String>,
+    #[arg(long = "tool-data", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
+    pub(crate) tool_data: Vec<String>,
+    /// Frame of a robot program's poses (work object, base, user frame), in the controller's base: as --tool-data
+    #[arg(long = "work-object", value_name = "[NAME=]NUMBERS", allow_hyphen_values = true)]
+    pub(crate) work_objects: Vec<String>,
     /// The controller's base in the model's base [default: the same]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
-    pub(crate) base: Option<String>,
+    pub(crate) controller_base: Option<String>,
     /// The controller's flange in the model's tip [default: the same]
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
-    pub(crate) flange: Option<String>,
+    pub(crate) controller_flange: Option<String>,
     /// Readings where the robot is before the program's first motion, as the language writes joints (J1,J2,...): of programs that begin with a pose and
     /// state no configuration (ConfL\Off, movej)
     #[arg(long, value_name = "READINGS", allow_hyphen_values = true)]
@@ -48,8 +48,8 @@ pub(crate) struct Compensate {
     /// Which model of the calibration is the actual robot: the corrected one, if there is one, or the calibrated one
     #[arg(long = "model", value_parser = one_of(MODEL), default_value = "corrected")]
     pub(crate) of: AcceptedModel,
-    /// Value of a factor of the corrected model while the program runs [default: its reference]
-    #[arg(long = "factor", value_name = "NAME=VALUE")]
+    /// Values of factors of the corrected model while the program runs [default: their references]
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
     pub(crate) factors: Vec<String>,
     /// End with code 1 unless the calibration clearly predicts better than the nominal model anywhere inside the sampled range
     #[arg(long)]
@@ -62,7 +62,7 @@ pub(crate) struct Compensate {
     pub(crate) nearest: bool,
     /// How far a joint may be moved beyond its zero, like 2deg,2mm; a target that takes more, at a singularity, stays as it is and is listed
     #[arg(long, value_name = "SIZES", value_parser = most_change, default_value = "2deg,2mm")]
-    pub(crate) most_change: MostChange,
+    pub(crate) max_correction: MostChange,
     /// Write nothing, only print what would be changed
     #[arg(long)]
     pub(crate) dry_run: bool,

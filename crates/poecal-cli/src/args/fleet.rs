@@ -18,7 +18,7 @@ pub(crate) struct Fleet {
     pub(crate) station: Option<PathBuf>,
     /// Calibrate robots again that the ledger has
     #[arg(long)]
-    pub(crate) again: bool,
+    pub(crate) rerun: bool,
     /// Robots of this part alone, by their serial numbers, like 2/4; to a ledger of its own, `fleet.2-of-4.jsonl`
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<(u32, u32)>,

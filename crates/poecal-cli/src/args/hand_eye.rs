@@ -9,7 +9,7 @@ use poecal_results::hand_eye::FrameNames;
 use poecal_storage::disk::is_file;
 
 use super::shared::ChainArgs;
-use super::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
+use crate::words::{FLANGE_POSES, HAND_EYE_CAMERA, TARGET_POSES, one_of};
 
 /// Arguments of `poecal hand-eye`.
 #[derive(Args, Debug)]
@@ -33,7 +33,7 @@ pub(crate) struct HandEye {
     /// Robot whose joint readings the file of the arm has instead of poses (URDF, MJCF, SDF or TOML). Then it is said too whether poses are predicted
     /// better if the arm is fitted with the camera
     #[arg(long, value_name = "MODEL")]
-    pub(crate) model: Option<PathBuf>,
+    pub(crate) robot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     /// Lens of corners in pixels, in the forms of --camera of poecal calibrate
@@ -44,7 +44,7 @@ pub(crate) struct HandEye {
     pub(crate) markers: Option<String>,
     /// Names of base, flange, camera and target in what is written [default: base_link,tool0,camera_color_optical_frame,target; of a model its own]
     #[arg(long, value_name = "BASE,FLANGE,CAMERA,TARGET")]
-    pub(crate) frames: Option<FrameNames>,
+    pub(crate) frame_names: Option<FrameNames>,
     #[command(flatten)]
     pub(crate) out: OutFrames,
 }
@@ -54,7 +54,7 @@ impl HandEye {
     pub(crate) fn inputs(&self) -> Vec<&Path> {
         let lens = self.lens.iter().filter_map(|typed| camera_file(typed)).map(|(path, _)| path);
         let board = self.markers.iter().map(Path::new).filter(|path| is_file(path));
-        self.poses.iter().chain(&self.model).map(PathBuf::as_path).chain(lens).chain(board).collect()
+        self.poses.iter().chain(&self.robot).map(PathBuf::as_path).chain(lens).chain(board).collect()
     }
 
     /// Lens and board of corners.
@@ -86,7 +86,7 @@ pub(crate) struct Tcp {
     pub(crate) poses: PathBuf,
     /// Robot whose joint readings the file has instead of poses (URDF, MJCF, SDF or TOML)
     #[arg(long, value_name = "MODEL")]
-    pub(crate) model: Option<PathBuf>,
+    pub(crate) robot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
     /// Units of columns that state none, like mm,deg
@@ -99,7 +99,7 @@ pub(crate) struct Tcp {
 impl Tcp {
     /// The input files.
     pub(crate) fn inputs(&self) -> Vec<&Path> {
-        std::iter::once(&self.poses).chain(&self.model).map(PathBuf::as_path).collect()
+        std::iter::once(&self.poses).chain(&self.robot).map(PathBuf::as_path).collect()
     }
 }
 

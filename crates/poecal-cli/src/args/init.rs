@@ -7,8 +7,8 @@ use poecal_fit::hand_eye::CameraPlace;
 use poecal_model::simulate::Kind;
 
 use super::shared::TreeArgs;
-use super::words::{HAND_EYE_CAMERA, measured, one_of};
 use crate::quantity::whole;
+use crate::words::{HAND_EYE_CAMERA, measured, one_of};
 
 /// What is chosen, and the column or the word for it.
 fn choice(text: &str) -> Result<(String, String), String> {
@@ -41,7 +41,7 @@ pub(crate) struct Init {
     #[command(flatten)]
     pub(crate) chain: TreeArgs,
     /// Kind of the measurements
-    #[arg(long, visible_alias = "measure", value_parser = measured(), default_value = "point")]
+    #[arg(long, value_parser = measured(), default_value = "point")]
     pub(crate) kind: Kind,
     /// Number of configurations to suggest
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]

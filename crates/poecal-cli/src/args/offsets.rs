@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use poecal_model::offsets::End;
+use poecal_numerics::error::{ErrorKind, Result};
 
 use super::shared::{ChainArgs, OutFile};
-use super::words::{END, one_of};
+use crate::words::{OUTER_FRAME, OuterFrame, one_of};
 
 /// Arguments of `poecal offsets`.
 #[derive(Args, Debug)]
@@ -17,15 +18,29 @@ pub(crate) struct Offsets {
     pub(crate) actual: PathBuf,
     #[command(flatten)]
     pub(crate) chain: ChainArgs,
-    /// The base frame [default: free for a calibration whose device stood anywhere, else kept]
-    #[arg(long, value_parser = one_of(END))]
-    pub(crate) base: Option<End>,
-    /// The tip frame [default: free for a calibration, else kept]
-    #[arg(long, value_parser = one_of(END))]
-    pub(crate) tip: Option<End>,
+    /// Frames that are fitted with the offsets [default: of a calibration the tip, and the base if the device stood anywhere]
+    #[arg(long, value_parser = one_of(OUTER_FRAME), value_name = "FRAME", value_delimiter = ',')]
+    pub(crate) free: Vec<OuterFrame>,
+    /// Frames that are the same in both [default: the others]
+    #[arg(long, value_parser = one_of(OUTER_FRAME), value_name = "FRAME", value_delimiter = ',')]
+    pub(crate) fix: Vec<OuterFrame>,
     /// Print JSON instead of the table
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) place: OutFile,
+}
+
+impl Offsets {
+    /// What is stated of a frame.
+    pub(crate) fn stated(&self, frame: OuterFrame) -> Result<Option<End>> {
+        match (self.free.contains(&frame), self.fix.contains(&frame)) {
+            (true, true) => {
+                ErrorKind::Option.refuse("found a frame in --free and in --fix, expected one of the two")
+            }
+            (true, false) => Ok(Some(End::Free)),
+            (false, true) => Ok(Some(End::Kept)),
+            (false, false) => Ok(None),
+        }
+    }
 }

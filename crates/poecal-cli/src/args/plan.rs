@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::Args;
+use clap::{Arg, Args, Command};
 use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
 use poecal_model::simulate::Kind;
 use poecal_plan::plan::{PlanCriterion, RobotError};
 
-use super::shared::{ColumnArgs, FIT, OutFile, TreeArgs};
-use super::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
+use super::shared::{CameraArgs, ColumnArgs, FIT, OutFile, TreeArgs};
 use crate::quantity::{
-    BelievedTolerance, LengthAndAngle, Over, box_m, direction, distances_m, height_m, place_m, robot_error,
-    seconds, sigma_m, sigma_rad, whole,
+    BelievedTolerance, LengthAndAngle, Workspace, box_m, direction, distances_m, height_m, place_m,
+    robot_error, seconds, sigma_m, sigma_rad, whole,
 };
+use crate::words::{CRITERION, FRAME, SELF_COLLISION, TOOL, one_of, simulated};
 
 /// Arguments of `poecal plan`.
 #[derive(Args, Debug)]
@@ -24,21 +24,28 @@ pub(crate) struct Plan {
     pub(crate) chain: TreeArgs,
     #[command(flatten)]
     pub(crate) columns: ColumnArgs,
+    /// Judge this list instead of choosing one: what measurements in its configurations would determine, and the error to expect (CSV, xlsx, or as
+    /// controllers and recorders write them; repeatable). Only the joints' columns are read, but for kinds that touch something, which need those that
+    /// name it. With --camera and --markers pictures that were taken: the files that calibrate reads
+    #[arg(long, value_name = "FILE")]
+    pub(crate) rows: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cameras: CameraArgs,
     /// Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose repeats
     /// show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones
-    #[arg(long = "for", value_name = "PURPOSE", value_parser = ["drift"], conflicts_with_all = NOT_FOR_DRIFT)]
+    #[arg(long, value_name = "PURPOSE", value_parser = ["drift"])]
     pub(crate) purpose: Option<String>,
     #[command(flatten)]
     pub(crate) visits: VisitArgs,
     /// What will be measured of the tip
-    #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "point")]
+    #[arg(long, value_parser = simulated(), default_value = "point")]
     pub(crate) kind: Kind,
-    /// Number of different configurations to fit [with --for drift: to measure at each visit, by default 8]
+    /// Number of different configurations to fit [with --purpose drift: to measure at each visit, by default 8]
     #[arg(long, value_name = "N", default_value_if("purpose", "drift", "8"), default_value_t = 30, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) count: u32,
     /// Number of further rows to judge by, at random over the workspace [default: a third of the configurations]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1000))]
-    pub(crate) judge: Option<u32>,
+    pub(crate) held_out_count: Option<u32>,
     /// Choose from these configurations alone (a table of joint readings)
     #[arg(long, value_name = "FILE")]
     pub(crate) candidates: Option<PathBuf>,
@@ -50,15 +57,15 @@ pub(crate) struct Plan {
         default_value = "limits",
         allow_hyphen_values = true
     )]
-    pub(crate) over: Over,
+    pub(crate) workspace: Workspace,
     /// Rows that are in the list in any case, or were measured already (a table of joint readings): new ones complete them, and --count counts both.
     /// Rows whose `set` is held_out do not count
-    #[arg(long, visible_alias = "measured", value_name = "FILE")]
-    pub(crate) keep: Vec<PathBuf>,
-    /// Rows of --keep, counted from 1 through all files, that collided or were not seen: new ones take their places, not within 10 degrees of
+    #[arg(long, value_name = "FILE")]
+    pub(crate) keep_rows: Vec<PathBuf>,
+    /// Rows of --keep-rows, counted from 1 through all files, that collided or were not seen: new ones take their places, not within 10 degrees of
     /// them, and all other rows stay. The list has all rows then, in their order
-    #[arg(long, value_name = "ROW", value_delimiter = ',', requires = "keep", conflicts_with_all = ["count", "judge"])]
-    pub(crate) replace: Vec<u32>,
+    #[arg(long, value_name = "ROW", value_delimiter = ',', requires = "keep_rows", conflicts_with_all = ["count", "held_out_count"])]
+    pub(crate) replace_rows: Vec<u32>,
     /// What the list shall be good at
     #[arg(long, value_parser = one_of(CRITERION), default_value = "expected")]
     pub(crate) criterion: PlanCriterion,
@@ -93,46 +100,30 @@ pub(crate) struct Plan {
     pub(crate) json: bool,
 }
 
-/// Options that say nothing of visits.
-const NOT_FOR_DRIFT: [&str; 33] = [
-    "base_link",
-    "tip_link",
-    "instrument",
-    "target",
-    "kind",
-    "report",
-    "stop",
-    "judge",
-    "over",
-    "keep",
-    "replace",
-    "criterion",
-    "targets",
-    "target_offset",
-    "seed",
-    "program",
-    "sigma_position",
-    "sigma_rotation",
-    "robot_error",
-    "frame",
-    "tolerance",
-    "corrections",
-    "gravity",
-    "margin",
-    "keep_out",
-    "floor",
-    "separation",
-    "cone",
-    "device_looks_at",
-    "distance",
-    "acceptance",
-    "facing",
-    "self_collision",
-];
+/// Options of a list that is stated, and of visits: each purpose excludes all others.
+const OF_ROWS: &str = "rows camera markers base_link tip_link instrument target columns units kind sigma_position sigma_rotation robot_error \
+                       device_frame json";
+const OF_VISITS: &str =
+    "purpose repeatability tool reference columns units count candidates device out force json";
+/// Options that pictures replace.
+const NOT_OF_PICTURES: [&str; 4] = ["kind", "sigma_position", "sigma_rotation", "robot_error"];
+
+/// The command with its options that exclude each other.
+pub(crate) fn exclusive(plan: Command) -> Command {
+    let excluded = |kept: &str| {
+        let options = plan.get_opts().map(Arg::get_id);
+        let others = options.filter(|id| !kept.split(' ').any(|it| it == id.as_str()));
+        others.cloned().collect::<Vec<_>>()
+    };
+    let (of_rows, of_visits) = (excluded(OF_ROWS), excluded(OF_VISITS));
+    plan.mut_arg("rows", |it| it.conflicts_with_all(of_rows))
+        .mut_arg("purpose", |it| it.conflicts_with_all(of_visits))
+        .mut_arg("camera", |it| it.conflicts_with_all(NOT_OF_PICTURES))
+}
 
 /// What is known of the visits to a calibrated robot.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "With --for drift")]
+#[command(next_help_heading = "With --purpose drift")]
 pub(crate) struct VisitArgs {
     /// Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration]
     #[arg(long, value_name = "LENGTH", value_parser = sigma_m, requires = "purpose")]
@@ -150,7 +141,7 @@ pub(crate) struct VisitArgs {
 pub(crate) enum PlannedDevice {
     /// A place in the robot's base frame, metres.
     At([f64; 3]),
-    /// At a visit: where it stood, or anew.
+    /// At a visit: where it stood, or set up again.
     IsKnown(bool),
 }
 
@@ -158,10 +149,10 @@ pub(crate) enum PlannedDevice {
 fn planned_device(text: &str) -> Result<PlannedDevice, String> {
     match text {
         "known" => Ok(PlannedDevice::IsKnown(true)),
-        "anew" => Ok(PlannedDevice::IsKnown(false)),
+        "refit" => Ok(PlannedDevice::IsKnown(false)),
         place => place_m(place)
             .map(PlannedDevice::At)
-            .map_err(|error| format!("{error}; or known or anew with --for drift")),
+            .map_err(|error| format!("{error}; or known or refit with --purpose drift")),
     }
 }
 
@@ -181,7 +172,7 @@ pub(crate) struct FitArgs {
     pub(crate) robot_error: Option<RobotError>,
     /// The measuring device's frame
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
-    pub(crate) frame: DeviceFrameKnowledge,
+    pub(crate) device_frame: DeviceFrameKnowledge,
     /// How far the axes may be from the model's (the prior of the fit): standard deviations of their directions and places, or none
     #[arg(long, value_name = "ANGLE,LENGTH|none", default_value = "0.5deg,5mm")]
     pub(crate) tolerance: BelievedTolerance,
@@ -206,29 +197,29 @@ pub(crate) struct ConditionArgs {
     pub(crate) keep_out: Vec<[[f64; 3]; 2]>,
     /// Height above which all links that move stay, like 20mm
     #[arg(long, value_name = "LENGTH", value_parser = height_m, allow_hyphen_values = true)]
-    pub(crate) floor: Option<f64>,
+    pub(crate) floor_height: Option<f64>,
     /// Least change of some joint between any two configurations
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad)]
     pub(crate) separation: Option<f64>,
-    /// Where the measuring device is; targets that links hide from it are left out. With --for drift: known where it will stand as it stood, as on
-    /// fixed nests, or anew
-    #[arg(long, value_name = "X,Y,Zmm|known|anew", value_parser = planned_device, allow_hyphen_values = true)]
+    /// Where the measuring device is; targets that links hide from it are left out. With --purpose drift: known where it will stand as it stood, as on
+    /// fixed nests, or refit
+    #[arg(long, value_name = "X,Y,Zmm|known|refit", value_parser = planned_device, allow_hyphen_values = true)]
     pub(crate) device: Option<PlannedDevice>,
-    /// Half the angle of the device's cone, about the direction from it to --device-looks-at
+    /// Half the angle of the device's cone, about the direction from it to --device-aim
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
-    pub(crate) cone: Option<f64>,
+    pub(crate) device_half_angle: Option<f64>,
     /// Where the device looks [default: the base]
-    #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, requires = "cone", allow_hyphen_values = true)]
-    pub(crate) device_looks_at: Option<[f64; 3]>,
+    #[arg(long, value_name = "X,Y,Zmm", value_parser = place_m, requires = "device_half_angle", allow_hyphen_values = true)]
+    pub(crate) device_aim: Option<[f64; 3]>,
     /// Least and largest distance of the target from the device, like 0.5m:10m
     #[arg(long, value_name = "LENGTH:LENGTH", value_parser = distances_m, requires = "device")]
     pub(crate) distance: Option<[f64; 2]>,
     /// Largest angle between the direction in which the target looks and the line to the device: of a reflector or a board
     #[arg(long, value_name = "ANGLE", value_parser = sigma_rad, requires = "device")]
-    pub(crate) acceptance: Option<f64>,
+    pub(crate) target_half_angle: Option<f64>,
     /// The direction in which the target looks, in its own frame [default: 0,0,1]
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, requires = "acceptance", allow_hyphen_values = true)]
-    pub(crate) facing: Option<[f64; 3]>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, requires = "target_half_angle", allow_hyphen_values = true)]
+    pub(crate) target_normal: Option<[f64; 3]>,
     /// Whether links may overlap by their shapes in the URDF: capsules around these, so that a little room is lost
     #[arg(long, value_parser = one_of(SELF_COLLISION), default_value = "avoid", action = clap::ArgAction::Set)]
     pub(crate) self_collision: bool,

@@ -29,12 +29,19 @@ pub(crate) struct Report {
     /// calibration.json, with the residuals.csv that was written with it in the same folder
     pub(crate) calibration: PathBuf,
     /// residuals.csv, where it lies elsewhere
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "certificate")]
     pub(crate) residuals: Option<PathBuf>,
-    /// File to write, a new one or a report of poecal [default: report.html beside the calibration]
+    /// Write the certificate instead, one page of paper: errors before and after, limits, ranges, who and what
+    #[arg(long)]
+    pub(crate) certificate: bool,
+    /// Picture for the head of the certificate: PNG, JPEG or SVG
+    #[arg(long, value_name = "FILE", requires = "certificate")]
+    pub(crate) logo: Option<PathBuf>,
+    /// File to write, a new one or one of poecal [default: report.html or certificate.html beside the calibration]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// What it states, beside and in place of what the calibration's record states, like serial=4711 (repeatable)
+    /// What it states, beside and in place of what the calibration's record states, like serial=4711 or valid_until=2027-11-28
+    /// (repeatable)
     #[arg(long, value_name = "KEY=TEXT", value_parser = Record::pair)]
     pub(crate) record: Vec<(String, String)>,
     /// Write over any file that exists

@@ -11,8 +11,8 @@ use poecal_numerics::error::ErrorKind;
 use poecal_results::output::{Existing, FilePlace};
 use poecal_storage::disk::is_file;
 
-use super::words::{CONTACT, FRAMES, JOIN, one_of};
 use crate::console::Console;
+use crate::words::{CONTACT, FRAMES, JOIN, one_of};
 
 /// Headings of options that several commands have: of the model's links, of measurement files, of the fit, of what judges it, and of results.
 const LINKS: &str = "Links of the model";
@@ -42,7 +42,7 @@ impl ChainArgs {
     /// Refuses links of a model that is not stated.
     pub(crate) fn refuse_without(&self, model: Option<&Path>) -> poecal_numerics::error::Result<()> {
         if model.is_none() && (self.base_link.is_some() || self.tip_link.is_some()) {
-            let message = "found --base-link or --tip-link and no model, expected --model MODEL with them";
+            let message = "found --base-link or --tip-link and no model, expected --robot MODEL with them";
             return ErrorKind::Option.refuse(message);
         }
         Ok(())
@@ -152,7 +152,7 @@ pub(crate) struct Meaning {
     pub(crate) strict: bool,
     /// Which rows share a frame of the measuring device: per-file if it was moved between the files
     #[arg(long, value_parser = one_of(FRAMES), default_value = "common")]
-    pub(crate) frames: Frames,
+    pub(crate) device_frames: Frames,
     /// How rows of a joint file are matched to rows of a measurement file [default: by name, else recordings by the times at which the robot stood still and
     /// lists by their order, if the nominal model fits no other match as well]
     #[arg(long, value_parser = one_of(JOIN))]
@@ -190,7 +190,7 @@ impl Meaning {
     }
 
     pub(crate) fn options(&self) -> poecal_numerics::error::Result<ReadOptions> {
-        let (strict, frames, contact) = (self.strict, self.frames, self.contact);
+        let (strict, frames, contact) = (self.strict, self.device_frames, self.contact);
         let socket_distances = self.socket_distance.clone();
         let instrument_noise = self.instrument_noise.clone();
         let options = ReadOptions {
@@ -218,13 +218,13 @@ pub(crate) struct Reading {
     pub(crate) meaning: Meaning,
     /// Fit only rows whose COLUMN has one of these values, and hold out all others
     #[arg(long, value_name = "COLUMN=VALUE[,VALUE]")]
-    pub(crate) fit_where: Option<String>,
+    pub(crate) train_where: Option<String>,
 }
 
 impl Reading {
     pub(crate) fn options(&self) -> poecal_numerics::error::Result<ReadOptions> {
-        let fit_where = self.fit_where.as_deref().map(str::parse).transpose()?;
-        Ok(ReadOptions { fit_where, ..self.meaning.options()? })
+        let train_where = self.train_where.as_deref().map(str::parse).transpose()?;
+        Ok(ReadOptions { train_where, ..self.meaning.options()? })
     }
 }
 

@@ -6,14 +6,16 @@ use clap::Args;
 use poecal_calibrate::DeviceFrameKnowledge;
 #[cfg(any(unix, windows))]
 use poecal_detect::Spec;
+#[cfg(any(unix, windows))]
+use poecal_fit::hand_eye::CameraPlace;
 use poecal_model::robot::Sizes;
 use poecal_model::simulate::Kind;
 
 use super::shared::TreeArgs;
-#[cfg(any(unix, windows))]
-use super::words::{CAMERA, CameraPlace};
-use super::words::{FRAME, one_of, simulated};
 use crate::quantity::{LengthAndAngle, direction, terms};
+#[cfg(any(unix, windows))]
+use crate::words::CAMERA;
+use crate::words::{FRAME, one_of, simulated};
 
 /// Arguments of `poecal simulate`.
 #[derive(Args, Debug)]
@@ -42,19 +44,19 @@ pub(crate) struct Simulate {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Kind of the measurements
-    #[arg(long, visible_alias = "measure", value_parser = simulated(), default_value = "pose")]
+    #[arg(long, value_parser = simulated(), default_value = "pose")]
     pub(crate) kind: Kind,
     /// The measuring device's frame: unknown, or the robot's base
     #[arg(long, value_parser = one_of(FRAME), default_value = "unknown")]
-    pub(crate) frame: DeviceFrameKnowledge,
+    pub(crate) device_frame: DeviceFrameKnowledge,
     /// Number of further measurements, free of noise, to judge a calibration by
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=10_000_000))]
     pub(crate) held_out_count: u32,
     /// Pictures of a board and the readings of each, in place of measurements: where the camera is
     #[cfg(any(unix, windows))]
-    #[arg(long, value_parser = one_of(CAMERA), conflicts_with_all = ["kind", "frame", "held_out_count", "terms", "gravity"])]
+    #[arg(long, value_parser = one_of(CAMERA), conflicts_with_all = ["kind", "device_frame", "held_out_count", "terms", "gravity"])]
     pub(crate) camera: Option<CameraPlace>,
-    /// The board in the pictures, as poecal board draws it
+    /// The board in the pictures, as poecal detect --print draws it
     #[cfg(any(unix, windows))]
     #[arg(
         long,

@@ -7,8 +7,8 @@ use poecal_results::record::Record;
 
 use super::ReportPlace;
 use super::shared::{JUDGED, Meaning, RESULTS};
-use super::words::{DEVICE, TOOL, one_of};
 use crate::quantity::sigma_m;
+use crate::words::{DEVICE, TOOL, one_of};
 
 /// Arguments of `poecal track`.
 #[derive(Args, Debug)]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::plan::FitArgs;
 use super::shared::{ColumnArgs, TreeArgs};
-use crate::quantity::{Over, error_m, whole};
+use crate::quantity::{Workspace, error_m, whole};
 
 /// Arguments of `poecal watch`.
 #[derive(Args, Debug)]
@@ -31,14 +31,14 @@ pub(crate) struct Watch {
         default_value = "limits",
         allow_hyphen_values = true
     )]
-    pub(crate) over: Over,
+    pub(crate) workspace: Workspace,
     /// End with code 0 as soon as the expected error is at most this, like 0.15mm: of the corrected model, of the calibrated one without
     /// corrections
     #[arg(long, value_name = "LENGTH", value_parser = error_m)]
-    pub(crate) until: Option<f64>,
+    pub(crate) target_error: Option<f64>,
     /// Judge the rows of a finished file, one after the other, and end
     #[arg(long)]
-    pub(crate) once: bool,
+    pub(crate) batch: bool,
     /// Seed of everything random
     #[arg(long, default_value_t = 1, value_parser = whole::<u64>)]
     pub(crate) seed: u64,

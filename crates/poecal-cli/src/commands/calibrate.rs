@@ -163,8 +163,8 @@ fn read_measurements(
     }
     let stated_by = if !arguments.validate.is_empty() {
         "--validate"
-    } else if arguments.reading.fit_where.is_some() {
-        "--fit-where"
+    } else if arguments.reading.train_where.is_some() {
+        "--train-where"
     } else {
         "a column of the files"
     };
@@ -178,7 +178,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
     let usual = CalibrationOptions::default();
     let method = arguments.method.unwrap_or(arguments.formulation.usual_method());
     Ok(CalibrationOptions {
-        frame: arguments.frame,
+        frame: arguments.device_frame,
         blocks: BlockChoice { free: arguments.free.clone(), fix: arguments.fix.clone() },
         sigma: ByQuantity::default()
             .with(Quantity::Position, arguments.sigma_position)

@@ -1,4 +1,4 @@
-//! `poecal certificate`: one page of paper about a calibration.
+//! `poecal report --certificate`: one page of paper about a calibration.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use poecal_results::calibration_file::{CalibrationFile, Inputs};
 use poecal_results::output::{Existing, FilePlace};
 use poecal_results::record::Record;
 
-use crate::args::Certificate;
+use crate::args::Report;
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
-pub(crate) fn certificate(arguments: &Certificate, console: &Console) -> Result<u8> {
+pub(super) fn certificate(arguments: &Report, console: &Console) -> Result<u8> {
     let calibration = arguments.calibration.as_path();
     let file = CalibrationFile::read(calibration)?;
     if file.verdict.as_ref().is_some_and(|it| it.level == Level::DoNotUse) {
@@ -24,8 +24,7 @@ pub(crate) fn certificate(arguments: &Certificate, console: &Console) -> Result<
             )
             .in_file(calibration));
     }
-    let until = arguments.valid_until.as_deref().map(|day| ("valid_until", day));
-    let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())).chain(until);
+    let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str()));
     let record = file.record.clone().overridden(&Record::of(stated)?);
     let logo = arguments.logo.as_deref().map(logo::read).transpose()?;
     let out = arguments.out.clone().unwrap_or_else(|| calibration.with_file_name("certificate.html"));

@@ -34,7 +34,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
         Some(measurements::read(&arguments.measurements, &model.robot, &options)?)
     };
     let found = measurements.as_ref().map_or_else(Vec::new, |file| {
-        let device_free = arguments.frame == DeviceFrameKnowledge::Unknown;
+        let device_free = arguments.device_frame == DeviceFrameKnowledge::Unknown;
         let options = DiagnosisOptions { device_free, ..DiagnosisOptions::default() };
         diagnose(&model.robot, &file.data, &file.data.all_rows(), &options)
     });

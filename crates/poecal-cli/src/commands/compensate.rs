@@ -70,7 +70,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
 
 /// How far readings may be changed.
 fn change(arguments: &Compensate) -> ChangeOptions {
-    ChangeOptions { most_change: arguments.most_change, nearest: arguments.nearest }
+    ChangeOptions { most_change: arguments.max_correction, nearest: arguments.nearest }
 }
 
 fn is_sliding(robot: &Robot, name: &str) -> bool {
@@ -138,16 +138,16 @@ fn robot_program(
 /// Tools and frames as the words of the command line say them.
 fn given(arguments: &Compensate, language: Language) -> Result<Given> {
     let mut given = Given::default();
-    for words in &arguments.tools {
+    for words in &arguments.tool_data {
         given.add_tool(words, language)?;
     }
-    for words in &arguments.frames {
+    for words in &arguments.work_objects {
         given.add_frame(words, language)?;
     }
-    if let Some(words) = &arguments.base {
+    if let Some(words) = &arguments.controller_base {
         given.set_base(words, language)?;
     }
-    if let Some(words) = &arguments.flange {
+    if let Some(words) = &arguments.controller_flange {
         given.set_flange(words, language)?;
     }
     if let Some(words) = &arguments.start {
@@ -170,7 +170,7 @@ fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f6
             let known =
                 if names.is_empty() { "this model has no factors".to_owned() } else { names.join(", ") };
             return ErrorKind::Option.refuse(format!(
-                "found --factor {text}, expected NAME=VALUE with a factor of the model: {known}"
+                "found --factors {text}, expected NAME=VALUE with a factor of the model: {known}"
             ));
         };
         values[index] = value;
@@ -178,7 +178,7 @@ fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f6
     }
     for (factor, _) in robot.factors.iter().zip(is_stated).filter(|(_, is_stated)| !is_stated) {
         console.remark(format!(
-            "factor `{}` is taken to be {}: state it by --factor {}=VALUE",
+            "factor `{}` is taken to be {}: state it by --factors {}=VALUE",
             factor.name, factor.reference, factor.name
         ));
     }

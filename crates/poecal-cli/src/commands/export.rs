@@ -1,4 +1,4 @@
-//! `poecal export` and `poecal apply`: a calibrated robot in the forms that others read.
+//! `poecal export`: a robot in the forms that others read.
 
 use std::path::{Path, PathBuf};
 
@@ -6,24 +6,44 @@ use poecal_calibrate::AcceptedModel;
 use poecal_formats::urdf::ChainSelection;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_results::export::{self, ExportFormat, ExportOptions};
-use poecal_results::model::Model;
+use poecal_results::model::{Model, ModelFormat};
 use poecal_results::output::{Existing, FilePlace};
 use poecal_storage::limits::Limit;
 use poecal_storage::source_text::read_up_to;
 
+use super::joint_offsets::with_offsets;
+use super::models::warn_of;
 use crate::DONE;
-use crate::args::{Apply, Export, ExportForm, INSTEAD};
+use crate::args::{Export, ExportForm, INSTEAD};
 use crate::console::Console;
+
+/// The form by the output's name, or that of `--onto`.
+fn by_name(arguments: &Export) -> Result<ExportFormat> {
+    let out = arguments.place.out.as_ref();
+    match out.and_then(ModelFormat::of_path) {
+        _ if arguments.onto.is_some() => Ok(ExportFormat::Urdf),
+        Some(ModelFormat::Urdf) => Ok(ExportFormat::Urdf),
+        Some(ModelFormat::Toml) => Ok(ExportFormat::Toml),
+        None => {
+            let found = out.map_or_else(
+                || "found no --format".to_owned(),
+                |out| format!("found no form in the name `{}`", out.display()),
+            );
+            let words: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.word()).collect();
+            let message = format!(
+                "{found}, expected --out NAME.urdf or NAME.toml, or --format with one of {}",
+                words.join(", ")
+            );
+            ErrorKind::Option.refuse(message)
+        }
+    }
+}
 
 /// The form, with the options that it has.
 fn format(arguments: &Export) -> Result<ExportFormat> {
     let format = match arguments.format {
         Some(ExportForm::Open(format)) => format,
-        None => {
-            let words: Vec<&str> = ExportFormat::ALL.iter().map(|format| format.word()).collect();
-            return ErrorKind::Option
-                .refuse(format!("found no --format, expected one of {}", words.join(", ")));
-        }
+        None => by_name(arguments)?,
         Some(ExportForm::Closed(why)) => {
             return ErrorKind::Option.refuse(format!(
                 "--format: found a form whose maker publishes no format for this ({why}): {INSTEAD}"
@@ -55,6 +75,8 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     let whole = ChainSelection::default();
     let is_whole = is_calibration && arguments.onto.is_some();
     let model = Model::read(&arguments.model, if is_whole { &whole } else { &selection })?;
+    warn_of(&model, &arguments.model, console);
+    let model = with_offsets(model, &arguments.offset, console)?;
     let model = if arguments.of == AcceptedModel::Corrected { model.corrected()? } else { model };
     if let Some(urdf) = &arguments.onto {
         let converted = export::onto(&model, urdf, &selection)?;
@@ -90,14 +112,5 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
         console.deliver(text, Some(place))?;
         console.remark(format!("{} has what the joints do beyond geometry, with formulas", name.display()));
     }
-    Ok(DONE)
-}
-
-pub(crate) fn apply(arguments: &Apply, console: &Console) -> Result<u8> {
-    let place = arguments.place.reserve(&[&arguments.calibration, &arguments.urdf], console)?;
-    let calibration = Model::read(&arguments.calibration, &ChainSelection::default())?;
-    let converted = export::onto(&calibration, &arguments.urdf, &arguments.chain.selection(None)?)?;
-    console.warnings(&converted.notes);
-    console.deliver(converted.text, place)?;
     Ok(DONE)
 }

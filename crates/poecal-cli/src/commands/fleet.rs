@@ -46,7 +46,7 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
     let mut ledger = Ledger::open(&place)?;
     let mut seen: BTreeMap<PathBuf, String> = BTreeMap::new();
     let mut told = BTreeSet::new();
-    let mut again = arguments.again;
+    let mut again = arguments.rerun;
     loop {
         let (all, left) = newest(&station)?;
         for other in left {
@@ -69,7 +69,7 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
         if arguments.watch.is_none() && failed.now + failed.passed == 0 && failed.before > 0 {
             let what = if failed.before == 1 { "robot failed" } else { "robots failed" };
             console.say(&format!(
-                "nothing new; {} {what} before, with the same files: {} says why, and --again calibrates all again\n",
+                "nothing new; {} {what} before, with the same files: {} says why, and --rerun calibrates all again\n",
                 failed.before,
                 place.display()
             ))?;
@@ -184,7 +184,7 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
             let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
             (other.sha256(&row.file) != row.sha256(&row.file)).then(|| {
                 format!(
-                    "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --again",
+                    "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --rerun",
                     row.serial, row.date
                 )
             })

@@ -21,7 +21,7 @@ use crate::console::Console;
 pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.poses)?;
     let place = arguments.out.reserve(Contents::HandEye, &arguments.inputs(), console)?;
-    let model = model(arguments.model.as_ref(), &arguments.chain, console)?;
+    let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     refuse_without_use(arguments)?;
     let pictures = arguments.pictures()?;
     let robot = model.as_ref().map(|it| &it.robot);
@@ -41,8 +41,10 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
     let arm = robot.map(|robot| by_joints(robot, &poses, &found, arguments)).transpose()?;
     let weakens = arm.as_ref().and_then(|arm| arm.errors.as_ref().ok()?.weakens());
     weakens.into_iter().for_each(|reason| found.weaken(reason));
-    let names =
-        arguments.frames.clone().unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
+    let names = arguments
+        .frame_names
+        .clone()
+        .unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
     let result =
         HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
     let found = Frames {
@@ -63,7 +65,7 @@ fn by_joints(robot: &Robot, poses: &PosePairs, found: &Found, arguments: &HandEy
 /// The command that fits the arm with the camera: from the same pixels, or from the session that is written with --out.
 fn with_arm(arguments: &HandEye) -> String {
     let mut words = vec!["poecal".to_owned(), "calibrate".to_owned()];
-    words.extend(arguments.model.iter().map(|it| it.display().to_string()));
+    words.extend(arguments.robot.iter().map(|it| it.display().to_string()));
     let chain = &arguments.chain;
     for (option, link) in [("--base-link", &chain.base_link), ("--tip-link", &chain.tip_link)] {
         words.extend(link.iter().flat_map(|link| [option.to_owned(), link.clone()]));
@@ -84,9 +86,9 @@ fn with_arm(arguments: &HandEye) -> String {
 
 /// Refuses a direction of what has none.
 fn refuse_without_use(arguments: &HandEye) -> Result<()> {
-    if arguments.model.is_some() && arguments.flange.is_some() {
+    if arguments.robot.is_some() && arguments.flange.is_some() {
         return ErrorKind::Option
-            .refuse("found --flange beside --model, expected one of the two: by joint readings the arm's poses are base from flange");
+            .refuse("found --flange beside --robot, expected one of the two: by joint readings the arm's poses are base from flange");
     }
     Ok(())
 }

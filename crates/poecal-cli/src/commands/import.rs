@@ -90,12 +90,15 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     text("target", pairs(&chain.target));
     text("columns", meaning.columns.columns.as_deref().map(here));
     text("strict", meaning.strict.then(|| "true".to_owned()));
-    text("frames", (meaning.frames == Frames::PerFile).then(|| quoted(word_of(FRAMES, &meaning.frames))));
+    text(
+        "device_frames",
+        (meaning.device_frames == Frames::PerFile).then(|| quoted(word_of(FRAMES, &meaning.device_frames))),
+    );
     text(
         "contact",
         (meaning.contact == PlaneContact::Flush).then(|| quoted(word_of(CONTACT, &meaning.contact))),
     );
-    text("fit_where", reading.fit_where.as_deref().map(quoted));
+    text("train_where", reading.train_where.as_deref().map(quoted));
     // What was found is stated.
     text("join", meaning.join.or(file.join).map(|join| quoted(word_of(JOIN, &join))));
     let units = meaning.columns.units.clone().map_or_else(

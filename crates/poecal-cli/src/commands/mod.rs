@@ -5,7 +5,6 @@ mod certificate;
 mod check;
 mod compare;
 mod compensate;
-mod convert;
 mod export;
 #[cfg(any(unix, windows))]
 mod fleet;
@@ -15,6 +14,7 @@ mod identify;
 mod import;
 mod init;
 mod itself;
+mod joint_offsets;
 mod kept;
 mod models;
 mod offsets;
@@ -32,26 +32,21 @@ mod visits;
 mod watch;
 
 #[cfg(any(unix, windows))]
-use pictures::{board, detect, photograph};
+use pictures::{detect, photograph};
 
 use itself::{completions, man, reproduce, schema};
 
-#[cfg(any(unix, windows))]
-pub(crate) use board::board;
 pub(crate) use calibrate::calibrate;
-pub(crate) use certificate::certificate;
 pub(crate) use check::check;
 pub(crate) use compare::compare;
 pub(crate) use compensate::compensate;
 pub(crate) use completions::completions;
-pub(crate) use convert::convert;
 #[cfg(any(unix, windows))]
 pub(crate) use detect::detect;
-pub(crate) use export::{apply, export};
+pub(crate) use export::export;
 #[cfg(any(unix, windows))]
 pub(crate) use fleet::fleet;
 pub(crate) use hand_eye::hand_eye;
-pub(crate) use identify::identify;
 pub(crate) use import::import;
 pub(crate) use init::init;
 pub(crate) use man::man;

@@ -8,9 +8,9 @@ use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::offsets::ModelOffsets;
 
-use super::convert::quoted;
+use super::joint_offsets::quoted;
 use crate::DONE;
-use crate::args::Offsets;
+use crate::args::{Offsets, OuterFrame};
 use crate::console::Console;
 
 pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
@@ -22,8 +22,9 @@ pub(crate) fn offsets(arguments: &Offsets, console: &Console) -> Result<u8> {
         ["toml", "json"].map(OsStr::new).contains(&arguments.actual.extension().unwrap_or_default());
     let whole = ChainSelection::default();
     let actual = Model::read(&arguments.actual, if one_chain { &whole } else { &selection })?;
-    let explanation = ModelOffsets::between(&nominal, &actual, [arguments.base, arguments.tip])
-        .map_err(|error| error.in_file(&arguments.actual))?;
+    let stated = [arguments.stated(OuterFrame::Base)?, arguments.stated(OuterFrame::Tip)?];
+    let explanation =
+        ModelOffsets::between(&nominal, &actual, stated).map_err(|error| error.in_file(&arguments.actual))?;
     for joint in &nominal.robot.joints {
         let followers = nominal.robot.followers(&joint.name);
         if !followers.is_empty() {

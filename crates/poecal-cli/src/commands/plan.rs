@@ -16,16 +16,26 @@ use poecal_results::output::{Existing, FilePlace};
 use poecal_results::plan_program::plan_program;
 use poecal_results::shapes::capsules_of;
 
+use super::identify::identify;
 use super::models::read_model;
 use super::visits::{Stated, Visited};
 use crate::DONE;
 use crate::args::{FitArgs, OutFile, Plan, PlannedDevice};
 use crate::console::Console;
-use crate::quantity::{BelievedTolerance, Over};
+use crate::quantity::{BelievedTolerance, Workspace};
 use crate::style::{labelled, shown};
 
 pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
-    let files = arguments.candidates.iter().chain(&arguments.keep).map(PathBuf::as_path);
+    if !arguments.rows.is_empty() {
+        return identify(arguments, console);
+    }
+    refuse_pictures(arguments)?;
+    chosen(arguments, console)
+}
+
+/// Chooses configurations.
+fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
+    let files = arguments.candidates.iter().chain(&arguments.keep_rows).map(PathBuf::as_path);
     let files = files.chain(arguments.visits.reference.iter().map(PathBuf::as_path));
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
@@ -43,17 +53,17 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     let read = |path: &PathBuf| readings(path, &model, &reading, console);
     let list = arguments.candidates.as_ref().map(read).transpose()?;
     let mut kept = Vec::new();
-    for path in &arguments.keep {
+    for path in &arguments.keep_rows {
         let joints = read_joints(path, &model.robot, &reading)?;
         console.warnings(&joints.warnings);
         kept.extend(joints.planned());
     }
     let rows = kept.len();
-    let replaced = replaced_rows(&arguments.replace, rows)?;
-    let workspace = match &arguments.over {
-        Over::Limits => None,
-        Over::Tasks(path) => Some(read(path)?),
-        Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
+    let replaced = replaced_rows(&arguments.replace_rows, rows)?;
+    let workspace = match &arguments.workspace {
+        Workspace::Limits => None,
+        Workspace::Tasks(path) => Some(read(path)?),
+        Workspace::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
     let fit = fit(&arguments.fit, &model, arguments.kind, arguments.count)?;
     let options = PlanOptions {
@@ -61,7 +71,7 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
         criterion: arguments.criterion,
         list,
         workspace,
-        judge: arguments.judge.map(|count| count as usize),
+        judge: arguments.held_out_count.map(|count| count as usize),
         kept,
         replaced,
         conditions: conditions(arguments, &model, console)?,
@@ -83,11 +93,19 @@ pub(crate) fn plan(arguments: &Plan, console: &Console) -> Result<u8> {
     deliver(&arguments.place, (table, place), (text, arguments.json), console)
 }
 
+/// Refuses pictures that no rows name.
+fn refuse_pictures(arguments: &Plan) -> Result<()> {
+    if arguments.cameras.files().next().is_some() || !arguments.cameras.markers.is_empty() {
+        return ErrorKind::Option.refuse("found --camera or --markers without --rows, expected both with pictures that were taken, --rows FILE");
+    }
+    Ok(())
+}
+
 /// The rows to replace among so many, counted from 0.
 fn replaced_rows(replace: &[u32], rows: usize) -> Result<Vec<usize>> {
     if let Some(row) = replace.iter().find(|&&row| !(1..=rows).contains(&(row as usize))) {
         return ErrorKind::Option.refuse(format!(
-            "found row {row} to replace, expected one of the {rows} rows of --keep, counted from 1"
+            "found row {row} to replace, expected one of the {rows} rows of --keep-rows, counted from 1"
         ));
     }
     Ok(replace.iter().map(|&row| row as usize - 1).collect())
@@ -100,7 +118,7 @@ fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Resu
         Some(PlannedDevice::IsKnown(is_known)) => Some(is_known),
         Some(PlannedDevice::At(_)) => {
             return ErrorKind::Option
-                .refuse("--device: found a place, expected known or anew with --for drift");
+                .refuse("--device: found a place, expected known or refit with --purpose drift");
         }
     };
     let stated = Stated {
@@ -113,7 +131,7 @@ fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Resu
     };
     let visited = Visited::read(stated, console)?;
     let count = arguments.count as usize;
-    let (told, table) = visited.planned("--for drift", count, None, arguments.candidates.as_ref())?;
+    let (told, table) = visited.planned("--purpose drift", count, None, arguments.candidates.as_ref())?;
     let text = if arguments.json { report::json(&told)? } else { told.text() };
     deliver(&arguments.place, (table, place), (text, arguments.json), console)
 }
@@ -169,7 +187,7 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
         session: PlannedSession {
             kind,
             noise: Noise::new(arguments.sigma_position, arguments.sigma_rotation),
-            device_free: arguments.frame == DeviceFrameKnowledge::Unknown,
+            device_free: arguments.device_frame == DeviceFrameKnowledge::Unknown,
         },
         count: count as usize,
         tolerance,
@@ -188,7 +206,7 @@ fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Cond
     let device = match it.device {
         Some(PlannedDevice::IsKnown(_)) => {
             return ErrorKind::Option.refuse(
-                "--device: found known or anew, expected a place like 1500,0,800mm, or --for drift, which plans visits to a calibrated robot",
+                "--device: found known or refit, expected a place like 1500,0,800mm, or --purpose drift, which plans visits to a calibrated robot",
             );
         }
         Some(PlannedDevice::At(place)) => Some(place),
@@ -196,15 +214,15 @@ fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Cond
     };
     let sight = device.map(|place| Sight {
         place: place.into(),
-        cone: it.cone.map(|half| (it.device_looks_at.unwrap_or_default().into(), half)),
+        cone: it.device_half_angle.map(|half| (it.device_aim.unwrap_or_default().into(), half)),
         distance_m: it.distance.unwrap_or([0.0, f64::INFINITY]),
-        acceptance_rad: it.acceptance,
-        facing: it.facing.unwrap_or([0.0, 0.0, 1.0]).into(),
+        acceptance_rad: it.target_half_angle,
+        facing: it.target_normal.unwrap_or([0.0, 0.0, 1.0]).into(),
     });
     Ok(Conditions {
         margin: it.margin.as_ref().map(|margin| [margin.angle_rad, margin.length_m]),
         keep_out: it.keep_out.clone(),
-        floor_m: it.floor,
+        floor_m: it.floor_height,
         separation_rad: it.separation.unwrap_or(0.0),
         sight,
         capsules,

@@ -43,7 +43,8 @@ pub(crate) fn predict(arguments: &Predict, console: &Console) -> Result<u8> {
     };
     let joints = measurements::read_joints(&arguments.joints, &model.robot, &model.reads(options?))?;
     console.warnings(&joints.warnings);
-    let (frame, target) = (arguments.frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
+    let (frame, target) =
+        (arguments.output_frame, mounted.as_ref().map(|(name, _)| name.as_str()).or(target));
     if arguments.with_uncertainty
         && let Some(remark) = predictions::remark(&model, &joints, frame, target)?
     {

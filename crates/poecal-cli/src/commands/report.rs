@@ -7,11 +7,15 @@ use poecal_results::record::Record;
 use poecal_results::residuals::Residuals;
 
 use super::calibrate::page;
+use super::certificate::certificate;
 use crate::args::Report;
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
 pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
+    if arguments.certificate {
+        return certificate(arguments, console);
+    }
     let beside = |name: &str| arguments.calibration.with_file_name(name);
     let out = arguments.out.clone().unwrap_or_else(|| beside(output::REPORT));
     let path = arguments.residuals.clone().unwrap_or_else(|| beside("residuals.csv"));

@@ -37,7 +37,7 @@ pub(crate) fn simulate(arguments: &Simulate, console: &Console) -> Result<u8> {
         noise_rotation_rad: arguments.noise.angle_rad,
         count: arguments.count as usize,
         seed: arguments.seed,
-        device_anywhere: arguments.frame == DeviceFrameKnowledge::Unknown,
+        device_anywhere: arguments.device_frame == DeviceFrameKnowledge::Unknown,
         terms: arguments.terms,
         gravity: arguments.gravity.into(),
     };
@@ -87,8 +87,8 @@ fn command(arguments: &Simulate) -> String {
         let [x, y, z] = arguments.gravity;
         words.push(format!("--terms {} --gravity {x},{y},{z}", used.join(",")));
     }
-    if arguments.frame == DeviceFrameKnowledge::Base {
-        words.push("--frame base".to_owned());
+    if arguments.device_frame == DeviceFrameKnowledge::Base {
+        words.push("--device-frame base".to_owned());
     }
     if arguments.held_out_count > 0 {
         words.push(format!("--held-out-count {}", arguments.held_out_count));

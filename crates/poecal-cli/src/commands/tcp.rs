@@ -16,7 +16,7 @@ use crate::console::Console;
 
 pub(crate) fn tcp(arguments: &Tcp, typed: &[OsString], console: &Console) -> Result<u8> {
     let place = arguments.out.reserve(Contents::Tip, &arguments.inputs(), console)?;
-    let model = model(arguments.model.as_ref(), &arguments.chain, console)?;
+    let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     let poses = read_flange_poses(&arguments.poses, arguments.units, model.as_ref().map(|it| &it.robot))?;
     console.warnings(&poses.warnings);
     poses.understood.iter().for_each(|it| console.remark(it));

@@ -16,7 +16,7 @@ use poecal_storage::named_files::refuse_repeats;
 
 use super::kept::Kept;
 use super::typed::command;
-use crate::args::{ReportPlace, Validate};
+use crate::args::{Refit, ReportPlace, Validate};
 use crate::console::Console;
 use crate::style::{self, labelled, shown};
 use crate::{DONE, WORSE};
@@ -39,9 +39,9 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     let read = measurements::read(&arguments.measurements, &calibrated, &options)?;
     let limits = AcceptanceLimits::chosen(arguments.accept.clone(), arguments.accept_model)?;
     let judging = Judging {
-        refit_frame: arguments.refit_frame,
-        refit_moved: arguments.refit,
-        refit_tool: arguments.refit_tool,
+        refit_frame: arguments.refit.contains(&Refit::Device),
+        refit_moved: arguments.refit.contains(&Refit::Auto),
+        refit_tool: arguments.refit.contains(&Refit::Tool),
         accept: limits.as_ref(),
     };
     let sha256 = Inputs::checksums(std::iter::once(arguments.calibration.as_path()))?;

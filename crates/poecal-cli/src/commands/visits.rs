@@ -1,4 +1,4 @@
-//! Earlier rows of a calibrated robot, and which configurations to measure at its visits: of `poecal track` and of `poecal plan --for drift`.
+//! Earlier rows of a calibrated robot, and which configurations to measure at its visits: of `poecal track` and of `poecal plan --purpose drift`.
 
 use std::path::{Path, PathBuf};
 

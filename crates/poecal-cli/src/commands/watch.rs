@@ -14,7 +14,7 @@ use super::models::read_model;
 use super::plan::{fit, readings};
 use crate::args::Watch;
 use crate::console::Console;
-use crate::quantity::Over;
+use crate::quantity::Workspace;
 use crate::{DONE, WORSE};
 
 /// How often the file is looked at.
@@ -23,9 +23,9 @@ const PAUSE: Duration = Duration::from_millis(100);
 const LOOKS: u32 = 20;
 
 pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
-    if cfg!(target_family = "wasm") && !arguments.once {
+    if cfg!(target_family = "wasm") && !arguments.batch {
         return ErrorKind::Option.refuse(
-            "found watch without --once, expected it where a program cannot wait for a file, as in a browser",
+            "found watch without --batch, expected it where a program cannot wait for a file, as in a browser",
         );
     }
     let options = arguments.columns.options();
@@ -33,10 +33,10 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     let reading = model.reads(options?);
     let read = |path| readings(path, &model, &reading, console);
     let candidates = arguments.candidates.as_ref().map(read).transpose()?;
-    let workspace = match &arguments.over {
-        Over::Limits => None,
-        Over::Tasks(path) => Some(readings(path, &model, &reading, console)?),
-        Over::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
+    let workspace = match &arguments.workspace {
+        Workspace::Limits => None,
+        Workspace::Tasks(path) => Some(readings(path, &model, &reading, console)?),
+        Workspace::Box(corners) => Some(workspace_in(&model.robot, corners, arguments.seed)?),
     };
     let fit = fit(&arguments.fit, &model, Kind::POINT, 30)?;
     let options = WatchOptions { fit, candidates, workspace, seed: arguments.seed };
@@ -46,7 +46,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     let is_corrected = arguments.fit.corrections != Corrections::Off;
     loop {
         let news = match file.news(&model.robot, &reading) {
-            Err(error) if !arguments.once && is_for_a_moment(&error.to_string(), &mut trouble) => None,
+            Err(error) if !arguments.batch && is_for_a_moment(&error.to_string(), &mut trouble) => None,
             news => news?,
         };
         if let Some(News { file, is_again }) = news {
@@ -67,14 +67,14 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
                 console.json_or_table(arguments.json, || line.json(), || line.text())?;
                 let error =
                     row.now.map(|now| if is_corrected { now.corrected_m() } else { now.calibrated_m() });
-                is_reached |= arguments.until.zip(error).is_some_and(|(until, error)| error <= until);
-                if is_reached && !arguments.once {
+                is_reached |= arguments.target_error.zip(error).is_some_and(|(until, error)| error <= until);
+                if is_reached && !arguments.batch {
                     return Ok(DONE);
                 }
             }
         }
-        if arguments.once {
-            let is_short = arguments.until.is_some() && !is_reached;
+        if arguments.batch {
+            let is_short = arguments.target_error.is_some() && !is_reached;
             return Ok(if is_named || is_short { WORSE } else { DONE });
         }
         sleep(PAUSE);
@@ -84,7 +84,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
 /// The file, which is waited for unless it is read once.
 fn opened(arguments: &Watch, console: &Console) -> GrowingFile {
     let file = GrowingFile::new(&arguments.measurements);
-    if arguments.once {
+    if arguments.batch {
         return file;
     }
     if file.is_absent() {

@@ -78,7 +78,7 @@ fn other_measurements_decide_and_those_of_the_calibration_do_not() {
     let run = folder.run("validate poecal-out/calibration.json some.csv --accept 10mm");
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
     assert!(run.out.contains("acceptance    PASS: "), "{}", run.out);
-    let run = folder.run("validate poecal-out/calibration.json some.csv --accept 1nm --refit-frame --json");
+    let run = folder.run("validate poecal-out/calibration.json some.csv --accept 1nm --refit device --json");
     assert!(run.code == 1 && run.out.contains("\"decision\": \"fail\""), "{}", run.out);
     let run = folder.run("validate poecal-out/calibration.json measurements.csv --accept 10mm");
     assert_eq!(run.code, 2);

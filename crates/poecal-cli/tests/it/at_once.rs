@@ -103,7 +103,7 @@ fn nothing_is_lost_and_nothing_twice() {
         }
     }
     let words = |visit: &str| {
-        format!("validate results/SN0/calibration.json {visit}/measurements.csv --refit-frame --refit-tool")
+        format!("validate results/SN0/calibration.json {visit}/measurements.csv --refit device,tool")
     };
     let running: Vec<Child> = [0, 0, 1, 1].iter().map(|at| started(&folder, &words(&visits[*at]))).collect();
     for child in running {
@@ -221,15 +221,14 @@ fn a_log_that_is_written_again_is_waited_for() {
     folder.write("log.csv", part(12) + "1,2\n");
     let run = folder.run("watch robot.urdf log.csv");
     assert!(run.code == 2 && run.err.contains("found 2 cell"), "{}", run.err);
-    assert_eq!(folder.run("watch robot.urdf none.csv --once").code, 2);
+    assert_eq!(folder.run("watch robot.urdf none.csv --batch").code, 2);
 }
 
 #[test]
 fn a_torn_line_of_a_history_is_set_aside() {
     let folder = line(1);
     folder.run("calibrate robot.urdf made0/measurements.csv --out out");
-    let words =
-        "validate out/calibration.json made0/measurements.csv --refit-frame --refit-tool --history h.jsonl";
+    let words = "validate out/calibration.json made0/measurements.csv --refit device,tool --history h.jsonl";
     assert!(folder.run(words).code <= 1);
     let whole = folder.read("h.jsonl");
     for (text, count) in [

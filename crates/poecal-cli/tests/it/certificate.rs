@@ -1,4 +1,4 @@
-//! `poecal certificate`.
+//! `poecal report --certificate`.
 
 use poecal_model::simulate::Kind;
 
@@ -13,7 +13,7 @@ fn a_certificate_states_the_session_and_its_result() {
     );
     folder.write("logo.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
     let out = folder.done(
-        "certificate poecal-out/calibration.json --logo logo.svg --valid-until 2027-11-28 --record serial=4712",
+        "report poecal-out/calibration.json --certificate --logo logo.svg --record valid_until=2027-11-28 --record serial=4712",
     );
     assert_eq!(out, "written       poecal-out/certificate.html\n");
     let page = folder.read("poecal-out/certificate.html");
@@ -24,17 +24,20 @@ fn a_certificate_states_the_session_and_its_result() {
     }
     assert!(!page.contains("4711") && !page.contains("<script"));
     // Again: its own file is replaced, others' are not.
-    folder.done("certificate poecal-out/calibration.json");
+    folder.done("report poecal-out/calibration.json --certificate");
     folder.write("theirs.html", "theirs");
     for (words, sentence) in [
-        ("certificate poecal-out/calibration.json --out theirs.html", "theirs.html"),
-        ("certificate robot.urdf", "found a URDF, expected a calibration as written by `poecal calibrate`"),
+        ("report poecal-out/calibration.json --certificate --out theirs.html", "theirs.html"),
         (
-            "certificate poecal-out/calibration.json --valid-until tomorrow",
+            "report robot.urdf --certificate",
+            "found a URDF, expected a calibration as written by `poecal calibrate`",
+        ),
+        (
+            "report poecal-out/calibration.json --certificate --record valid_until=tomorrow",
             "found `tomorrow` as the day until which it is valid",
         ),
         (
-            "certificate poecal-out/calibration.json --logo robot.urdf",
+            "report poecal-out/calibration.json --certificate --logo robot.urdf",
             "found no picture, expected PNG, JPEG or SVG",
         ),
     ] {

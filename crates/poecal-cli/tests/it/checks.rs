@@ -34,7 +34,7 @@ fn history(folder: &Folder, name: &str) -> Vec<Value> {
 #[test]
 fn a_repeat_measurement_has_its_own_record_and_report() {
     let folder = checked();
-    let command = "validate poecal-out/calibration.json spring.csv --refit-frame --out spring --record operator=Mia --record serial=4711";
+    let command = "validate poecal-out/calibration.json spring.csv --refit device --out spring --record operator=Mia --record serial=4711";
     let out = folder.done(command);
     println!("{out}");
     assert!(out.starts_with("verdict       the calibration "), "{out}");
@@ -80,7 +80,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     // The results of the calibration are never replaced by those of a check, nor the other way round.
     let own = folder.read("poecal-out/report.html");
     let run =
-        folder.run("validate poecal-out/calibration.json spring.csv --refit-frame --out poecal-out --force");
+        folder.run("validate poecal-out/calibration.json spring.csv --refit device --out poecal-out --force");
     assert_eq!(
         run.err,
         "error: poecal-out: found the results of a calibration, expected another folder: choose one with --out\n"
@@ -97,13 +97,13 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
 fn the_history_gets_a_line_a_check() {
     let folder = checked();
     let check = "validate poecal-out/calibration.json";
-    folder.done(&format!("{check} spring.csv --refit-frame --quiet"));
-    folder.done(&format!("{check} spring.csv --refit-frame --quiet --json"));
+    folder.done(&format!("{check} spring.csv --refit device --quiet"));
+    folder.done(&format!("{check} spring.csv --refit device --quiet --json"));
     assert_eq!(history(&folder, "poecal-out/history.jsonl").len(), 1, "the same check is there once");
     // A run that was killed left half a line.
     let cut = folder.read("poecal-out/history.jsonl") + "{\"time\": \"2026-";
     folder.write("poecal-out/history.jsonl", cut);
-    folder.done(&format!("{check} autumn.csv --refit-frame --quiet --report autumn.html"));
+    folder.done(&format!("{check} autumn.csv --refit device --quiet --report autumn.html"));
     let lines: Vec<Value> = folder
         .read("poecal-out/history.jsonl")
         .lines()
@@ -117,18 +117,18 @@ fn the_history_gets_a_line_a_check() {
     let page = folder.read("autumn.html");
     assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
     // A calibration again into the same folder keeps the history, which is none of the new calibration.
-    folder.done("calibrate robot.urdf measurements.csv spring.csv --frames per-file --force --quiet");
+    folder.done("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
-    folder.done(&format!("{check} autumn.csv --refit-frame --quiet --report again.html"));
+    folder.done(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
     assert!(!folder.read("again.html").contains("Checks of this calibration"));
     // Elsewhere, or nowhere.
     let before = folder.read("poecal-out/history.jsonl");
-    folder.done(&format!("{check} spring.csv --refit-frame --quiet --history cell.jsonl"));
-    folder.done(&format!("{check} spring.csv --refit-frame --quiet --refit-tool --history none"));
+    folder.done(&format!("{check} spring.csv --refit device --quiet --history cell.jsonl"));
+    folder.done(&format!("{check} spring.csv --refit device --quiet --refit tool --history none"));
     assert_eq!((history(&folder, "cell.jsonl").len(), folder.read("poecal-out/history.jsonl")), (1, before));
     // A file that is none is not written to.
     let rows = folder.read("spring.csv");
-    let run = folder.run(&format!("{check} spring.csv --refit-frame --history spring.csv"));
+    let run = folder.run(&format!("{check} spring.csv --refit device --history spring.csv"));
     assert_eq!(
         run.err,
         "error: spring.csv: found a file without a check, expected the history of checks or nothing\n"
@@ -137,7 +137,7 @@ fn the_history_gets_a_line_a_check() {
     // Where the usual one cannot be kept, the check is done all the same, and that is said.
     std::fs::remove_file(folder.path("poecal-out/history.jsonl")).unwrap();
     std::fs::create_dir(folder.path("poecal-out/history.jsonl")).unwrap();
-    let run = folder.run(&format!("{check} spring.csv --refit-frame"));
+    let run = folder.run(&format!("{check} spring.csv --refit device"));
     println!("{}", run.err);
     assert!(run.code == 0 && run.err.contains("the check is not in the history"), "{}", run.err);
 }

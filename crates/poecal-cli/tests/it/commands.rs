@@ -68,7 +68,7 @@ fn training_figures_are_never_shown_without_the_word() {
         "",
         &Simulation { count: 25, noise_position_m: 6e-5, ..Simulation::default() },
     );
-    for arguments in ["--validate other.csv", "--held-out 0", "--fit-where stage=1", ""] {
+    for arguments in ["--validate other.csv", "--held-out 0", "--train-where stage=1", ""] {
         let out =
             folder.done(&format!("calibrate robot.urdf measurements.csv --force --verbose {arguments}"));
         // Each block of figures begins with a row that names its set; the first block of a table is the training one.
@@ -95,7 +95,7 @@ fn training_figures_are_never_shown_without_the_word() {
         "{}",
         found.err
     );
-    let out = folder.done("validate poecal-out/calibration.json measurements.csv --refit-frame --refit-tool");
+    let out = folder.done("validate poecal-out/calibration.json measurements.csv --refit device,tool");
     assert!(out.contains("device frame and tool: fitted to these measurements, so training"), "{out}");
 }
 
@@ -125,7 +125,7 @@ fn what_is_held_out_can_be_said() {
     folder.done(&format!("{of_few} --held-out 0.3"));
     assert_eq!(calibration(&folder, "few/out").accuracy.held_out.unwrap().count, 6);
 
-    let out = folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out stage");
+    let out = folder.done("calibrate robot.urdf measurements.csv --train-where stage=1 --out stage");
     assert!(out.contains("from 40 of 60 rows") && out.contains("\nheld out      20 rows, at most "), "{out}");
 
     let simulation = Simulation { count: 60, seed: 1, ..Simulation::default() };
@@ -139,7 +139,7 @@ fn what_is_held_out_can_be_said() {
     let out = folder.done("calibrate robot.urdf measurements.csv --validate other.csv --out other");
     assert!(out.contains("from 60 of 85 rows") && out.contains("\nheld out      25 rows, at most "), "{out}");
 
-    for stated in ["--fit-where stage=1", "--validate other.csv"] {
+    for stated in ["--train-where stage=1", "--validate other.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
         assert_eq!(run.code, 0, "{}", run.err);
         // Beside --validate no more is held out than that file.
@@ -202,8 +202,8 @@ fn predictions_are_those_of_the_model() {
         assert!(predicted[6] >= 0.0);
     }
     // In the device's frame, predictions are what was measured, but for the noise.
-    let out =
-        folder.done("predict poecal-out/calibration.json measurements.csv --frame device --out seen.csv");
+    let out = folder
+        .done("predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv");
     assert_eq!(out, "");
     for (row, predicted) in numbers(&folder.read("seen.csv"), 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
@@ -223,10 +223,10 @@ fn the_device_is_the_base_where_that_was_given() {
     let folder = session(Kind::POSE);
     let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
     write_measurements(&folder, "base.csv", Kind::POSE, "", &at_base);
-    folder.done("calibrate robot.urdf base.csv --frame base");
+    folder.done("calibrate robot.urdf base.csv --device-frame base");
     assert_eq!(
-        folder.done("predict poecal-out/calibration.json base.csv --frame device"),
-        folder.done("predict poecal-out/calibration.json base.csv --frame base --target measured")
+        folder.done("predict poecal-out/calibration.json base.csv --output-frame device"),
+        folder.done("predict poecal-out/calibration.json base.csv --output-frame base --target measured")
     );
 }
 
@@ -252,7 +252,7 @@ fn check_says_what_it_understood() {
         assert!(out.contains(words), "`{words}` is not in\n{out}");
     }
     assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
-    let out = folder.done("check robot.urdf measurements.csv --fit-where stage=1");
+    let out = folder.done("check robot.urdf measurements.csv --train-where stage=1");
     assert!(out.contains("sets          40 to fit, 20 held out"), "{out}");
 
     let json: serde_json::Value =
@@ -269,16 +269,16 @@ fn check_says_what_it_understood() {
 fn convert_gives_the_same_robot_in_another_form() {
     let folder = session(Kind::POSE);
     folder.done("calibrate robot.urdf measurements.csv");
-    let run = folder.run("convert robot.urdf --to toml");
+    let run = folder.run("export robot.urdf --format toml");
     assert!(run.out.starts_with("poecal_robot = 1\n"));
     assert_eq!(
         run.err,
         "warning: link frames, fixed joints, meshes and inertias are not part of a TOML model and were left out\n"
     );
-    assert_eq!(folder.done("convert robot.urdf --out robot.toml"), "");
+    assert_eq!(folder.done("export robot.urdf --out robot.toml"), "");
     assert_eq!(folder.read("robot.toml"), run.out);
-    folder.done("convert poecal-out/calibration.json --out again.urdf");
-    folder.done("convert again.urdf --tip-link tool --to toml --out again.toml");
+    folder.done("export poecal-out/calibration.json --out again.urdf");
+    folder.done("export again.urdf --tip-link tool --format toml --out again.toml");
     for (a, b) in [
         ("robot.urdf", "robot.toml"),
         ("poecal-out/calibration.json", "again.urdf"),

@@ -28,7 +28,7 @@ fn folder() -> Folder {
 fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     let folder = folder();
     let told = folder
-        .done("compensate --most-change 20deg results/calibration.json program.csv --out out.csv --check");
+        .done("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --check");
     assert!(told.starts_with("largest change: `joint"), "{told}");
     assert!(told.contains("\n3 rows corrected: without correction the tip would be off by "), "{told}");
     assert!(told.contains("checked from the written numbers: at most "), "{told}");
@@ -70,18 +70,22 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
 fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     let folder = folder();
     let json = folder
-        .done("compensate --most-change 20deg results/calibration.json program.csv --out out.csv --json");
+        .done("compensate --max-correction 20deg results/calibration.json program.csv --out out.csv --json");
     let found: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&found["rows"], &found["joints"][5]), (&3.into(), &"joint6".into()));
     assert!(found["left_m"]["value"].as_f64().unwrap() < 1e-9);
     let written = folder.read("out.csv");
-    assert_eq!(folder.done("compensate --most-change 20deg results/calibration.json program.csv"), written);
-    let piped = folder.run_with_input("compensate --most-change 20deg results/calibration.json -", PROGRAM);
+    assert_eq!(
+        folder.done("compensate --max-correction 20deg results/calibration.json program.csv"),
+        written
+    );
+    let piped =
+        folder.run_with_input("compensate --max-correction 20deg results/calibration.json -", PROGRAM);
     assert_eq!((piped.code, piped.out), (0, written));
     // Without what the calibration found there is nothing to correct.
     folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
     let other =
-        folder.done("compensate --most-change 20deg results/calibration.json same.csv --model calibrated");
+        folder.done("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
     assert_eq!(other.lines().count(), 2);
 }
 
@@ -100,8 +104,8 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
             "error: word.csv:3:5: found `x` in column `joint3`, expected a finite number",
         ),
         (
-            "results/calibration.json program.csv --factor heat=3",
-            "error: found --factor heat=3, expected NAME=VALUE with a factor of the model: ",
+            "results/calibration.json program.csv --factors heat=3",
+            "error: found --factors heat=3, expected NAME=VALUE with a factor of the model: ",
         ),
         ("results/calibration.json nowhere.csv", "error: nowhere.csv: found no such file"),
     ] {
@@ -110,11 +114,12 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
         assert!(run.err.contains(sentence), "{arguments}: {}", run.err);
     }
-    let run = folder
-        .run("compensate --most-change 20deg results/calibration.json program.csv --out program.csv --force");
+    let run = folder.run(
+        "compensate --max-correction 20deg results/calibration.json program.csv --out program.csv --force",
+    );
     assert!(run.code == 2 && run.err.contains("input"), "{}", run.err);
     let run = folder.run(
-        "compensate --most-change 20deg results/calibration.json word.csv --columns sum.toml --out out.csv",
+        "compensate --max-correction 20deg results/calibration.json word.csv --columns sum.toml --out out.csv",
     );
     assert!(run.code == 2 && run.err.contains("`joint3` is a constant by the mapping"), "{}", run.err);
     assert_eq!(folder.listing(), before);
@@ -131,7 +136,7 @@ fn poses_out_of_reach_are_listed_or_come_near() {
     }
     folder.write("edge.csv", &text);
     let refused =
-        folder.run("compensate --most-change 20deg results/calibration.json edge.csv --out out.csv");
+        folder.run("compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv");
     let kept = folder.read("out.csv");
     if refused.code != 0 {
         assert_eq!(refused.code, 1);
@@ -141,7 +146,7 @@ fn poses_out_of_reach_are_listed_or_come_near() {
         assert_eq!(kept.lines().nth(at), text.lines().nth(at));
     }
     let near = folder.run(
-        "compensate --most-change 20deg results/calibration.json edge.csv --out out.csv --nearest --force",
+        "compensate --max-correction 20deg results/calibration.json edge.csv --out out.csv --nearest --force",
     );
     assert_eq!(near.code, 0, "{}{}", near.out, near.err);
     assert_eq!(refused.code != 0, near.err.contains("cannot be reached by the actual robot"), "{}", near.err);
@@ -156,7 +161,7 @@ fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
     let folder = folder();
     std::fs::write(folder.path("p.script"), SCRIPT).unwrap();
     let run = folder
-        .run("compensate --most-change 20deg results/calibration.json p.script --out out.script --check");
+        .run("compensate --max-correction 20deg results/calibration.json p.script --out out.script --check");
     println!("{}{}", run.out, run.err);
     assert_eq!(run.code, 1);
     assert!(
@@ -165,7 +170,7 @@ fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
         run.out
     );
     assert!(run.out.contains("checked from the written numbers: at most "), "{}", run.out);
-    let row = "  line 4: wp: the tool is not known: state it by --tool (motion on line 5)\n";
+    let row = "  line 4: wp: the tool is not known: state it by --tool-data (motion on line 5)\n";
     assert!(run.out.contains(&format!("1 target is left as it is:\n{row}")), "{}", run.out);
     assert!(run.err.contains("1 target is left as the program has it, where the robot will miss as before; the first on line 4: the tool is not known"), "{}", run.err);
     let written = std::fs::read(folder.path("out.script")).unwrap();
@@ -177,7 +182,7 @@ fn a_robot_program_keeps_its_bytes_and_what_is_left_is_listed() {
     let end = |text: &[u8]| text[text.len() - 60..].to_vec();
     assert_eq!(end(&written), end(SCRIPT));
     let json = folder.run(
-        "compensate --most-change 20deg results/calibration.json p.script --out out.script --json --force",
+        "compensate --max-correction 20deg results/calibration.json p.script --out out.script --json --force",
     );
     let found: serde_json::Value = serde_json::from_str(&json.out).unwrap();
     assert_eq!((json.code, &found["corrected"], &found["rows"]), (1, &1.into(), &1.into()));
@@ -195,16 +200,19 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
     let before = folder.listing();
     for (arguments, sentence) in [
         (
-            "p.script --tool 0,0,0.1",
-            "error: found --tool 0,0,0.1, expected x,y,z,rx,ry,rz as URScript writes poses (metres",
+            "p.script --tool-data 0,0,0.1",
+            "error: found --tool-data 0,0,0.1, expected x,y,z,rx,ry,rz as URScript writes poses (metres",
         ),
-        ("p.script --tool a=0,0,0,0,0,x", "error: found --tool 0,0,0,0,0,x, expected x,y,z,rx,ry,rz"),
         (
-            "p.script --tool 1=0,0,0,0,0,0 --tool 1=0,0,1,0,0,0",
-            "error: found --tool 1=0,0,1,0,0,0 for one that is stated already",
+            "p.script --tool-data a=0,0,0,0,0,x",
+            "error: found --tool-data 0,0,0,0,0,x, expected x,y,z,rx,ry,rz",
         ),
-        ("p.script --frame inf,0,0,0,0,0", "error: found --frame inf,0,0,0,0,0, expected"),
-        ("p.script --base 1", "error: found --base 1, expected"),
+        (
+            "p.script --tool-data 1=0,0,0,0,0,0 --tool-data 1=0,0,1,0,0,0",
+            "error: found --tool-data 1=0,0,1,0,0,0 for one that is stated already",
+        ),
+        ("p.script --work-object inf,0,0,0,0,0", "error: found --work-object inf,0,0,0,0,0, expected"),
+        ("p.script --controller-base 1", "error: found --controller-base 1, expected"),
         (
             "p.script --columns map.toml",
             "error: found --columns for a program in URScript, expected it for tables (CSV) alone",
@@ -220,7 +228,7 @@ fn mistakes_about_robot_programs_are_told_and_nothing_is_written() {
         ("results --language krl", "error: results: found a directory, expected a robot program"),
     ] {
         let run = folder.run(&format!(
-            "compensate --most-change 20deg results/calibration.json {arguments} --out out.txt"
+            "compensate --max-correction 20deg results/calibration.json {arguments} --out out.txt"
         ));
         println!("{}", run.err.trim_end());
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
@@ -234,22 +242,25 @@ fn the_language_is_that_of_the_name_or_the_one_that_is_stated() {
     let folder = folder();
     folder.write("rows.dat", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
     let table =
-        folder.done("compensate --most-change 20deg results/calibration.json rows.dat --language csv");
+        folder.done("compensate --max-correction 20deg results/calibration.json rows.dat --language csv");
     assert_eq!(table.lines().count(), 2);
     let program = "DEF p()\nPTP {A1 10,A2 20,A3 30,A4 40,A5 50,A6 60} ; {A1 1}\nEND\n";
     folder.write("p.txt", program);
-    let written = folder.done("compensate --most-change 20deg results/calibration.json p.txt --language krl");
+    let written =
+        folder.done("compensate --max-correction 20deg results/calibration.json p.txt --language krl");
     println!("{written}");
     assert!(
         written.starts_with("DEF p()\nPTP {A1 ")
             && written.ends_with("} ; {A1 1}\nEND\n")
             && written != program
     );
-    let piped = folder
-        .run_with_input("compensate --most-change 20deg results/calibration.json - --language krl", program);
+    let piped = folder.run_with_input(
+        "compensate --max-correction 20deg results/calibration.json - --language krl",
+        program,
+    );
     assert_eq!((piped.code, piped.out), (0, written));
     folder.write("p.src", program);
-    folder.done("compensate --most-change 20deg results/calibration.json p.src --out q.src --quiet");
+    folder.done("compensate --max-correction 20deg results/calibration.json p.src --out q.src --quiet");
 }
 
 #[test]
@@ -260,7 +271,8 @@ fn a_straight_wrist_is_corrected_in_place_and_what_takes_more_is_listed() {
         "joint1,joint2,joint3,joint4,joint5,joint6\n0,0,0,0,0,0\n0.3,0.4,-0.5,0.1,0.9,0.2\n",
     );
     let before = folder.listing();
-    let dry = folder.run("compensate results/calibration.json home.csv --most-change 4deg --dry-run --json");
+    let dry =
+        folder.run("compensate results/calibration.json home.csv --max-correction 4deg --dry-run --json");
     assert_eq!(folder.listing(), before);
     let found: serde_json::Value = serde_json::from_str(&dry.out).unwrap();
     let (rows, listed) = (found["targets"].as_array().unwrap(), found["listed"].as_array().unwrap());
@@ -271,7 +283,7 @@ fn a_straight_wrist_is_corrected_in_place_and_what_takes_more_is_listed() {
     }
     // Nothing as small as this can be corrected.
     let none = folder
-        .run("compensate results/calibration.json home.csv --most-change 0.001deg --out out.csv --check");
+        .run("compensate results/calibration.json home.csv --max-correction 0.001deg --out out.csv --check");
     println!("{}{}", none.out, none.err);
     assert_eq!(none.code, 1);
     assert!(
@@ -286,7 +298,8 @@ fn a_straight_wrist_is_corrected_in_place_and_what_takes_more_is_listed() {
         ("2", "without a unit"),
         ("x", "expected a number"),
     ] {
-        let run = folder.run(&format!("compensate results/calibration.json home.csv --most-change {words}"));
+        let run =
+            folder.run(&format!("compensate results/calibration.json home.csv --max-correction {words}"));
         assert!(run.code == 2 && run.err.contains(sentence), "{}", run.err);
     }
     let other = folder.run("compensate results/calibration.json weld.jbi");

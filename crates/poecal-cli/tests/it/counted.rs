@@ -85,8 +85,9 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     let found = numbers(&folder.done("predict results/calibration.json counted.csv"), 0);
     println!("predictions differ by up to {:.1e}", largest(&found, &meant));
     assert!(largest(&found, &meant) < 1e-9);
-    let plain = numbers(&folder.done("compensate --most-change 20deg plain/calibration.json plain.csv"), 0);
-    let made = folder.done("compensate --most-change 20deg results/calibration.json counted.csv");
+    let plain =
+        numbers(&folder.done("compensate --max-correction 20deg plain/calibration.json plain.csv"), 0);
+    let made = folder.done("compensate --max-correction 20deg results/calibration.json counted.csv");
     assert!(made.starts_with("A1,A2,A3,A4,A5,A6\n"), "{made}");
     let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncounted(it)).collect();
     println!("commands differ by up to {:.1e} deg", largest(&back, &plain));
@@ -127,7 +128,7 @@ fn joint_targets_are_as_the_controller_counts_and_poses_as_they_were() {
             written(&format!("counted.{language}"), &q.iter().map(|it| count(it)).collect::<Vec<_>>());
             let run = |from: &str, name: &str| {
                 folder.done(&format!(
-                    "compensate --most-change 20deg {from}/calibration.json {name}.{language} --check --out {name}.out.{language}"
+                    "compensate --max-correction 20deg {from}/calibration.json {name}.{language} --check --out {name}.out.{language}"
                 ));
                 joints(language, &folder.read(&format!("{name}.out.{language}")))
             };
@@ -155,7 +156,7 @@ fn poses_are_corrected_in_the_configuration_to_which_the_joints_before_lead() {
     folder.write("counted.script", job(&counted(&from)));
     let made = |from: &str, name: &str| -> Vec<f64> {
         let text = folder.done(&format!(
-            "compensate --most-change 20deg {from}/calibration.json {name}.script --tool 0,0,0,0,0,0"
+            "compensate --max-correction 20deg {from}/calibration.json {name}.script --tool-data 0,0,0,0,0,0"
         ));
         let cells = text.lines().nth(1).unwrap().trim_start_matches("movel(p[").trim_end_matches("])");
         cells.split(',').map(|it| it.trim().parse().unwrap()).collect()
@@ -233,8 +234,8 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     folder.write("job.ls", program("ls", &targets().iter().map(|it| from_level(it)).collect::<Vec<_>>()));
     // The calibration whose readings are the model's, by a driver: here J3 is stated to count from the level.
     let stated =
-        folder.done("compensate --most-change 20deg plain/calibration.json job.ls --third-axis level");
-    let by_map = folder.done("compensate --most-change 20deg results/calibration.json job.ls");
+        folder.done("compensate --max-correction 20deg plain/calibration.json job.ls --third-axis level");
+    let by_map = folder.done("compensate --max-correction 20deg results/calibration.json job.ls");
     let apart = largest(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
     // The same mapping again says the same.
@@ -273,7 +274,7 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     }
     assert_eq!(folder.listing(), before);
     assert!(
-        joints("ls", &folder.done("compensate --most-change 20deg narrow.json job.ls --third-axis arm"))
+        joints("ls", &folder.done("compensate --max-correction 20deg narrow.json job.ls --third-axis arm"))
             .len()
             == 10
     );

@@ -58,7 +58,7 @@ fn a_simulated_session_without_noise_is_calibrated_exactly() {
 fn the_truth_names_the_robot_that_was_measured() {
     let folder = Folder::new();
     let session = folder.path("session");
-    printed("simulate examples/elbow/robot.toml --frame base --noise 0.01deg,0.05mm", &session);
+    printed("simulate examples/elbow/robot.toml --device-frame base --noise 0.01deg,0.05mm", &session);
     let text = fs::read_to_string(session.join("truth.json")).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(

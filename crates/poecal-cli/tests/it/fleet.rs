@@ -82,7 +82,7 @@ fn a_file_that_came_with_other_bytes_is_refused_and_repeated_by_again() {
     let run = folder.run("fleet station.toml");
     assert!(run.code == 1 && run.err.contains("again with other bytes"), "{}", run.err);
     assert_eq!(ledger(&folder).len(), 2);
-    assert_eq!(folder.run("fleet station.toml --again").code, 0);
+    assert_eq!(folder.run("fleet station.toml --rerun").code, 0);
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn a_calibration_exports_the_transform_that_hand_eye_finds() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
     folder.done("simulate robot.urdf --kind pose --errors 0deg,0mm --noise 0mm,0deg --count 30 --out cell");
-    folder.done("hand-eye cell/measurements.csv --model robot.urdf --camera beside --out eye --frames base_link,tool,device,measured");
+    folder.done("hand-eye cell/measurements.csv --robot robot.urdf --camera beside --out eye --frame-names base_link,tool,device,measured");
     folder.done("calibrate robot.urdf cell/measurements.csv --fix joints --report none");
     folder.done("export poecal-out/calibration.json --format tf --out tf.txt");
     let (own, theirs) = (folder.read("tf.txt"), folder.read("eye/transforms.txt"));
@@ -186,8 +186,8 @@ fn two_files_are_joined_by_names_and_results_are_written_once() {
         .map(|(k, (_, board))| format!("{k:04},{}", text(seen(board))))
         .collect();
     fs::write(folder.path("board.csv"), format!("image,{SEEN}\n{}\n", board.join("\n"))).unwrap();
-    let said =
-        folder.done("hand-eye arm.csv board.csv --camera in-hand --out out --frames base,flange,eye,board");
+    let said = folder
+        .done("hand-eye arm.csv board.csv --camera in-hand --out out --frame-names base,flange,eye,board");
     assert!(said.contains("12 of 12 fitted") && said.contains("eye in flange: (4"), "{said}");
     for name in [
         "hand_eye.json",
@@ -444,7 +444,7 @@ fn joint_readings_stand_for_the_arms_poses_and_say_whether_to_fit_the_arm() {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
     let robot = format!("{examples}/elbow/robot.urdf");
     let found: serde_json::Value = serde_json::from_str(&folder.done(&format!(
-        "hand-eye {examples}/howto/camera.csv --units mm --camera in-hand --model {robot} --out out --json"
+        "hand-eye {examples}/howto/camera.csv --units mm --camera in-hand --robot {robot} --out out --json"
     )))
     .unwrap();
     let number = |value: &serde_json::Value| value.as_f64().unwrap();

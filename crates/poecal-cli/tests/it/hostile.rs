@@ -80,7 +80,7 @@ fn names_and_cells_reach_people_as_they_can_see_them() {
     for words in [
         format!("check robot.urdf points.csv {with}"),
         format!("calibrate robot.urdf points.csv {with} --out out"),
-        format!("identify robot.urdf points.csv {with}"),
+        format!("plan robot.urdf --rows points.csv --kind pose {with}"),
         format!("validate out/calibration.json points.csv {with}"),
         "offsets robot.urdf out/calibration.json".to_owned(),
         "report out/calibration.json".to_owned(),
@@ -144,7 +144,9 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         format!("validate out/calibration.json points.csv {with} --out judged"),
         format!("predict robot.urdf points.csv {with} --out predicted.csv"),
         format!("import robot.urdf points.csv {with} --out imported.csv"),
-        format!("compensate out/calibration.json points.csv {with} --out corrected.csv --most-change 90deg"),
+        format!(
+            "compensate out/calibration.json points.csv {with} --out corrected.csv --max-correction 90deg"
+        ),
         "simulate robot.urdf --kind point --count 8 --out simulated".to_owned(),
         format!("plan robot.urdf --candidates points.csv {with} --count 8 --out planned.csv"),
         "track out/calibration.json --plan 4 --out visit.csv".to_owned(),
@@ -203,7 +205,7 @@ fn mistakes_are_told_as_people_can_see_them() {
         vec!["calibrate", "robot.urdf", "points.csv", "--sigma-position", acts],
         vec![acts],
         vec!["check", "--", acts, acts],
-        vec!["convert", "robot.urdf", "--to", "toml", "--offset", acts],
+        vec!["export", "robot.urdf", "--format", "toml", "--offset", acts],
         vec!["check", "robot.urdf", "--columns", acts],
         vec!["check", "robot.urdf", "--tip-link", acts],
     ] {

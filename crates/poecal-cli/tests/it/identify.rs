@@ -1,4 +1,4 @@
-//! `poecal identify`: what measuring would tell.
+//! `poecal plan --rows`: what measuring would tell.
 
 use crate::folder::Folder;
 use crate::offsets::COLUMN;
@@ -23,7 +23,7 @@ fn folder() -> Folder {
 #[test]
 fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
     let folder = folder();
-    let out = folder.done("identify column.toml still.csv --kind point --sigma-position 0.1mm");
+    let out = folder.done("plan column.toml --rows still.csv --kind point --sigma-position 0.1mm");
     for words in [
         "to measure    40 points: still.csv\n",
         "noise         0.1000 mm each component\n",
@@ -37,8 +37,8 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
     }
     assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
     // With the slide moving, also in another file, nothing is undetermined.
-    for files in ["all.csv", "still.csv all.csv"] {
-        let out = folder.done(&format!("identify column.toml {files} --kind point"));
+    for files in ["all.csv", "still.csv --rows all.csv"] {
+        let out = folder.done(&format!("plan column.toml --rows {files} --kind point"));
         assert!(out.contains("determined    13 of 13 unknowns") && !out.contains("undetermined"), "{out}");
     }
 }
@@ -47,9 +47,9 @@ fn what_would_stay_undetermined_is_said_before_anything_is_measured() {
 fn json_holds_the_same() {
     let folder = folder();
     let of = |arguments: &str| -> serde_json::Value {
-        serde_json::from_str(&folder.done(&format!("identify column.toml {arguments} --json"))).unwrap()
+        serde_json::from_str(&folder.done(&format!("plan column.toml --rows {arguments} --json"))).unwrap()
     };
-    let found = of("still.csv");
+    let found = of("still.csv --kind pose");
     assert_eq!(
         (&found["kind"], &found["frame"], &found["configurations"]),
         (&"pose".into(), &"unknown".into(), &40.into())
@@ -65,10 +65,10 @@ fn json_holds_the_same() {
     };
     assert_eq!(structural(&found), ["own_axis", "base_frame", "joint_offsets"]);
     assert_eq!(
-        structural(&of("all.csv --frame base --kind point")),
+        structural(&of("all.csv --device-frame base --kind point")),
         ["own_axis", "joint_offsets", "no_orientation"]
     );
-    let found = of("all.csv --sigma-position 0.05mm --sigma-rotation 0.01deg");
+    let found = of("all.csv --kind pose --sigma-position 0.05mm --sigma-rotation 0.01deg");
     let expected = |key: &str| found["expected_error"][key].as_f64().unwrap();
     // Less than the noise of one measurement, with some 40 of them.
     assert!(
@@ -84,11 +84,14 @@ fn mistakes_get_a_sentence() {
     folder.write("empty.csv", "turn[deg],slide[mm],nod[deg]\n");
     folder.write("huge.csv", "turn,slide,nod\n0.1,1e300,0.1\n0.2,-1e300,0.2\n");
     for (arguments, sentence) in [
-        ("identify column.toml missing.csv", "missing.csv: found no such file"),
-        ("identify column.toml all.csv all.csv", "all.csv: found this measurement file named twice"),
-        ("identify column.toml empty.csv", "empty.csv:1: found a header and no rows"),
+        ("plan column.toml --rows missing.csv --kind pose", "missing.csv: found no such file"),
         (
-            "identify column.toml all.csv --sigma-position 0mm",
+            "plan column.toml --rows all.csv --rows all.csv --kind pose",
+            "all.csv: found this measurement file named twice",
+        ),
+        ("plan column.toml --rows empty.csv --kind pose", "empty.csv:1: found a header and no rows"),
+        (
+            "plan column.toml --rows all.csv --kind pose --sigma-position 0mm",
             "--sigma-position: found `0mm`, expected a standard deviation above 0",
         ),
     ] {
@@ -96,6 +99,6 @@ fn mistakes_get_a_sentence() {
         assert_eq!((run.code, run.out.as_str()), (2, ""), "{arguments}");
         assert!(run.err.starts_with(&format!("error: {sentence}")), "{}", run.err);
     }
-    let run = folder.run("identify column.toml huge.csv");
+    let run = folder.run("plan column.toml --rows huge.csv --kind pose");
     assert_eq!((run.code, run.out.as_str()), (2, ""), "{}", run.err);
 }

@@ -72,7 +72,7 @@ fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str
         assert_eq!(run.code, 0, "{model} {measure}: poecal {command}\n{}{}", run.out, run.err);
         run.out
     };
-    run(&format!("init {model} --measure {measure} --out . {chain}"));
+    run(&format!("init {model} --kind {measure} --out . {chain}"));
     let readme = folder.read("README.md");
     let typed = commands(&readme);
     let simulate = typed.iter().find(|command| command.starts_with("simulate ")).unwrap();
@@ -88,7 +88,7 @@ fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str
     folder.write("measurements.csv", template.clone() + &measured);
     folder.write("second-session.csv", template + &rows("simulated/held_out.csv").1);
     let steps: Vec<&str> = typed.iter().map(|command| command.split(' ').next().unwrap()).collect();
-    assert_eq!(steps, ["identify", "check", "calibrate", "validate", "simulate"]);
+    assert_eq!(steps, ["plan", "check", "calibrate", "validate", "simulate"]);
     typed.iter().take(4).for_each(|command| {
         run(command);
     });
@@ -170,7 +170,7 @@ fn a_project_overwrites_nothing() {
         let run = folder.run(command);
         assert_eq!((run.code, run.err.as_str()), (2, sentence), "{command}");
     }
-    assert_eq!(folder.run("init robot.urdf --measure smells").code, 2);
+    assert_eq!(folder.run("init robot.urdf --kind smells").code, 2);
     assert_eq!(folder.listing(), before);
 }
 
@@ -248,7 +248,7 @@ fn files_are_checked_as_the_settings_say() {
 fn an_option_that_is_typed_replaces_settings_that_it_excludes() {
     let folder = project();
     folder.done("simulate robot.urdf --kind point --count 20 --noise 0.06mm --out other");
-    let settings = "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\nfit_where = 'stage=1'\n";
+    let settings = "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['measurements.csv']\ntrain_where = 'stage=1'\n";
     folder.write("cell/poecal.toml", settings);
     assert_eq!(folder.run("calibrate --settings cell/poecal.toml").code, 2);
     folder.done("calibrate --settings cell/poecal.toml --validate other/measurements.csv");

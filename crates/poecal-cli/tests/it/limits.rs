@@ -25,7 +25,7 @@ fn folder() -> Folder {
     far.resize(9_000, Vec::new());
     far.push([vec![String::new(); 20], vec!["1".to_owned()]].concat());
     fs::write(folder.path("far.xlsx"), workbook(&[("Rows", &far)])).unwrap();
-    folder.done("convert robot.urdf --to toml --out robot.toml");
+    folder.done("export robot.urdf --format toml --out robot.toml");
     folder
 }
 

@@ -267,8 +267,7 @@ fn what_a_model_states_beyond_what_is_read_is_named() {
     let folder = Folder::new();
     let model = include_str!("../../../../examples/elbow/robot.urdf");
     folder.write("robot.urdf", model.replace("<joint name=", "<joint colour=\"red\" name="));
-    for words in ["check robot.urdf", "convert robot.urdf --out robot.toml", "simulate robot.urdf --out sim"]
-    {
+    for words in ["check robot.urdf", "export robot.urdf --out robot.toml", "simulate robot.urdf --out sim"] {
         let run = folder.run(words);
         let said = format!("{}{}", run.out, run.err);
         assert_eq!((run.code, said.matches("did not read `colour`").count()), (0, 1), "{words}: {said}");

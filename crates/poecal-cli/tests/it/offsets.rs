@@ -1,4 +1,4 @@
-//! `poecal offsets`, and `poecal convert --offset`, which it undoes.
+//! `poecal offsets`, and `poecal export --offset`, which it undoes.
 
 use poecal_model::simulate::Kind;
 
@@ -35,7 +35,7 @@ fn offsets_that_were_put_in_are_found() {
     let folder = folder();
     for form in ["urdf", "toml"] {
         let put_in = "--offset turn=0.5deg --offset slide=-1.2mm --offset nod=-170deg";
-        folder.done(&format!("convert column.toml {put_in} --out actual.{form} --quiet"));
+        folder.done(&format!("export column.toml {put_in} --out actual.{form} --quiet"));
         let out = folder.done(&format!("offsets column.toml actual.{form}"));
         for words in [
             "nominal       column.toml\n",
@@ -55,8 +55,8 @@ fn offsets_that_were_put_in_are_found() {
 #[test]
 fn json_holds_the_same_and_goes_into_a_file() {
     let folder = folder();
-    folder.done("convert column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
-    assert_eq!(folder.done("offsets column.toml actual.toml --tip free --json --out offsets.json"), "");
+    folder.done("export column.toml --offset turn=0.5deg --offset slide=1.2mm --out actual.toml");
+    assert_eq!(folder.done("offsets column.toml actual.toml --free tip --json --out offsets.json"), "");
     let found = json(&folder.read("offsets.json"));
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     assert!((number(&found["joints"][0]["offset_deg"]) - 0.5).abs() < 1e-12);
@@ -93,10 +93,7 @@ fn a_calibration_has_a_base_and_a_tip_of_its_own() {
             "free: a tool is taught on the robot as it is"
         ]
     );
-    assert_eq!(
-        ends("anywhere/calibration.json --base kept --tip kept"),
-        ["kept: as asked", "kept: as asked"]
-    );
+    assert_eq!(ends("anywhere/calibration.json --fix base,tip"), ["kept: as asked", "kept: as asked"]);
     // The chain is the URDF's; a calibration has one only.
     ends("anywhere/calibration.json --base-link base_link --tip-link tool");
     let out = folder.done("offsets robot.urdf anywhere/calibration.json");
@@ -123,31 +120,31 @@ fn mistakes_get_a_sentence() {
             "missing.toml: found no such file, expected a robot model (URDF, MJCF, SDF, TOML or calibration.json): check the path",
         ),
         (
-            "convert column.toml --to urdf --offset trun=1deg",
+            "export column.toml --format urdf --offset trun=1deg",
             "--offset: found no moving joint `trun`, expected one of turn, slide, nod; did you mean `turn`?",
         ),
         (
-            "convert column.toml --to urdf --offset turn=1mm",
+            "export column.toml --format urdf --offset turn=1mm",
             "--offset: joint `turn`: found the unit `mm`, expected an angle (rad, mrad, deg, arcmin, arcsec)",
         ),
         (
-            "convert column.toml --to urdf --offset slide=1deg",
+            "export column.toml --format urdf --offset slide=1deg",
             "--offset: joint `slide`: found the unit `deg`, expected a length (m, cm, mm, um, nm, in)",
         ),
         (
-            "convert column.toml --to urdf --offset slide=1",
+            "export column.toml --format urdf --offset slide=1",
             "--offset: joint `slide`: found `1` without a unit, expected a number with a unit, like 0.05mm",
         ),
         (
-            "convert column.toml --to urdf --offset turn=infdeg",
+            "export column.toml --format urdf --offset turn=infdeg",
             "--offset: joint `turn`: found `infdeg`, expected a number with a unit, like 0.01deg",
         ),
         (
-            "convert column.toml --to urdf --offset turn",
+            "export column.toml --format urdf --offset turn",
             "--offset: found `turn`, expected a joint and its offset, like joint2=0.5deg or slide=1.2mm",
         ),
         (
-            "convert column.toml --to urdf --offset turn=1deg --offset turn=2deg",
+            "export column.toml --format urdf --offset turn=1deg --offset turn=2deg",
             "--offset: found joint `turn` twice, expected one offset a joint",
         ),
     ];
@@ -162,11 +159,11 @@ fn mistakes_get_a_sentence() {
     // Absurd lengths are refused too, whatever the reason.
     for form in ["urdf", "toml"] {
         for offset in ["1e300m", "1e9m"] {
-            let run = folder.run(&format!("convert column.toml --to {form} --offset slide={offset}"));
+            let run = folder.run(&format!("export column.toml --format {form} --offset slide={offset}"));
             assert_eq!((run.code, run.out.as_str(), run.err.lines().count()), (2, "", 1), "{}", run.err);
         }
     }
-    assert_eq!(folder.run("offsets column.toml column.toml --base fixed").code, 2);
+    assert_eq!(folder.run("offsets column.toml column.toml --fix flange").code, 2);
 }
 
 #[test]
@@ -177,11 +174,11 @@ fn an_offset_of_a_leader_says_that_its_followers_stay() {
         "limits = [-90, 90], mimic = { joint = \"turn\", multiplier = 2 } }",
     );
     folder.write("column.toml", &mimic);
-    let run = folder.run("convert column.toml --offset turn=0.5deg --out actual.toml");
+    let run = folder.run("export column.toml --offset turn=0.5deg --out actual.toml");
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.err.contains("joint `turn` alone is moved, not `nod`"), "{}", run.err);
     // The follower has an offset of its own, and no warning is due.
-    let run = folder.run("convert column.toml --offset nod=1deg --out other.toml");
+    let run = folder.run("export column.toml --offset nod=1deg --out other.toml");
     assert!(run.code == 0 && !run.err.contains("alone is moved"), "{run:?}");
     let run = folder.run("offsets column.toml actual.toml");
     assert_eq!(run.code, 0, "{run:?}");

@@ -110,10 +110,10 @@ fn every_way_back_keeps_the_text() {
         // From another folder, where the URDF is not.
         std::fs::rename(folder.path("robot.urdf"), folder.path("away.urdf")).unwrap();
         for command in [
-            "convert out/calibration.json --to urdf",
+            "export out/calibration.json --format urdf",
             "export out/calibration.json --format urdf",
             "export out/calibration.json --format urdf --onto away.urdf",
-            "apply out/calibration.json away.urdf",
+            "export out/calibration.json --onto away.urdf",
         ] {
             let run = folder.run(command);
             assert_eq!((run.code, run.err.as_str()), (0, ""), "{name}: {command}");
@@ -128,7 +128,7 @@ fn every_way_back_keeps_the_text() {
 fn another_robot_is_told() {
     let folder = calibrated(PLAIN, "");
     folder.write("painted.urdf", PLAIN.replace("upper.dae", "painted.dae"));
-    let run = folder.run("apply out/calibration.json painted.urdf --out done.urdf");
+    let run = folder.run("export out/calibration.json --onto painted.urdf --out done.urdf");
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(run.err.contains("is not the text that was calibrated"), "{}", run.err);
     assert!(std::fs::read_to_string(folder.path("done.urdf")).unwrap().contains("painted.dae"));
@@ -148,13 +148,13 @@ fn another_robot_is_told() {
     for (name, text, expected) in cases {
         folder.write("wrong.urdf", text);
         let before = folder.listing();
-        let run = folder.run("apply out/calibration.json wrong.urdf --out wrong_out.urdf");
+        let run = folder.run("export out/calibration.json --onto wrong.urdf --out wrong_out.urdf");
         assert_eq!(run.code, 2, "{name}: {}", run.err);
         assert!(run.err.contains(expected) && run.err.lines().count() == 1, "{name}: {}", run.err);
         assert_eq!(folder.listing(), before, "{name}");
     }
     for (command, expected) in [
-        ("apply robot.urdf robot.urdf", "found a model, expected the calibration.json"),
+        ("export robot.urdf --onto robot.urdf", "found a model, expected the calibration.json"),
         ("export out/calibration.json --format kuka", "KUKA's absolute accuracy"),
         ("export out/calibration.json --format mjcf --hash 3", "found --hash beside another form"),
         (

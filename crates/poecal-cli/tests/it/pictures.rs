@@ -11,16 +11,18 @@ fn words(command: &str, files: &str, more: &str) -> String {
     let files: Vec<String> =
         files.split_whitespace().map(|name| howto.join(name).display().to_string()).collect();
     let camera = howto.join("lens.csv");
+    let before = if command == "plan" { "--rows " } else { "" };
+    let files: Vec<String> = files.iter().map(|file| format!("{before}{file}")).collect();
     format!("{command} {} {} --camera {} {more}", model.display(), files.join(" "), camera.display())
 }
 
 const BOARD: &str = "--markers chessboard:6x5:40mm";
 
 #[test]
-fn identify_says_what_pictures_determine() {
+fn a_list_of_pictures_says_what_pictures_determine() {
     let folder = Folder::new();
     let files = "pictures.csv corners.csv";
-    let out = folder.done(&words("identify", files, &format!("{BOARD} --json")));
+    let out = folder.done(&words("plan", files, &format!("{BOARD} --json")));
     let found: serde_json::Value = serde_json::from_str(&out).unwrap();
     let rank = &found["identifiability"]["rank"];
     let mean_mm = found["expected_error"]["position_mean_mm"].as_f64().unwrap();
@@ -28,7 +30,7 @@ fn identify_says_what_pictures_determine() {
     assert_eq!((rank, &found["kind"]), (&serde_json::json!(30), &serde_json::json!("picture")));
     // 50 pictures that are known to 1 mm and 1 mrad.
     assert!((0.5..2.0).contains(&mean_mm), "{mean_mm}");
-    let points = folder.run(&words("identify", "../elbow/points.csv", BOARD));
+    let points = folder.run(&words("plan", "../elbow/points.csv", BOARD));
     assert!(
         points.code == 2 && points.err.contains("expected corners with u[px] and v[px]"),
         "{}",
@@ -39,7 +41,7 @@ fn identify_says_what_pictures_determine() {
 #[test]
 fn joints_of_pictures_without_corners_are_named() {
     let folder = Folder::new();
-    for command in ["calibrate", "check", "identify"] {
+    for command in ["calibrate", "check", "plan"] {
         let said = folder.run(&words(command, "pictures.csv", BOARD));
         println!("{command}: {}", said.err);
         assert_eq!(said.code, 2, "{}", said.err);

@@ -31,7 +31,7 @@ fn a_file_that_exists_is_replaced_only_with_force() {
     let folder = calibrated();
     folder.write("mine.txt", "mine");
     for command in [
-        "convert robot.urdf --to toml --out mine.txt",
+        "export robot.urdf --format toml --out mine.txt",
         "predict out/calibration.json measurements.csv --out mine.txt",
         "offsets robot.urdf out/calibration.json --out mine.txt",
         "report out/calibration.json --out mine.txt",
@@ -61,8 +61,8 @@ fn an_input_is_never_replaced() {
     symlink("robot.urdf", folder.path("link.urdf")).unwrap();
     let words = "found a file that this run reads (";
     for command in [
-        "convert robot.urdf --to toml --out robot.urdf --force",
-        "convert robot.urdf --to toml --out link.urdf --force",
+        "export robot.urdf --format toml --out robot.urdf --force",
+        "export robot.urdf --format toml --out link.urdf --force",
         "predict out/calibration.json measurements.csv --out measurements.csv --force",
         "offsets robot.urdf out/calibration.json --out out/../out/calibration.json --force",
         "report out/calibration.json --out out/residuals.csv --force",
@@ -83,13 +83,13 @@ fn what_is_no_regular_file_is_written_to_and_stays() {
     let folder = calibrated();
     folder.done("calibrate robot.urdf measurements.csv --out new --report /dev/null");
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
-    let text = folder.done("convert robot.urdf --to toml");
-    assert_eq!(folder.done("convert robot.urdf --to toml --out /dev/stdout"), text);
-    assert_eq!(folder.done("convert robot.urdf --to toml --out -"), text);
+    let text = folder.done("export robot.urdf --format toml");
+    assert_eq!(folder.done("export robot.urdf --format toml --out /dev/stdout"), text);
+    assert_eq!(folder.done("export robot.urdf --format toml --out -"), text);
     // Standard output that goes into a file is not written from its beginning.
     let into = fs::File::create(folder.path("kept.txt")).unwrap();
     (&into).write_all_text("before\n");
-    folder.run_into("convert robot.urdf --to toml --out /dev/stdout", into);
+    folder.run_into("export robot.urdf --format toml --out /dev/stdout", into);
     assert_eq!(folder.read("kept.txt"), format!("before\n{text}"));
     // A pipe.
     let pipe = folder.path("pipe");
@@ -98,7 +98,7 @@ fn what_is_no_regular_file_is_written_to_and_stays() {
         let pipe = pipe.clone();
         move || fs::read_to_string(pipe).unwrap()
     });
-    folder.done("convert robot.urdf --to toml --out pipe");
+    folder.done("export robot.urdf --format toml --out pipe");
     assert_eq!(reader.join().unwrap(), text);
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
     fs::remove_file(&pipe).unwrap();
@@ -131,13 +131,13 @@ fn links_are_followed_or_refused() {
     let folder = calibrated();
     folder.write("real.toml", "old");
     symlink("real.toml", folder.path("link.toml")).unwrap();
-    refused(&folder, "convert robot.urdf --out link.toml", "link.toml: found this file");
-    folder.done("convert robot.urdf --out link.toml --force");
+    refused(&folder, "export robot.urdf --out link.toml", "link.toml: found this file");
+    folder.done("export robot.urdf --out link.toml --force");
     assert!(fs::symlink_metadata(folder.path("link.toml")).unwrap().is_symlink());
     assert!(folder.read("real.toml").contains("poecal_robot"));
     fs::remove_file(folder.path("link.toml")).unwrap();
     symlink("nowhere", folder.path("broken.toml")).unwrap();
-    let run = folder.run("convert robot.urdf --out broken.toml --force");
+    let run = folder.run("export robot.urdf --out broken.toml --force");
     assert!(run.code == 2 && run.err.contains("broken.toml: found a link that leads nowhere"), "{}", run.err);
     let run = folder.run("calibrate robot.urdf measurements.csv --out broken.toml --force");
     assert!(run.code == 2 && run.err.contains("broken.toml: found a link that leads nowhere"), "{}", run.err);
@@ -254,7 +254,7 @@ fn what_somebody_planted_leads_nowhere() {
     folder.write("out/.poecal-unfinished-3-0/journal", "poecal-journal-1\nremove thesis.tex\nend\n");
     folder.run("calibrate robot.urdf measurements.csv --out out");
     folder.done("calibrate robot.urdf measurements.csv --out out --force");
-    folder.done("convert robot.urdf --out new.toml");
+    folder.done("export robot.urdf --out new.toml");
     let names: Vec<_> =
         fs::read_dir(folder.path("victim")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(names.len(), 2, "{names:?}");

@@ -14,7 +14,8 @@ fn folder() -> Folder {
 #[test]
 fn a_planned_list_is_read_and_completed() {
     let folder = folder();
-    let out = folder.done("plan column.toml --count 12 --judge 4 --out joints.csv --robot-error 0.1mm");
+    let out =
+        folder.done("plan column.toml --count 12 --held-out-count 4 --out joints.csv --robot-error 0.1mm");
     for words in [
         "planned       12 configurations to fit, 4 at random to judge by, 0 returns to\n",
         "expected      ",
@@ -31,11 +32,11 @@ fn a_planned_list_is_read_and_completed() {
     assert_eq!(rows[0], "id,set,returns,turn[deg],slide[mm],nod[deg]");
     let of = |set: &str| rows.iter().filter(|row| row.split(',').nth(1) == Some(set)).count();
     assert_eq!((of("fit"), of("held_out"), rows.len()), (12, 4, 17));
-    folder.done("identify column.toml joints.csv --kind point");
+    folder.done("plan column.toml --rows joints.csv --kind point");
     // Four more beside these, the same bytes whatever the number of threads.
     let more = |threads: usize| {
         folder.done(&format!(
-            "plan column.toml --count 20 --judge 0 --keep joints.csv --json --threads {threads}"
+            "plan column.toml --count 20 --held-out-count 0 --keep-rows joints.csv --json --threads {threads}"
         ))
     };
     let one = more(1);
@@ -52,10 +53,11 @@ fn a_planned_list_is_read_and_completed() {
 #[test]
 fn replaced_rows_leave_the_others_in_their_places() {
     let folder = folder();
-    folder.done("plan column.toml --count 12 --judge 8 --out joints.csv --robot-error 0.1mm,0.05mm");
+    folder.done("plan column.toml --count 12 --held-out-count 8 --out joints.csv --robot-error 0.1mm,0.05mm");
     let before = folder.read("joints.csv");
-    let out =
-        folder.done("plan column.toml --keep joints.csv --replace 3,15 --out better.csv --report plan.html");
+    let out = folder.done(
+        "plan column.toml --keep-rows joints.csv --replace-rows 3,15 --out better.csv --report plan.html",
+    );
     assert!(out.contains("1 configurations to fit beside 11 kept ones, 8 at random"), "{out}");
     let rows = |text: &str| -> Vec<String> {
         text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
@@ -75,7 +77,7 @@ fn replaced_rows_leave_the_others_in_their_places() {
     let arms = page.matches("stroke-opacity=\"0.4\"").count();
     assert!(arms > 0 && arms <= 2 * 8 * 5, "{arms}");
     assert!(page.contains("the target in all 20 configurations"));
-    let run = folder.run("plan column.toml --keep joints.csv --replace 99 --out no.csv");
+    let run = folder.run("plan column.toml --keep-rows joints.csv --replace-rows 99 --out no.csv");
     assert!(run.code == 2 && run.err.contains("found row 99 to replace, expected one of the"), "{}", run.err);
 }
 
@@ -89,7 +91,7 @@ fn what_cannot_be_planned_is_refused_with_a_reason() {
     };
     let err = refused("plan column.toml --count 12 --device 0,0,90000mm --distance 1mm:2mm --out joints.csv");
     assert!(err.contains("by the device's distances, expected at least the 12 of the plan"), "{err}");
-    let err = refused("plan column.toml --measure socket --out joints.csv");
+    let err = refused("plan column.toml --kind socket --out joints.csv");
     assert!(
         err.contains("found the kind `socket`, expected one whose configurations can be chosen freely"),
         "{err}"
@@ -105,7 +107,7 @@ fn a_row_that_is_off_is_named() {
     let folder = folder();
     folder.done("simulate column.toml --kind point --count 30 --out made");
     let text = folder.read("made/measurements.csv");
-    let clean = folder.run("watch column.toml made/measurements.csv --once --json --robot-error 0.05mm");
+    let clean = folder.run("watch column.toml made/measurements.csv --batch --json --robot-error 0.05mm");
     println!("{}", clean.out.lines().last().unwrap());
     assert_eq!((clean.code, clean.out.lines().count()), (0, 30), "{}{}", clean.out, clean.err);
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -115,7 +117,7 @@ fn a_row_that_is_off_is_named() {
     cells[3] = format!("{}", x + 10.0);
     lines[at] = cells.join(",");
     folder.write("off.csv", lines.join("\n") + "\n");
-    let run = folder.run("watch column.toml off.csv --once --robot-error 0.05mm");
+    let run = folder.run("watch column.toml off.csv --batch --robot-error 0.05mm");
     assert_eq!(run.code, 1);
     assert!(run.out.contains("row 26: WRONG"), "{}", run.out);
 }
@@ -126,8 +128,8 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
     let planned = |words: &str| {
-        let run =
-            folder.run(&format!("plan robot.urdf --count 40 --judge 20 --force --out joints.csv {words}"));
+        let run = folder
+            .run(&format!("plan robot.urdf --count 40 --held-out-count 20 --force --out joints.csv {words}"));
         assert_eq!(run.code, 0, "{}", run.err);
         let text = folder.read("joints.csv");
         let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);

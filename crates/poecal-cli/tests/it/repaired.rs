@@ -64,7 +64,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
     }
     // What the device would see is what it sees now.
     let seen = |name: &str| -> Vec<f64> {
-        let text = folder.done(&format!("predict {name} judge.csv --frame device --quiet"));
+        let text = folder.done(&format!("predict {name} judge.csv --output-frame device --quiet"));
         text.lines().nth(1).unwrap().split(',').skip(1).take(3).map(|cell| cell.parse().unwrap()).collect()
     };
     folder.done("calibrate robot.urdf fit.csv --out clean");

@@ -1,4 +1,4 @@
-//! Several places of the measuring device: `--frames per-file`, the column `instrument`, and what is refused.
+//! Several places of the measuring device: `--device-frames per-file`, the column `instrument`, and what is refused.
 
 use poecal_model::simulate::Kind;
 use poecal_results::residuals::Residuals;
@@ -40,7 +40,7 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
     let folder = moved();
     folder.done("calibrate robot.urdf measurements.csv --out one");
     folder.done("calibrate robot.urdf both.csv --out named");
-    folder.done("calibrate robot.urdf monday.csv tuesday.csv --frames per-file --out files");
+    folder.done("calibrate robot.urdf monday.csv tuesday.csv --device-frames per-file --out files");
     let rms = |name: &str| calibration(&folder, name).accuracy.held_out.unwrap().calibrated.position_mm().rms;
     assert!(rms("named") < 1.5 * rms("one"), "{} {}", rms("named"), rms("one"));
     assert!((rms("named") - rms("files")).abs() < 1e-6, "{} {}", rms("named"), rms("files"));
@@ -63,7 +63,7 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
     }
     folder.write(
         "poecal.toml",
-        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['monday.csv', 'tuesday.csv']\nframes = 'per-file'\nout = 'settings'\n",
+        "poecal_settings = 1\nmodel = 'robot.urdf'\nmeasurements = ['monday.csv', 'tuesday.csv']\ndevice_frames = 'per-file'\nout = 'settings'\n",
     );
     folder.done("calibrate");
     assert_eq!(calibration(&folder, "settings").stations.len(), 2);
@@ -75,7 +75,7 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
 #[test]
 fn files_that_were_measured_from_two_places_are_named_without_the_option() {
     let folder = moved();
-    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out repaired");
+    let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --out repaired --verbose");
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     println!("{said}");
     assert!(
@@ -83,12 +83,12 @@ fn files_that_were_measured_from_two_places_are_named_without_the_option() {
             && said.contains("repaired the files monday.csv and tuesday.csv do not share one device frame"),
         "{said}"
     );
-    assert!(said.contains("--frames per-file"), "{said}");
+    assert!(said.contains("--device-frames per-file"), "{said}");
     let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --repair off --out out");
     // What the table says is not said again on standard error.
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("the files monday.csv and tuesday.csv do not share one device frame"), "{said}");
-    assert!(said.contains("--frames per-file") && said.contains("do not use"), "{said}");
+    assert!(said.contains("--device-frames per-file") && said.contains("do not use"), "{said}");
 }
 
 #[test]
@@ -101,8 +101,8 @@ fn validation_takes_the_frame_of_each_instrument() {
         value["calibrated"]["position_mm"]["rms"].as_f64().unwrap()
     };
     assert!(rms("both.csv") < 0.12);
-    assert!(rms("both.csv --refit-frame") < 0.12);
-    assert!(rms("monday.csv tuesday.csv --frames per-file --refit-frame") < 0.12);
+    assert!(rms("both.csv --refit device") < 0.12);
+    assert!(rms("monday.csv tuesday.csv --device-frames per-file --refit device") < 0.12);
     let refused = |arguments: &str, sentence: &str| {
         let run = folder.run(&format!("validate out/calibration.json {arguments}"));
         assert!(run.code == 2 && run.err.ends_with(&format!("error: {sentence}\n")), "{}", run.err);
@@ -110,17 +110,17 @@ fn validation_takes_the_frame_of_each_instrument() {
     refused(
         "monday.csv",
         "found measurements without an instrument's name, expected one of left, right as in the calibration: add a column \
-         `instrument`, or refit the frames with --refit-frame",
+         `instrument`, or refit the frames with --refit device",
     );
     refused(
-        "monday.csv --frames per-file",
+        "monday.csv --device-frames per-file",
         "found measurements of instrument `monday.csv`, whose frame is not in the calibration, expected one of left, right: rename \
-         it, or refit the frames with --refit-frame",
+         it, or refit the frames with --refit device",
     );
     folder.done("calibrate robot.urdf monday.csv --out one");
     let run = folder.run("validate one/calibration.json both.csv");
     let sentence = "found measurements of 2 instruments, expected those of one, since the calibration has one device frame: judge each \
-                    by itself, or refit the frames with --refit-frame";
+                    by itself, or refit the frames with --refit device";
     assert!(run.code == 2 && run.err.ends_with(&format!("error: {sentence}\n")), "{}", run.err);
 }
 
@@ -136,17 +136,18 @@ fn what_does_not_go_together_is_refused() {
         );
     };
     refused(
-        "monday.csv tuesday.csv --frames per-file --frame base",
-        "found measurements of 2 instruments that are to be in the base frame (--frame base), expected one of the two: leave the \
-         instruments' names out if all measure in the base frame, or --frame base if each has a frame of its own",
+        "monday.csv tuesday.csv --device-frames per-file --device-frame base",
+        "found measurements of 2 instruments that are to be in the base frame (--device-frame base), expected one of the two: leave the \
+         instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own",
     );
     // The frame of held-out rows is found from these.
-    folder.done("calibrate robot.urdf monday.csv --validate tuesday.csv --frames per-file --out judged");
+    folder
+        .done("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
     let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;
     refused(
-        "both.csv --frames per-file",
+        "both.csv --device-frames per-file",
         &format!(
-            "both.csv:1:{columns}: found a column that names the instrument beside --frames per-file, expected one of the two: leave the \
+            "both.csv:1:{columns}: found a column that names the instrument beside --device-frames per-file, expected one of the two: leave the \
              option out, or the column"
         ),
     );

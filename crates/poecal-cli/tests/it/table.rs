@@ -194,7 +194,7 @@ fn suspected_rows_do_not_count_in_the_last_row() {
         })
         .collect();
     folder.write("measurements.csv", knocked.join("\n") + "\n");
-    let run = folder.run("calibrate robot.urdf measurements.csv --fit-where stage=1");
+    let run = folder.run("calibrate robot.urdf measurements.csv --train-where stage=1");
     check(&run.out);
     let told = paragraph(&run.out, "held out");
     let after = |words: &str| -> f64 {

@@ -15,14 +15,14 @@ fn named_targets_are_predicted_by_name() {
     let file = calibration(&folder, "poecal-out");
     let robot = file.robot().unwrap();
     let data = measurements::read(&[folder.path("smr.csv")], &robot, &ReadOptions::default()).unwrap().data;
-    let out = folder.done("predict poecal-out/calibration.json smr.csv --target smr1 --frame device");
+    let out = folder.done("predict poecal-out/calibration.json smr.csv --target smr1 --output-frame device");
     for (row, predicted) in numbers(&out, 1).iter().enumerate() {
         let measured = data.observations[row].measurement.pose();
         let distance = (0..3).map(|k| (predicted[k] - measured.translation[k]).powi(2)).sum::<f64>().sqrt();
         assert!(distance < 5e-4, "row {row}: {distance} m");
     }
     // A point has the tip's orientation.
-    let tip = numbers(&folder.done("predict poecal-out/calibration.json smr.csv --frame device"), 1);
+    let tip = numbers(&folder.done("predict poecal-out/calibration.json smr.csv --output-frame device"), 1);
     assert_eq!(numbers(&out, 1)[0][3..], tip[0][3..]);
     let run = folder.run("predict poecal-out/calibration.json smr.csv --target smr2");
     assert_eq!(run.code, 2);
@@ -34,15 +34,15 @@ fn named_targets_are_predicted_by_name() {
     let refusals = [
         (
             "measurements.csv",
-            "found measurements without a target's name, expected one of smr1 as in the calibration: add a column `target`, or refit the targets with --refit-tool",
+            "found measurements without a target's name, expected one of smr1 as in the calibration: add a column `target`, or refit the targets with --refit tool",
         ),
         (
             "other.csv",
-            "found measurements of target `smr2`, expected one of smr1 as in the calibration (nearest: `smr1`): rename it, or refit the targets with --refit-tool",
+            "found measurements of target `smr2`, expected one of smr1 as in the calibration (nearest: `smr1`): rename it, or refit the targets with --refit tool",
         ),
         (
             "poses.csv",
-            "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit-tool",
+            "found orientations of target `smr1`, expected positions alone, since it is a point in the calibration: leave the orientation columns out, or refit the targets with --refit tool",
         ),
     ];
     write_measurements(&folder, "other.csv", Kind::POINT, "smr2", &simulation);
@@ -50,7 +50,7 @@ fn named_targets_are_predicted_by_name() {
     for (name, sentence) in refusals {
         let run = folder.run(&format!("validate poecal-out/calibration.json {name}"));
         assert_eq!((run.code, run.err), (2, format!("error: {sentence}\n")));
-        folder.done(&format!("validate poecal-out/calibration.json {name} --refit-tool"));
+        folder.done(&format!("validate poecal-out/calibration.json {name} --refit tool"));
     }
 }
 
@@ -94,10 +94,10 @@ fn validation_judges_other_sessions() {
         "{}",
         run.err
     );
-    assert!(run.err.contains("judge the robot by --refit-frame, or let --refit auto do so"), "{}", run.err);
+    assert!(run.err.contains("judge the robot by --refit device, or let --refit auto do so"), "{}", run.err);
     // By itself it does the same, and says so.
     let found = json("moved.csv --refit auto");
-    assert_eq!(found["calibrated"], json("moved.csv --refit-frame")["calibrated"]);
+    assert_eq!(found["calibrated"], json("moved.csv --refit device")["calibrated"]);
     let moved = &found["moved_device"];
     assert!(moved["refitted"] == true && moved["after_rms"].as_f64() < moved["before_rms"].as_f64());
     assert!(
@@ -108,20 +108,20 @@ fn validation_judges_other_sessions() {
     // Where it stands as it stood, nothing is refitted.
     let found = json("more.csv --refit auto");
     assert!(found["moved_device"].is_null() && found["refitted"] == serde_json::json!([]), "{found}");
-    let found = json("moved.csv --refit-frame");
+    let found = json("moved.csv --refit device");
     println!("moved.csv, frame refitted: {} mm", rms(&found["calibrated"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms);
     assert_eq!(found["nominal"], serde_json::Value::Null);
 
-    let found = json("moved.csv --refit-frame --refit-tool");
+    let found = json("moved.csv --refit device,tool");
     assert_eq!(found["refitted"], serde_json::json!(["device_frame", "tool"]));
     assert!(rms(&found["calibrated"]) < 1.5 * own_rms && rms(&found["nominal"]) > 20.0 * own_rms);
-    let out = folder.done("validate poecal-out/calibration.json moved.csv --refit-frame --refit-tool");
+    let out = folder.done("validate poecal-out/calibration.json moved.csv --refit device,tool");
     assert!(out.contains("nominal   calibrated") && out.lines().all(|line| line.len() <= 80), "{out}");
     assert_eq!(folder.done("validate poecal-out/calibration.json more.csv --quiet"), "");
 
     folder.write("one.csv", folder.read("more.csv").lines().take(2).collect::<Vec<_>>().join("\n"));
-    let run = folder.run("validate poecal-out/calibration.json one.csv --refit-frame");
+    let run = folder.run("validate poecal-out/calibration.json one.csv --refit device");
     assert_eq!(run.code, 2);
     assert_eq!(
         run.err,
@@ -134,14 +134,14 @@ fn the_nominal_model_is_judged_where_all_it_cannot_know_is_found_anew() {
     let folder = session(Kind::POSE);
     let at_base = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
     write_measurements(&folder, "base.csv", Kind::POSE, "", &at_base);
-    folder.done("calibrate robot.urdf base.csv --frame base --out base");
+    folder.done("calibrate robot.urdf base.csv --device-frame base --out base");
     folder.done("calibrate robot.urdf base.csv --out anywhere");
     for (name, refit, is_judged) in [
         ("base", "", false),
-        ("base", "--refit-frame", false),
-        ("base", "--refit-tool", true),
-        ("anywhere", "--refit-tool", false),
-        ("anywhere", "--refit-frame --refit-tool", true),
+        ("base", "--refit device", false),
+        ("base", "--refit tool", true),
+        ("anywhere", "--refit tool", false),
+        ("anywhere", "--refit device,tool", true),
     ] {
         let out = folder.done(&format!("validate {name}/calibration.json base.csv {refit}"));
         assert_eq!(out.contains(" nominal   calibrated"), is_judged, "{name} {refit}\n{out}");

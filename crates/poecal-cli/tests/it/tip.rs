@@ -88,8 +88,8 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
         .collect();
     let predict = |options: &str| measured(&folder.done(&format!("predict {options} measurements.csv")), 1);
     let (by_target, by_tip) = (
-        predict("results/calibration.json --frame device"),
-        predict("moved/calibration.json --frame device"),
+        predict("results/calibration.json --output-frame device"),
+        predict("moved/calibration.json --output-frame device"),
     );
     println!(
         "device frame: {:.4} mm from the rows, with the tip moved {:.4} mm",
@@ -97,14 +97,14 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
         rms(&by_tip, &seen)
     );
     assert!(rms(&by_target, &seen) < 0.2 && (rms(&by_target, &seen) - rms(&by_tip, &seen)).abs() < 1e-3);
-    let named = predict("results/calibration.json --frame device --target measured");
+    let named = predict("results/calibration.json --output-frame device --target measured");
     assert!(named == by_target);
     // The tip is the gripper, 114 mm from the reflector and more.
-    let tip = predict("results/calibration.json --frame base");
-    let target = predict("results/calibration.json --frame base --target measured");
+    let tip = predict("results/calibration.json --output-frame base");
+    let target = predict("results/calibration.json --output-frame base --target measured");
     println!("the tip is {:.1} mm from the target", rms(&tip, &target));
     assert!(rms(&tip, &target) > 60.0);
-    assert!(rms(&target, &predict("moved/calibration.json --frame base")) < 0.05);
+    assert!(rms(&target, &predict("moved/calibration.json --output-frame base")) < 0.05);
     // A file without names is judged by either.
     for name in ["results", "moved"] {
         let judged = folder.done(&format!("validate {name}/calibration.json measurements.csv --json"));
@@ -157,10 +157,10 @@ fn which_target_is_meant_is_said_where_it_is_open() {
     );
     let run = folder.run("calibrate robot.urdf left.csv right.csv --out results");
     assert!(run.code < 2, "{}", run.err);
-    let run = folder.run("predict results/calibration.json left.csv --frame device");
+    let run = folder.run("predict results/calibration.json left.csv --output-frame device");
     println!("{}", run.err.trim_end());
     assert!(run.code == 2 && run.err.contains("write --target left"), "{}", run.err);
-    folder.done("predict results/calibration.json left.csv --frame device --target left");
+    folder.done("predict results/calibration.json left.csv --output-frame device --target left");
     let run = folder.run("validate results/calibration.json measurements.csv");
     assert!(
         run.code == 2 && run.err.contains("without a target's name, expected one of left, right"),

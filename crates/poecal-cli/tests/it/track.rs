@@ -86,21 +86,22 @@ fn witnesses_are_planned_and_written() {
 fn visits_are_planned_by_plan_for_drift() {
     let folder = cell();
     folder.done("track poecal-out/calibration.json --plan 8 --repeatability 0.05mm --out one.csv");
-    let run = folder.run("plan poecal-out/calibration.json --for drift --repeatability 0.05mm --out two.csv");
+    let run =
+        folder.run("plan poecal-out/calibration.json --purpose drift --repeatability 0.05mm --out two.csv");
     assert_eq!((run.code, folder.read("one.csv")), (0, folder.read("two.csv")), "{}", run.err);
     folder.done("plan robot.urdf --count 20 --out new.csv");
-    let words = "plan poecal-out/calibration.json --for drift --device known --count 6 --candidates new.csv --out three.csv";
+    let words = "plan poecal-out/calibration.json --purpose drift --device known --count 6 --candidates new.csv --out three.csv";
     let run = folder.run(words);
     assert!(run.code == 0 && run.out.contains("6, new"), "{}{}", run.out, run.err);
     assert!(run.out.contains("joint1") && !run.out.contains("joint1: the device"), "{}", run.out);
     assert_eq!(folder.read("three.csv").lines().count(), 8);
     for (words, expected) in [
-        ("poecal-out/calibration.json --for drift --count 61", "60 measured configurations"),
-        ("poecal-out/calibration.json --for drift --count 2", "choose more"),
-        ("poecal-out/calibration.json --for drift --device 1,2,3mm", "known or anew"),
+        ("poecal-out/calibration.json --purpose drift --count 61", "60 measured configurations"),
+        ("poecal-out/calibration.json --purpose drift --count 2", "choose more"),
+        ("poecal-out/calibration.json --purpose drift --device 1,2,3mm", "known or refit"),
         ("robot.urdf --device known", "expected a place"),
-        ("robot.urdf --for drift", "calibration.json"),
-        ("poecal-out/calibration.json --for drift --floor 20mm", "cannot be used with"),
+        ("robot.urdf --purpose drift", "calibration.json"),
+        ("poecal-out/calibration.json --purpose drift --floor-height 20mm", "cannot be used with"),
     ] {
         let run = folder.run(&format!("plan {words}"));
         assert!(run.code == 2 && run.err.contains(expected), "{words}: {}", run.err);
@@ -194,9 +195,9 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
 fn another_tool_and_another_place_of_the_device_are_named() {
     let folder = Folder::new();
     folder.write("robot.urdf", crate::session::ROBOT);
-    folder.done("simulate robot.urdf --kind point --count 60 --seed 3 --frame base --out cell");
+    folder.done("simulate robot.urdf --kind point --count 60 --seed 3 --device-frame base --out cell");
     folder.done(
-        "calibrate cell/nominal.urdf cell/measurements.csv --frame base --corrections off --report none",
+        "calibrate cell/nominal.urdf cell/measurements.csv --device-frame base --corrections off --report none",
     );
     let none = [0.0; 3];
     folder.write("old.csv", visit(&folder, none, none));
@@ -204,9 +205,9 @@ fn another_tool_and_another_place_of_the_device_are_named() {
     folder.write("device.csv", visit(&folder, none, [0.02, 0.0, -0.01]));
     for (words, code, expected) in [
         ("tool.csv", 1, "tool"),
-        ("tool.csv --tool anew", 0, "unchanged within"),
+        ("tool.csv --tool refit", 0, "unchanged within"),
         ("device.csv", 1, "device"),
-        ("device.csv --device anew", 0, "unchanged within"),
+        ("device.csv --device refit", 0, "unchanged within"),
     ] {
         let run = folder.run(&format!(
             "track poecal-out/calibration.json {words} --reference old.csv --repeatability 0.05mm --history none"

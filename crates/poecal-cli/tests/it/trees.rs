@@ -53,7 +53,7 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     }
     folder.done("validate out/calibration.json sim/held_out.csv");
     // What was calibrated can be calibrated again, from each of the forms.
-    folder.done("convert out/calibration.json --out torso.toml");
+    folder.done("export out/calibration.json --out torso.toml");
     for (model, out) in [("out/calibration.json", "again"), ("torso.toml", "from-toml")] {
         // There is nothing left to correct, which the table says.
         let told = folder.done(&format!("calibrate {model} sim/measurements.csv --out {out}"));
@@ -63,7 +63,8 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
         let rms = calibration(&folder, out).accuracy.held_out.unwrap().calibrated.position_mm().rms;
         assert!((rms - held_out).abs() < 1e-3 * held_out, "{out}: {rms} {held_out}");
     }
-    let device = folder.run("predict out/calibration.json sim/held_out.csv --frame device --target left");
+    let device =
+        folder.run("predict out/calibration.json sim/held_out.csv --output-frame device --target left");
     assert_eq!(device.code, 2);
     assert!(device.err.contains("found the instrument `eyes` on the robot"), "{}", device.err);
 }
@@ -94,7 +95,7 @@ fn settings_and_mappings_name_links_too() {
     let columns = folder.read("project/measurements.csv");
     assert!(columns.lines().last().unwrap().ends_with(",x[mm],y[mm],z[mm],instrument,target"), "{columns}");
     assert!(folder.read("project/README.md").contains("--target 'right=right_hand'"));
-    folder.done(&format!("identify torso.urdf project/joints.csv {TREE}"));
+    folder.done(&format!("plan torso.urdf --rows project/joints.csv --kind pose {TREE}"));
 }
 
 #[test]

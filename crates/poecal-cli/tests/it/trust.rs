@@ -111,7 +111,7 @@ fn predictions_state_their_error() {
 #[test]
 fn validation_says_whether_the_promise_was_kept() {
     let folder = narrow();
-    folder.done("calibrate robot.urdf measurements.csv --fit-where stage=1 --out all");
+    folder.done("calibrate robot.urdf measurements.csv --train-where stage=1 --out all");
     let run = folder.run("validate all/calibration.json measurements.csv --json");
     assert_eq!(run.code, 0, "{run:?}");
     let found: serde_json::Value = serde_json::from_str(&run.out).unwrap();
@@ -134,7 +134,7 @@ fn validation_says_whether_the_promise_was_kept() {
     let run = folder.run("validate bent.json measurements.csv");
     assert!(run.err.contains("exceed their 95 % bound"), "{run:?}");
     // Where it is found anew, the screws are as expected.
-    let anew = folder.done("validate bent.json measurements.csv --refit-tool --json");
+    let anew = folder.done("validate bent.json measurements.csv --refit tool --json");
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");
 }

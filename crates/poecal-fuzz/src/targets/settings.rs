@@ -12,13 +12,13 @@ const KEYS: [&str; 14] = [
     "validate",
     "out",
     "report",
-    "frame",
+    "device_frame",
     "tip_link",
     "sigma_position",
     "sigma_rotation",
     "held_out",
     "seed",
-    "fit_where",
+    "train_where",
     "force",
 ];
 

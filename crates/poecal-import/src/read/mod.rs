@@ -39,7 +39,7 @@ use poecal_storage::document;
 ///
 /// # Errors
 /// A file that cannot be read ([`ErrorKind::File`]), is no table ([`ErrorKind::Syntax`]), has a wrong or missing unit
-/// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::fit_where`] that fits no file
+/// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::train_where`] that fits no file
 /// ([`ErrorKind::Option`]).
 pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
@@ -191,7 +191,7 @@ impl<'a> Reader<'a> {
             layout.controller.clone_from(&by_line.controller);
         }
         if let Some(column) = layout.instrument.filter(|_| self.options.frames == Frames::PerFile) {
-            let message = "found a column that names the instrument beside --frames per-file, expected one of the two: leave the option \
+            let message = "found a column that names the instrument beside --device-frames per-file, expected one of the two: leave the option \
                            out, or the column";
             return Err(table.header.error(ErrorKind::Measurement, column, message));
         }
@@ -260,7 +260,7 @@ impl<'a> Reader<'a> {
 
     fn finish(self) -> Result<MeasurementFile> {
         self.refuse_unused()?;
-        let rule = self.options.fit_where.as_ref().or(self.map.set.as_ref());
+        let rule = self.options.train_where.as_ref().or(self.map.set.as_ref());
         if let Some(FitWhere { column, values }) = rule
             && !self.options.ignore_sets
             && let Some((value, _)) = values.iter().zip(&self.fit_values_seen).find(|(_, seen)| !**seen)

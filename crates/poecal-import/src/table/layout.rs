@@ -155,7 +155,7 @@ impl ColumnLayout {
 
 /// What says the set of a row.
 fn set_rule(builder: &mut Builder<'_>, options: &ReadOptions, map: &ColumnMap) -> Result<SetRule> {
-    let rule = options.fit_where.as_ref().or(map.set.as_ref()).cloned();
+    let rule = options.train_where.as_ref().or(map.set.as_ref()).cloned();
     let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);
     Ok(match (rule, words) {
         (Some(rule), _) if options.ignore_sets => {

@@ -7,7 +7,6 @@ pub(crate) mod configurations;
 pub(crate) mod conventions;
 pub(crate) mod cursor;
 pub(crate) mod encodings;
-pub(crate) mod fit_where;
 pub(crate) mod header;
 pub(crate) mod header_cells;
 pub(crate) mod inputs;
@@ -26,6 +25,7 @@ pub(crate) mod row;
 pub(crate) mod rows;
 pub(crate) mod text;
 pub(crate) mod times;
+pub(crate) mod train_where;
 pub(crate) mod understanding;
 pub(crate) mod understood;
 

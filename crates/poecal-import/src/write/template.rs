@@ -82,7 +82,7 @@ pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
         "# {count} configurations to measure, random within the limits of the joints, 2 deg and 5 mm from them (180 deg, 500 mm to either side where a joint has none).\n\
          # COLLISIONS ARE NOT CHECKED, in them or on the way, nor whether the device sees the target there: go through\n\
          # them slowly or in simulation first, and replace or leave out what does not work. Every twentieth is the first again, which\n\
-         # shows how well the robot repeats and whether anything drifts. What they would determine: poecal identify\n\
+         # shows how well the robot repeats and whether anything drifts. What they would determine: poecal plan --rows\n\
          {}\n",
         reading_header(&names, &units)
     );

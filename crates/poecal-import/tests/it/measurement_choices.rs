@@ -24,7 +24,7 @@ fn a_spread_that_units_do_not_explain_is_left_alone() {
 fn sets_that_are_ignored_are_not_required() {
     let folder = Folder::new();
     let mapping = ColumnMap::parse("set = { column = \"stage\", fit = [\"one\"] }", "map.toml").unwrap();
-    let fit_where: FitWhere = "run=1".parse().unwrap();
+    let train_where: FitWhere = "run=1".parse().unwrap();
     let texts = [
         "a,lift,b,x,y,z\n0,0,0,0.1,0.2,0.3\n",
         "a,lift,b,x,y,z,stage\n0,0,0,0.1,0.2,0.3,two\n",
@@ -32,10 +32,10 @@ fn sets_that_are_ignored_are_not_required() {
     ];
     for text in texts {
         let path = folder.write("points.csv", text);
-        for (mapping, fit_where) in
-            [(None, None), (Some(mapping.clone()), None), (Some(mapping.clone()), Some(fit_where.clone()))]
+        for (mapping, train_where) in
+            [(None, None), (Some(mapping.clone()), None), (Some(mapping.clone()), Some(train_where.clone()))]
         {
-            let options = ReadOptions { mapping, fit_where, ignore_sets: true, ..ReadOptions::default() };
+            let options = ReadOptions { mapping, train_where, ignore_sets: true, ..ReadOptions::default() };
             let file = read(&[&path], &lifting_robot(), &options).unwrap();
             assert_eq!(file.data.observations[0].set, None, "{text}");
         }

@@ -346,8 +346,8 @@ fn several_files_must_agree_on_target_names() {
 #[test]
 fn the_rows_to_fit_must_exist() {
     let message = |rule: &str| {
-        let fit_where: FitWhere = rule.parse().unwrap();
-        let options = ReadOptions { fit_where: Some(fit_where), ..ReadOptions::default() };
+        let train_where: FitWhere = rule.parse().unwrap();
+        let options = ReadOptions { train_where: Some(train_where), ..ReadOptions::default() };
         message(b"a,lift,b,x,y,z,stage\n0,0,0,0.1,0.2,0.3,one\n", &options)
     };
     assert_eq!(message("stage=one"), "no error");

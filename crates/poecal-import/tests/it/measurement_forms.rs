@@ -348,8 +348,8 @@ fn several_files_are_joined() {
 
 #[test]
 fn rows_to_fit_are_chosen_by_a_columns_value() {
-    let fit_where: FitWhere = "stage=1,b".parse().unwrap();
-    let options = ReadOptions { fit_where: Some(fit_where), ..ReadOptions::default() };
+    let train_where: FitWhere = "stage=1,b".parse().unwrap();
+    let options = ReadOptions { train_where: Some(train_where), ..ReadOptions::default() };
     let file = read_text(
         "a,lift,b,x,y,z,stage,set\n0,0,0,1,2,3,1.0,what\n0,0,0,1,2,3,b,\n0,0,0,1,2,3,2,fit\n0,0,0,1,2,3,,fit\n",
         &options,

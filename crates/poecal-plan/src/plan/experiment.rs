@@ -89,7 +89,7 @@ impl Experiment {
         if !kind.is_chosen_freely() {
             return ErrorKind::Option.refuse(format!(
                 "found the kind `{}`, expected one whose configurations can be chosen freely, as point, pose or distance: of what is touched, \
-                 measure a dozen rows and ask poecal identify",
+                 measure a dozen rows and ask poecal plan --rows",
                 kind.word()
             ));
         }

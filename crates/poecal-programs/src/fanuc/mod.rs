@@ -198,8 +198,8 @@ impl Maker<'_> {
                 format!("its {what} {number} is not in the file: state it by {flag} {number}=X,Y,Z,W,P,R")
             })
         };
-        let frame = known(self.given.frame(Some(&frame.to_string())), frame, "user frame", "--frame")?;
-        let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool")?;
+        let frame = known(self.given.frame(Some(&frame.to_string())), frame, "user frame", "--work-object")?;
+        let tool = known(self.given.tool(Some(&tool.to_string())), tool, "tool", "--tool-data")?;
         let configuration = pose.configuration.clone().ok_or("its configuration is not understood")?;
         let numbers = pose.numbers.iter().chain(&external).cloned().collect();
         Ok((numbers, tool, frame, Stated::Fanuc(configuration)))

@@ -12,7 +12,7 @@ pub(crate) const RELATIVE: &str = "the motion is by an amount from where the rob
 pub(crate) const ANGLE: &str = "with CA, the arc does not end there";
 pub(crate) const FRAME: &str = "a frame: whether motions go there is not in this file";
 pub(crate) const PLACE: &str =
-    "its tool or base is not known: state them by --tool NUMBER= and --frame NUMBER=";
+    "its tool or base is not known: state them by --tool-data NUMBER= and --work-object NUMBER=";
 pub(crate) const FOREIGN: &str = "the tool stands outside (IPO_FRAME #TCP)";
 pub(crate) const UNUSED: &str = "no motion of this file goes there";
 pub(crate) const UNKNOWN: &str = "its type is not known here";

@@ -153,7 +153,7 @@ impl Maker<'_> {
             // The moves are in another module: the user says what is true of them.
             let (Some(tool), Some(frame)) = (self.given.tool(None), self.given.frame(None)) else {
                 return Err(
-                    "no move of this file goes to it: state its tool and work object by --tool and --frame"
+                    "no move of this file goes to it: state its tool and work object by --tool-data and --work-object"
                         .to_owned(),
                 );
             };
@@ -189,7 +189,7 @@ impl Maker<'_> {
 
     fn tool(&self, held: &Held) -> Result<Pose, String> {
         self.known(
-            ("tool", "--tool"),
+            ("tool", "--tool-data"),
             held,
             Sort::Tool,
             self.given.tool(Some(self.name(held, "tool0"))),
@@ -199,7 +199,7 @@ impl Maker<'_> {
 
     fn frame(&self, held: &Held) -> Result<Pose, String> {
         let stated = self.given.frame(Some(self.name(held, "wobj0")));
-        self.known(("work object", "--frame"), held, Sort::WorkObject, stated, work_object)
+        self.known(("work object", "--work-object"), held, Sort::WorkObject, stated, work_object)
     }
 
     fn name<'b>(&'b self, held: &'b Held, built_in: &'b str) -> &'b str {

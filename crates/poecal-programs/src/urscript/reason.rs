@@ -9,4 +9,4 @@ pub(crate) const COUNT: &str = "it has another number of values than the robot h
 pub(crate) const SPEED: &str = "it is a motion without a target";
 pub(crate) const UNKNOWN: &str = "the motion is none that is known here";
 pub(crate) const RELATIVE: &str = "it is relative to a target that is corrected itself";
-pub(crate) const FRAME: &str = "its frame is stated in no line of this file: state it by --frame NAME=";
+pub(crate) const FRAME: &str = "its frame is stated in no line of this file: state it by --work-object NAME=";

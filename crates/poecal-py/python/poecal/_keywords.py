@@ -19,11 +19,15 @@ def unknown(function: Callable[..., Any], keyword: str) -> KeywordError:
     """The error for a keyword that a function does not have."""
     import inspect
 
-    from ._poecal import _nearest
+    from ._poecal import _nearest, _renamed
 
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
     known = [it.name for it in inspect.signature(function).parameters.values() if it.kind in kinds and it.name != "self"]
     without = UNIT.sub("", keyword)
+    bare = {UNIT.sub("", it): it for it in known}
+    new = _renamed(without, list(bare))
+    if new is not None:
+        return KeywordError(f"{function.__name__}: found the keyword `{keyword}`, which is now `{bare[new]}`")
     same = [it for it in known if UNIT.search(it) and UNIT.sub("", it) == without]
     near = same[0] if same else _nearest(keyword, known)
     if near is None:

@@ -36,7 +36,7 @@ __all__ = [
     "calibrate",
     "check",
     "compare",
-    "convert",
+    "export",
     "guess_columns",
     "hand_eye",
     "identify",
@@ -79,7 +79,8 @@ _Kind: TypeAlias = Literal[
 ]
 _Model: TypeAlias = Literal["delivered", "nominal", "registered", "calibrated", "corrected"]
 _Frame: TypeAlias = Literal["unknown", "base"]
-_End: TypeAlias = Literal["free", "kept"]
+_End: TypeAlias = Literal["base", "tip"]
+_Refit: TypeAlias = Literal["device", "tool", "auto"]
 _Form: TypeAlias = Literal["urdf", "toml"]
 _Level: TypeAlias = Literal["good", "inside_sampled_range", "measured_configurations", "located", "do_not_use"]
 _Rows: TypeAlias = slice | int | np.integer[Any] | Sequence[int] | Sequence[bool] | NDArray[np.integer[Any]] | NDArray[np.bool_]
@@ -352,12 +353,12 @@ class Robot:
     @property
     def targets(self) -> dict[str, _Array]:
         """Poses of the model's targets in the tip frame, by name, shape (4, 4) each."""
-    def to_text(self, to: _Form) -> str:
+    def to_text(self, format: _Form) -> str:
         """The model as a text.
 
         Parameters
         ----------
-        to
+        format
             "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws).
 
         Returns
@@ -365,14 +366,14 @@ class Robot:
         str
             The text.
         """
-    def write(self, path: _Path, *, to: _Form | None = None, force: bool = False) -> None:
+    def write(self, path: _Path, *, format: _Form | None = None, force: bool = False) -> None:
         """Writes the model to a file.
 
         Parameters
         ----------
         path
             The file.
-        to
+        format
             "urdf" or "toml", default as the extension says.
         force
             Whether to write over a file that exists.
@@ -398,10 +399,10 @@ class Measurements:
         robot: Robot,
         *,
         columns: _Path | None = None,
-        fit_where: str | None = None,
+        train_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
-        frames: Literal["common", "per-file"] = "common",
+        device_frames: Literal["common", "per-file"] = "common",
         join: Literal["name", "rows", "time"] | None = None,
         lag: str | None = None,
         units: str | None = None,
@@ -424,13 +425,13 @@ class Measurements:
             The robot whose joints the columns name.
         columns
             A mapping file for files with other column names.
-        fit_where
+        train_where
             "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
         ignore_sets
             Whether the files' column `set` means nothing, as for rows that judge a calibration.
         strict
             Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
-        frames
+        device_frames
             Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
             "per-file", those of a file.
         join
@@ -553,7 +554,7 @@ class Measurements:
         robot: Robot,
         *,
         columns: _Path | None = None,
-        fit_where: str | None = None,
+        train_where: str | None = None,
         ignore_sets: bool = False,
         strict: bool = False,
         units: str | None = None,
@@ -576,7 +577,7 @@ class Measurements:
             The robot whose joints the columns name.
         columns
             A mapping file for a table with other column names.
-        fit_where
+        train_where
             "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
         ignore_sets
             Whether the column `set` means nothing, as for rows that judge a calibration.
@@ -1186,7 +1187,6 @@ class Calibration:
         path: _Path,
         *,
         logo: _Path | None = None,
-        valid_until: str | None = None,
         record: Mapping[str, str] | None = None,
         force: bool = False,
     ) -> None:
@@ -1198,10 +1198,8 @@ class Calibration:
             The file.
         logo
             Picture for its head: PNG, JPEG or SVG.
-        valid_until
-            Day until which it is valid, like "2027-11-28".
         record
-            What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+            What it states beside and in place of what the calibration's record states, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
         force
             Whether to write over a file that is none of poecal.
         """
@@ -1211,7 +1209,7 @@ class Calibration:
         joints: ArrayLike,
         *,
         with_uncertainty: Literal[False] = False,
-        frame: Literal["base", "device"] = "base",
+        output_frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1224,7 +1222,7 @@ class Calibration:
             Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
         with_uncertainty
             Whether to give the expected error of each pose too.
-        frame
+        output_frame
             Frame of the poses: "base" or "device".
         target
             Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
@@ -1245,7 +1243,7 @@ class Calibration:
         joints: ArrayLike,
         *,
         with_uncertainty: Literal[True],
-        frame: Literal["base", "device"] = "base",
+        output_frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1256,7 +1254,7 @@ class Calibration:
         joints: ArrayLike,
         *,
         with_uncertainty: bool,
-        frame: Literal["base", "device"] = "base",
+        output_frame: Literal["base", "device"] = "base",
         target: str | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1343,10 +1341,10 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_deg: _Number | None = None,
-        most_slide_mm: _Number | None = None,
-        most_turn_rad: _Number | None = None,
-        most_slide_m: _Number | None = None,
+        max_turn_deg: _Number | None = None,
+        max_slide_mm: _Number | None = None,
+        max_turn_rad: _Number | None = None,
+        max_slide_m: _Number | None = None,
         summary: Literal[False] = False,
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1361,9 +1359,9 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
-        most_turn_deg, most_slide_mm
+        max_turn_deg, max_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
-        most_turn_rad, most_slide_m
+        max_turn_rad, max_slide_m
             The same in radians and metres.
         summary
             Whether to give the summary as well.
@@ -1386,10 +1384,10 @@ class Calibration:
         *,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_deg: _Number | None = None,
-        most_slide_mm: _Number | None = None,
-        most_turn_rad: _Number | None = None,
-        most_slide_m: _Number | None = None,
+        max_turn_deg: _Number | None = None,
+        max_slide_mm: _Number | None = None,
+        max_turn_rad: _Number | None = None,
+        max_slide_m: _Number | None = None,
         summary: Literal[True],
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
@@ -1412,17 +1410,17 @@ class Calibration:
         path: _Path,
         *,
         language: Literal["urscript", "rapid", "krl", "fanuc"] | None = None,
-        tools: Sequence[str] | None = None,
-        frames: Sequence[str] | None = None,
-        base: str | None = None,
-        flange: str | None = None,
+        tool_data: Sequence[str] | None = None,
+        work_objects: Sequence[str] | None = None,
+        controller_base: str | None = None,
+        controller_flange: str | None = None,
         start: str | None = None,
         factors: Mapping[str, float] | None = None,
         nearest: bool = False,
-        most_turn_deg: _Number | None = None,
-        most_slide_mm: _Number | None = None,
-        most_turn_rad: _Number | None = None,
-        most_slide_m: _Number | None = None,
+        max_turn_deg: _Number | None = None,
+        max_slide_mm: _Number | None = None,
+        max_turn_rad: _Number | None = None,
+        max_slide_m: _Number | None = None,
         third_axis: Literal["level", "arm"] | None = None,
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
@@ -1435,13 +1433,13 @@ class Calibration:
             The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
         language
             Its language, default by the end of its name.
-        tools
+        tool_data
             Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
-        frames
+        work_objects
             Frames of poses (work object, base, user frame) in the controller's base, as tools.
-        base
+        controller_base
             The controller's base in the model's, default the same.
-        flange
+        controller_flange
             The controller's flange in the model's tip, default the same.
         start
             Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
@@ -1449,9 +1447,9 @@ class Calibration:
             Values of the corrected model's factors by their names, default their references.
         nearest
             Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
-        most_turn_deg, most_slide_mm
+        max_turn_deg, max_slide_mm
             How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
-        most_turn_rad, most_slide_m
+        max_turn_rad, max_slide_m
             The same in radians and metres.
         third_axis
             From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
@@ -1515,9 +1513,7 @@ class Calibration:
         self,
         measurements: Measurements,
         *,
-        refit_frame: bool = False,
-        refit_tool: bool = False,
-        refit: Literal["never", "auto"] = "never",
+        refit: _Refit | Sequence[_Refit] | None = None,
         accept: str | None = None,
         accept_model: Literal["corrected", "calibrated"] = "corrected",
         out: _Path | None = None,
@@ -1532,12 +1528,9 @@ class Calibration:
         ----------
         measurements
             The measurements.
-        refit_frame
-            Whether to refit the device's frame to them.
-        refit_tool
-            Whether to refit the targets to them.
         refit
-            "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
+            What is refitted to them: "device" (its frame), "tool" (the targets), or a list of both; "auto" refits the device's frame where the
+            measurements show that the device stands elsewhere, which is stated otherwise.
         accept
             Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
         accept_model
@@ -1565,7 +1558,7 @@ class Calibration:
         kind: _Kind = "pose",
         sigma_position_mm: _Number | None = None,
         sigma_rotation_deg: _Number | None = None,
-        frame: _Frame = "unknown",
+        device_frame: _Frame = "unknown",
         robot_error_mm: _Number | _Pair | None = None,
     ) -> Identification:
         """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
@@ -1578,7 +1571,7 @@ class Calibration:
             Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
         sigma_position_mm, sigma_rotation_deg
             Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
-        frame
+        device_frame
             The measuring device's frame: "unknown" or "base".
         robot_error_mm
             Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
@@ -1686,15 +1679,15 @@ class Watch:
         The nominal robot, or a calibrated one.
     candidates
         Configurations to choose the next from, shape (m, n) (default random ones within the limits).
-    over
+    workspace
         Configurations in which the robot will work, shape (m, n) (default anywhere within the limits).
-    over_box_mm
-        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
+    workspace_box_mm
+        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     robot_error_mm
         Error of the tip (RMS) that a calibration leaves however much is measured, as of `plan`.
-    frame
+    device_frame
         The measuring device's frame: "unknown" or "base".
     tolerance_deg_mm
         Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
@@ -1710,12 +1703,12 @@ class Watch:
         robot: Robot,
         *,
         candidates: ArrayLike | None = None,
-        over: ArrayLike | None = None,
-        over_box_mm: ArrayLike | None = None,
+        workspace: ArrayLike | None = None,
+        workspace_box_mm: ArrayLike | None = None,
         sigma_position_mm: _Number | None = None,
         sigma_rotation_deg: _Number | None = None,
         robot_error_mm: _Number | _Pair | None = None,
-        frame: _Frame = "unknown",
+        device_frame: _Frame = "unknown",
         tolerance_deg_mm: _Pair | None = ...,
         corrections: str | Mapping[str, _Number] = "auto",
         gravity: ArrayLike = (0, 0, -1),
@@ -1804,7 +1797,7 @@ def calibrate(
     robot: Robot | _Path,
     measurements: Measurements | _Path | Sequence[_Path],
     *,
-    frame: _Frame = "unknown",
+    device_frame: _Frame = "unknown",
     sigma_position_mm: _Number | None = None,
     sigma_rotation_deg: _Number | None = None,
     tolerance_deg_mm: _Pair | None = ...,
@@ -1836,7 +1829,7 @@ def calibrate(
         The nominal robot, or the path of its model.
     measurements
         Its measurements, or the path of their file, or several paths.
-    frame
+    device_frame
         The measuring device's frame: "unknown" or "base".
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component, default estimated from the data.
@@ -1916,7 +1909,7 @@ def check(
         The nominal robot, or the path of its model.
     measurements
         Its measurements, or the path of their file, or several paths; None if there are none yet.
-    frame
+    device_frame
         The measuring device's frame; with "base", mistakes in it are looked for too.
 
     Returns
@@ -1940,10 +1933,10 @@ def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None
         Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
         change with its test.
     """
-def convert(
+def export(
     robot: Robot,
     *,
-    to: _Form | None = None,
+    format: _Form | None = None,
     offset: dict[str, float] | None = None,
     out: _Path | None = None,
     force: bool = False,
@@ -1954,7 +1947,7 @@ def convert(
     ----------
     robot
         The robot.
-    to
+    format
         "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
     offset
         Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
@@ -1997,7 +1990,7 @@ def hand_eye(
     flange: Literal["base-from-flange", "flange-from-base"] | None = None,
     target: Literal["camera-from-target", "target-from-camera"] | None = None,
     names: Sequence[str] | None = None,
-    frames: Sequence[str] | None = None,
+    frame_names: Sequence[str] | None = None,
 ) -> HandEye:
     """Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
 
@@ -2016,7 +2009,7 @@ def hand_eye(
         said under "findings".
     names
         What messages call each row.
-    frames
+    frame_names
         Names of base, flange, camera and target in the result.
 
     Returns
@@ -2032,7 +2025,7 @@ def identify(
     kind: _Kind = "pose",
     sigma_position_mm: _Number | None = None,
     sigma_rotation_deg: _Number | None = None,
-    frame: _Frame = "unknown",
+    device_frame: _Frame = "unknown",
     robot_error_mm: _Number | _Pair | None = None,
 ) -> Identification:
     """Which unknowns measurements in given configurations would determine, before anything is measured.
@@ -2047,7 +2040,7 @@ def identify(
         Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
-    frame
+    device_frame
         The measuring device's frame: "unknown" or "base".
     robot_error_mm
         Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
@@ -2112,7 +2105,7 @@ def init(
         Names of the files.
     """
 def offsets(
-    nominal: Robot, actual: Robot | Calibration, *, base: _End | None = None, tip: _End | None = None
+    nominal: Robot, actual: Robot | Calibration, *, free: Sequence[_End] | None = None, fix: Sequence[_End] | None = None
 ) -> Offsets:
     """The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
 
@@ -2122,9 +2115,8 @@ def offsets(
         The model.
     actual
         The robot, or a calibration of it.
-    base, tip
-        Whether these frames are the same in both ("kept") or found with the offsets ("free"); by default what a calibration fitted is
-        free.
+    free, fix
+        Which of the frames "base" and "tip" are found with the offsets, and which are the same in both; by default what a calibration fitted is free.
 
     Returns
     -------
@@ -2156,8 +2148,8 @@ def recalibrate(
     earlier: Measurements | None = None,
     *,
     part: str,
-    device: Literal["anew", "known"] = "anew",
-    tool: Literal["same", "anew"] = "same",
+    device: Literal["refit", "known"] = "refit",
+    tool: Literal["same", "refit"] = "same",
     repeatability_mm: _Number | None = None,
 ) -> Calibration:
     """Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
@@ -2173,9 +2165,9 @@ def recalibrate(
     part
         What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
     device
-        "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+        "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
     tool
-        "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+        "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
     repeatability_mm
         Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
 
@@ -2264,7 +2256,7 @@ def simulate(
     error_rotation_deg: _Number = 1.0,
     noise_position_mm: _Number = 0.05,
     noise_rotation_deg: _Number = 0.01,
-    frame: _Frame = "unknown",
+    device_frame: _Frame = "unknown",
     held_out_count: int = 0,
     terms: str | Mapping[str, _Number] = "off",
     gravity: Sequence[float] = ...,
@@ -2285,7 +2277,7 @@ def simulate(
         Distance and angle by which every axis, and the tip, is off.
     noise_position_mm, noise_rotation_deg
         Standard deviation of each measured component.
-    frame
+    device_frame
         The measuring device's frame: "unknown" or "base".
     held_out_count
         Number of further measurements, free of noise, to judge a calibration by.
@@ -2334,32 +2326,32 @@ def plan(
     purpose: Literal["calibration"] = "calibration",
     kind: _Kind = "point",
     count: int | None = None,
-    judge: int | None = None,
+    held_out_count: int | None = None,
     candidates: ArrayLike | None = None,
-    over: ArrayLike | None = None,
-    over_box_mm: ArrayLike | None = None,
-    keep: Plan | ArrayLike | None = None,
-    replace: Sequence[int] | None = None,
+    workspace: ArrayLike | None = None,
+    workspace_box_mm: ArrayLike | None = None,
+    keep_rows: Plan | ArrayLike | None = None,
+    replace_rows: Sequence[int] | None = None,
     criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
     targets: int = 1,
     target_offset_mm: ArrayLike | None = None,
     sigma_position_mm: _Number | None = None,
     sigma_rotation_deg: _Number | None = None,
     robot_error_mm: _Number | _Pair | None = None,
-    frame: _Frame = "unknown",
+    device_frame: _Frame = "unknown",
     tolerance_deg_mm: _Pair | None = ...,
     corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
     margin_deg_mm: _Pair | None = None,
     keep_out_mm: Sequence[ArrayLike] | None = None,
-    floor_mm: _Number | None = None,
+    floor_height_mm: _Number | None = None,
     separation_deg: _Number | None = None,
     device_mm: ArrayLike | None = None,
-    cone_deg: _Number | None = None,
-    device_looks_at_mm: ArrayLike | None = None,
+    device_half_angle_deg: _Number | None = None,
+    device_aim_mm: ArrayLike | None = None,
     distance_mm: _Pair | None = None,
-    acceptance_deg: _Number | None = None,
-    facing: ArrayLike | None = None,
+    target_half_angle_deg: _Number | None = None,
+    target_normal: ArrayLike | None = None,
     self_collision: Literal["avoid", "ignore"] = "avoid",
     stop_s: float = 30.0,
     seed: int = 1,
@@ -2384,18 +2376,18 @@ def plan(
         Kind of the measurements of the tip: "point", "pose", "mixed" or "distance".
     count
         Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
-    judge
+    held_out_count
         Number of further rows to judge by, at random over the workspace (default a third of `count`).
     candidates
         Configurations to choose from alone, shape (m, n).
-    over
+    workspace
         Configurations in which the robot will work, shape (m, n), where predictions shall be good (default anywhere within the limits).
-    over_box_mm
-        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `over`.
-    keep
+    workspace_box_mm
+        Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
+    keep_rows
         Rows that are there already, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
-    replace
-        Rows of `keep`, from 0, that could not be measured: others take their places, and all other rows stay.
+    replace_rows
+        Rows of `keep_rows`, from 0, that could not be measured: others take their places, and all other rows stay.
     criterion
         "expected" (expected error of the calibrated and the corrected model), or a measure of the design: "D", "A", "E", "G".
     targets
@@ -2407,7 +2399,7 @@ def plan(
     robot_error_mm
         Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm per
         metre of reach is assumed).
-    frame
+    device_frame
         The measuring device's frame: "unknown" or "base".
     tolerance_deg_mm
         Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
@@ -2419,17 +2411,17 @@ def plan(
         How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
     keep_out_mm
         Boxes into which no part of the robot may reach, each two corners in the base frame.
-    floor_mm
+    floor_height_mm
         Height above which all links that move stay.
     separation_deg
         Least change of some joint between any two configurations.
     device_mm
         Where the measuring device is, in the base frame; targets that links hide from it are left out.
-    cone_deg, device_looks_at_mm
+    device_half_angle_deg, device_aim_mm
         Half the angle of the device's cone, and where it looks (default the base).
     distance_mm
         Least and largest distance of the target from the device.
-    acceptance_deg, facing
+    target_half_angle_deg, target_normal
         Largest angle between the direction in which the target looks, in its own frame (default (0, 0, 1)), and the line to the device.
     self_collision
         "avoid" links that overlap by their shapes in the URDF, or "ignore" shapes.
@@ -2440,9 +2432,9 @@ def plan(
     earlier
         For "drift": rows of the calibration or of an earlier visit whose configurations may be repeated (default those of the calibration).
     device
-        For "drift": "known" if the device will stand where it stood, "anew" if not (default "known" of a calibration with frame="base").
+        For "drift": "known" if the device will stand where it stood, "refit" if not (default "known" of a calibration with device_frame="base").
     tool
-        For "drift": "same" if the tool will be on the flange as it was, "anew" if not (default "same").
+        For "drift": "same" if the tool will be on the flange as it was, "refit" if not (default "same").
     target
         For "drift": the target that will be measured, of several (default all that the rows have).
     repeatability_mm
@@ -2462,8 +2454,8 @@ def plan(
     count: int | None = None,
     candidates: ArrayLike | None = None,
     earlier: Measurements | None = None,
-    device: Literal["known", "anew"] | None = None,
-    tool: Literal["same", "anew"] | None = None,
+    device: Literal["known", "refit"] | None = None,
+    tool: Literal["same", "refit"] | None = None,
     repeatability_mm: _Number | None = None,
     target: str | None = None,
 ) -> VisitPlan: ...
@@ -2474,38 +2466,38 @@ def plan(
     purpose: Literal["calibration", "drift"],
     kind: _Kind = "point",
     count: int | None = None,
-    judge: int | None = None,
+    held_out_count: int | None = None,
     candidates: ArrayLike | None = None,
-    over: ArrayLike | None = None,
-    over_box_mm: ArrayLike | None = None,
-    keep: Plan | ArrayLike | None = None,
-    replace: Sequence[int] | None = None,
+    workspace: ArrayLike | None = None,
+    workspace_box_mm: ArrayLike | None = None,
+    keep_rows: Plan | ArrayLike | None = None,
+    replace_rows: Sequence[int] | None = None,
     criterion: Literal["expected", "D", "A", "E", "G"] = "expected",
     targets: int = 1,
     target_offset_mm: ArrayLike | None = None,
     sigma_position_mm: _Number | None = None,
     sigma_rotation_deg: _Number | None = None,
     robot_error_mm: _Number | _Pair | None = None,
-    frame: _Frame = "unknown",
+    device_frame: _Frame = "unknown",
     tolerance_deg_mm: _Pair | None = ...,
     corrections: str | Mapping[str, _Number] = "auto",
     gravity: ArrayLike = (0, 0, -1),
     margin_deg_mm: _Pair | None = None,
     keep_out_mm: Sequence[ArrayLike] | None = None,
-    floor_mm: _Number | None = None,
+    floor_height_mm: _Number | None = None,
     separation_deg: _Number | None = None,
     device_mm: ArrayLike | None = None,
-    cone_deg: _Number | None = None,
-    device_looks_at_mm: ArrayLike | None = None,
+    device_half_angle_deg: _Number | None = None,
+    device_aim_mm: ArrayLike | None = None,
     distance_mm: _Pair | None = None,
-    acceptance_deg: _Number | None = None,
-    facing: ArrayLike | None = None,
+    target_half_angle_deg: _Number | None = None,
+    target_normal: ArrayLike | None = None,
     self_collision: Literal["avoid", "ignore"] = "avoid",
     stop_s: float = 30.0,
     seed: int = 1,
     earlier: Measurements | None = None,
-    device: Literal["known", "anew"] | None = None,
-    tool: Literal["same", "anew"] | None = None,
+    device: Literal["known", "refit"] | None = None,
+    tool: Literal["same", "refit"] | None = None,
     repeatability_mm: _Number | None = None,
     target: str | None = None,
 ) -> Plan | VisitPlan: ...
@@ -2514,8 +2506,8 @@ def track(
     measurements: Measurements,
     earlier: Measurements | None = None,
     *,
-    device: Literal["anew", "known"] = "anew",
-    tool: Literal["same", "anew"] = "same",
+    device: Literal["refit", "known"] = "refit",
+    tool: Literal["same", "refit"] = "same",
     repeatability_mm: _Number | None = None,
     report: _Path | None = None,
     record: Mapping[str, str] | None = None,
@@ -2533,9 +2525,9 @@ def track(
         The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
         are judged by the model.
     device
-        "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+        "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
     tool
-        "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+        "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
     repeatability_mm
         Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
     report

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use poecal_calibrate::AcceptanceLimits;
+use poecal_cli::words::{self, Refit};
 use poecal_plan::plan::RobotError;
 use poecal_results::record::Record;
 use poecal_results::validation::Judging;
@@ -11,11 +12,10 @@ use pyo3::prelude::*;
 use super::content::Calibration;
 use super::report_place::ReportPlace;
 use super::validated;
-use crate::arguments as arg;
+use crate::arguments::{self as arg, Words};
 use crate::calibrate::accept_limits;
 use crate::findings::{self, Findings};
 use crate::measurements::Measurements;
-use crate::words::chosen;
 
 #[pymethods]
 impl Calibration {
@@ -25,12 +25,9 @@ impl Calibration {
     /// ----------
     /// measurements
     ///     The measurements.
-    /// refit_frame
-    ///     Whether to refit the device's frame to them.
-    /// refit_tool
-    ///     Whether to refit the targets to them.
     /// refit
-    ///     "auto" refits the device's frame where the measurements show that the device stands elsewhere; "never" says it.
+    ///     What is refitted to them: "device" (its frame), "tool" (the targets), or a list of both; "auto" refits the device's frame where the
+    ///     measurements show that the device stands elsewhere, which is stated otherwise.
     /// accept
     ///     Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
     /// accept_model
@@ -50,17 +47,15 @@ impl Calibration {
     /// -------
     /// Validation
     ///     Errors of the nominal and the calibrated robot, their share inside the predicted bounds, and `acceptance`.
-    #[pyo3(signature = (measurements, *, refit_frame=false, refit_tool=false, refit="never", accept=None, accept_model="corrected", out=None, force=false, report=None,
+    #[pyo3(signature = (measurements, *, refit=None, accept=None, accept_model="corrected", out=None, force=false, report=None,
                         record=None, history=None),
-           text_signature = "($self, measurements, *, refit_frame=False, refit_tool=False, refit='never', accept=None, accept_model='corrected', out=None, force=False, report=True, record=None, history=None)")]
+           text_signature = "($self, measurements, *, refit=None, accept=None, accept_model='corrected', out=None, force=False, report=True, record=None, history=None)")]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn validate(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::measurements)] measurements: &Measurements,
-        #[pyo3(from_py_with = arg::refit_frame)] refit_frame: bool,
-        #[pyo3(from_py_with = arg::refit_tool)] refit_tool: bool,
-        #[pyo3(from_py_with = arg::refit)] refit: &str,
+        #[pyo3(from_py_with = arg::refit)] refit: Option<Words>,
         #[pyo3(from_py_with = arg::accept)] accept: Option<AcceptanceLimits>,
         #[pyo3(from_py_with = arg::accept_model)] accept_model: &str,
         #[pyo3(from_py_with = arg::out)] out: Option<PathBuf>,
@@ -71,7 +66,9 @@ impl Calibration {
     ) -> PyResult<Findings> {
         measurements.check_robot(self.calibrated()?)?;
         let limits = accept_limits(accept, accept_model)?;
-        let refit_moved = chosen("refit", refit, &[("never", false), ("auto", true)])?;
+        let refit = refit.map(|it| it.chosen("refit", words::REFIT)).transpose()?;
+        let [refit_frame, refit_tool, refit_moved] = [Refit::Device, Refit::Tool, Refit::Auto]
+            .map(|what| refit.iter().flatten().any(|it| *it == what));
         let judging = Judging { refit_frame, refit_moved, refit_tool, accept: limits.as_ref() };
         let places =
             validated::Places::reserve(py, (self, measurements), (out.as_deref(), force), report, history)?;
@@ -88,7 +85,7 @@ impl Calibration {
     ///     Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
     /// sigma_position_mm, sigma_rotation_deg
     ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
-    /// frame
+    /// device_frame
     ///     The measuring device's frame: "unknown" or "base".
     /// robot_error_mm
     ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
@@ -97,7 +94,7 @@ impl Calibration {
     /// -------
     /// Identification
     ///     What would be determined, and the expected error.
-    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
+    #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, device_frame="unknown", robot_error_mm=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn identify(
         &self,
@@ -106,7 +103,7 @@ impl Calibration {
         #[pyo3(from_py_with = arg::kind)] kind: &str,
         #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
         #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-        #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
         #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
     ) -> PyResult<Findings> {
         findings::identify(
@@ -116,7 +113,7 @@ impl Calibration {
             kind,
             sigma_position_mm,
             sigma_rotation_deg,
-            frame,
+            device_frame,
             robot_error_mm.or_else(|| self.file().left_error()),
         )
     }

@@ -25,9 +25,9 @@ impl Calibration {
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
     ///     Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
-    /// most_turn_deg, most_slide_mm
+    /// max_turn_deg, max_slide_mm
     ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
-    /// most_turn_rad, most_slide_m
+    /// max_turn_rad, max_slide_m
     ///     The same in radians and metres.
     /// summary
     ///     Whether to give the summary as well.
@@ -42,7 +42,7 @@ impl Calibration {
     /// numpy.ndarray
     ///     Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
     ///     `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
-    #[pyo3(signature = (joints, *, factors=None, nearest=false, most_turn_deg=None, most_slide_mm=None, most_turn_rad=None, most_slide_m=None, summary=false, model="corrected", readings=None))]
+    #[pyo3(signature = (joints, *, factors=None, nearest=false, max_turn_deg=None, max_slide_mm=None, max_turn_rad=None, max_slide_m=None, summary=false, model="corrected", readings=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate<'py>(
         &self,
@@ -50,10 +50,10 @@ impl Calibration {
         joints: &Bound<'py, PyAny>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
-        #[pyo3(from_py_with = arg::most_turn_deg)] most_turn_deg: Option<f64>,
-        #[pyo3(from_py_with = arg::most_slide_mm)] most_slide_mm: Option<f64>,
-        #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
-        #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
+        #[pyo3(from_py_with = arg::max_turn_deg)] max_turn_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::max_slide_mm)] max_slide_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::max_turn_rad)] max_turn_rad: Option<f64>,
+        #[pyo3(from_py_with = arg::max_slide_m)] max_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::summary)] summary: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
@@ -63,10 +63,10 @@ impl Calibration {
         let taught = self.file().taught(&actual.model.robot).map_err(raise)?;
         let factors = reach::factors(&actual.model.robot, factors)?;
         let most = reach::Most {
-            turn_deg: most_turn_deg,
-            slide_mm: most_slide_mm,
-            turn_rad: most_turn_rad,
-            slide_m: most_slide_m,
+            turn_deg: max_turn_deg,
+            slide_mm: max_slide_mm,
+            turn_rad: max_turn_rad,
+            slide_m: max_slide_m,
         };
         let options = reach::change(nearest, most)?;
         let counting = reach::counting(self.file(), readings)?;
@@ -100,13 +100,13 @@ impl Calibration {
     ///     The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
     /// language
     ///     Its language, default by the end of its name.
-    /// tools
+    /// tool_data
     ///     Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
-    /// frames
+    /// work_objects
     ///     Frames of poses (work object, base, user frame) in the controller's base, as tools.
-    /// base
+    /// controller_base
     ///     The controller's base in the model's, default the same.
-    /// flange
+    /// controller_flange
     ///     The controller's flange in the model's tip, default the same.
     /// start
     ///     Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
@@ -114,9 +114,9 @@ impl Calibration {
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
     ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
-    /// most_turn_deg, most_slide_mm
+    /// max_turn_deg, max_slide_mm
     ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
-    /// most_turn_rad, most_slide_m
+    /// max_turn_rad, max_slide_m
     ///     The same in radians and metres.
     /// third_axis
     ///     From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
@@ -129,36 +129,44 @@ impl Calibration {
     /// -------
     /// tuple of bytes and Compensation
     ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
-    #[pyo3(signature = (path, *, language=None, tools=None, frames=None, base=None, flange=None, start=None, factors=None, nearest=false, most_turn_deg=None, most_slide_mm=None, most_turn_rad=None, most_slide_m=None, third_axis=None, check=false, model="corrected"))]
+    #[pyo3(signature = (path, *, language=None, tool_data=None, work_objects=None, controller_base=None, controller_flange=None, start=None, factors=None, nearest=false, max_turn_deg=None, max_slide_mm=None, max_turn_rad=None, max_slide_m=None, third_axis=None, check=false, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate_program<'py>(
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::language)] language: Option<String>,
-        #[pyo3(from_py_with = arg::tools)] tools: Option<Vec<String>>,
-        #[pyo3(from_py_with = arg::frames)] frames: Option<Vec<String>>,
-        #[pyo3(from_py_with = arg::base)] base: Option<String>,
-        #[pyo3(from_py_with = arg::flange)] flange: Option<String>,
+        #[pyo3(from_py_with = arg::tool_data)] tool_data: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::work_objects)] work_objects: Option<Vec<String>>,
+        #[pyo3(from_py_with = arg::controller_base)] controller_base: Option<String>,
+        #[pyo3(from_py_with = arg::controller_flange)] controller_flange: Option<String>,
         #[pyo3(from_py_with = arg::start)] start: Option<String>,
         factors: Option<&Bound<'py, PyAny>>,
         #[pyo3(from_py_with = arg::nearest)] nearest: bool,
-        #[pyo3(from_py_with = arg::most_turn_deg)] most_turn_deg: Option<f64>,
-        #[pyo3(from_py_with = arg::most_slide_mm)] most_slide_mm: Option<f64>,
-        #[pyo3(from_py_with = arg::most_turn_rad)] most_turn_rad: Option<f64>,
-        #[pyo3(from_py_with = arg::most_slide_m)] most_slide_m: Option<f64>,
+        #[pyo3(from_py_with = arg::max_turn_deg)] max_turn_deg: Option<f64>,
+        #[pyo3(from_py_with = arg::max_slide_mm)] max_slide_mm: Option<f64>,
+        #[pyo3(from_py_with = arg::max_turn_rad)] max_turn_rad: Option<f64>,
+        #[pyo3(from_py_with = arg::max_slide_m)] max_slide_m: Option<f64>,
         #[pyo3(from_py_with = arg::third_axis)] third_axis: Option<&str>,
         #[pyo3(from_py_with = arg::check)] check: bool,
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyAny>)> {
         let most = reach::Most {
-            turn_deg: most_turn_deg,
-            slide_mm: most_slide_mm,
-            turn_rad: most_turn_rad,
-            slide_m: most_slide_m,
+            turn_deg: max_turn_deg,
+            slide_mm: max_slide_mm,
+            turn_rad: max_turn_rad,
+            slide_m: max_slide_m,
         };
         self.warn_of_gain(py)?;
-        let stated = programs::Stated { language, tools, frames, base, flange, start, third_axis };
+        let stated = programs::Stated {
+            language,
+            tools: tool_data,
+            frames: work_objects,
+            base: controller_base,
+            flange: controller_flange,
+            start,
+            third_axis,
+        };
         programs::compensate(py, (self, model), (&path, stated), factors, (nearest, most), check)
     }
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use poecal_calibrate::AcceptedModel;
+use poecal_cli::words;
 use poecal_import as measurements;
 use poecal_import::{MeasurementFile, ReadOptions};
 use poecal_model::measurement::Dataset;
@@ -20,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::errors::{argument, raise};
 use crate::robot::{Robot, RobotState};
-use crate::words::chosen;
+use crate::words::one_of;
 
 /// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
 ///
@@ -280,7 +281,7 @@ impl Calibration {
 
     /// The robot that a word names: "corrected", where there is one, or "calibrated".
     pub(crate) fn actual(&self, model: &str) -> PyResult<&Robot> {
-        let is_corrected = chosen("model", model, &[("corrected", true), ("calibrated", false)])?;
+        let is_corrected = one_of("model", model, words::MODEL)? == AcceptedModel::Corrected;
         let corrected = if is_corrected { self.corrected()? } else { None };
         corrected.map_or_else(|| self.calibrated(), Ok)
     }

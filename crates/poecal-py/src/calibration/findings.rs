@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_cli::words;
 use poecal_fit::analysis::{self, PlannedSession};
 use poecal_fit::forensics;
 use poecal_model::measurement::{Noise, Quantity};
+use poecal_model::offsets::End;
 use poecal_plan::plan::{PlannedFit, RobotError, expected_errors};
 use poecal_report as report;
 use poecal_report::Detail;
@@ -18,15 +20,15 @@ use poecal_results::validation::{ValidationInputs, now};
 use pyo3::prelude::*;
 use serde::Serialize;
 
-use crate::arguments::{self as arg, Argument, unexpected};
+use crate::arguments::{self as arg, Argument, Words, unexpected};
 use crate::arrays::Joints;
 use crate::calibration::Calibration;
-use crate::errors::{python_words, raise};
+use crate::errors::{argument, python_words, raise};
 use crate::measurements::Measurements;
 use crate::paths;
 use crate::places::reserved_file;
 use crate::robot::Robot;
-use crate::words::{chosen, end, frame as frame_word, from_mm, kind as kind_word, sigma, sigmas};
+use crate::words::{frame as frame_word, from_mm, kind as kind_word, one_of, sigma, sigmas};
 
 /// A result on its way to Python: an object of the class of this name in `poecal`.
 pub(crate) struct Findings {
@@ -84,7 +86,7 @@ impl<'py> IntoPyObject<'py> for Findings {
 ///     The nominal robot, or the path of its model.
 /// measurements
 ///     Its measurements, or the path of their file, or several paths; None if there are none yet.
-/// frame
+/// device_frame
 ///     The measuring device's frame; with "base", mistakes in it are looked for too.
 ///
 /// Returns
@@ -92,17 +94,17 @@ impl<'py> IntoPyObject<'py> for Findings {
 /// Check
 ///     What is understood, with mistakes under "diagnosis".
 #[pyfunction]
-#[pyo3(signature = (robot, measurements=None, *, frame="unknown"))]
+#[pyo3(signature = (robot, measurements=None, *, device_frame="unknown"))]
 pub(crate) fn check(
     py: Python<'_>,
     robot: &Bound<'_, PyAny>,
     measurements: Option<&Bound<'_, PyAny>>,
-    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
 ) -> PyResult<Findings> {
     let robot = paths::robot(robot)?;
     let measurements = paths::optional_measurements(measurements, "measurements", &robot)?;
     let (robot, measurements) = (robot.get(), measurements.as_ref().map(Bound::get));
-    let device_free = frame_word(frame)? == DeviceFrameKnowledge::Unknown;
+    let device_free = frame_word(device_frame)? == DeviceFrameKnowledge::Unknown;
     if let Some(measurements) = measurements {
         measurements.check_robot(robot)?;
     }
@@ -129,7 +131,7 @@ pub(crate) fn check(
 ///     Kind of the measurements of the tip: "pose", "point", or "mixed" (both in turn).
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
-/// frame
+/// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// robot_error_mm
 ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
@@ -140,7 +142,7 @@ pub(crate) fn check(
 /// Identification
 ///     What would be determined, and the expected error.
 #[pyfunction]
-#[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, frame="unknown", robot_error_mm=None))]
+#[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, device_frame="unknown", robot_error_mm=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn identify(
     py: Python<'_>,
@@ -149,7 +151,7 @@ pub(crate) fn identify(
     #[pyo3(from_py_with = arg::kind)] kind: &str,
     #[pyo3(from_py_with = arg::sigma_position_mm)] sigma_position_mm: Option<f64>,
     #[pyo3(from_py_with = arg::sigma_rotation_deg)] sigma_rotation_deg: Option<f64>,
-    #[pyo3(from_py_with = arg::frame)] frame: &str,
+    #[pyo3(from_py_with = arg::device_frame)] device_frame: &str,
     #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
 ) -> PyResult<Findings> {
     let model = &robot.model;
@@ -162,7 +164,7 @@ pub(crate) fn identify(
             position_m.unwrap_or(usual.noise[Quantity::Position]),
             rotation_rad.unwrap_or(usual.noise[Quantity::Rotation]),
         ),
-        device_free: frame_word(frame)? == DeviceFrameKnowledge::Unknown,
+        device_free: frame_word(device_frame)? == DeviceFrameKnowledge::Unknown,
     };
     let fit = PlannedFit {
         session,
@@ -204,31 +206,40 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
 ///     The model.
 /// actual
 ///     The robot, or a calibration of it.
-/// base, tip
-///     Whether these frames are the same in both ("kept") or found with the offsets ("free"); by default what a calibration fitted is
-///     free.
+/// free, fix
+///     Which of the frames "base" and "tip" are found with the offsets, and which are the same in both; by default what a calibration fitted is free.
 ///
 /// Returns
 /// -------
 /// Offsets
 ///     The offsets, and the errors with and without them.
 #[pyfunction]
-#[pyo3(signature = (nominal, actual, *, base=None, tip=None))]
+#[pyo3(signature = (nominal, actual, *, free=None, fix=None))]
 pub(crate) fn offsets(
     py: Python<'_>,
     #[pyo3(from_py_with = arg::nominal)] nominal: &Robot,
     #[pyo3(from_py_with = arg::actual)] actual: RobotOrCalibration<'_>,
-    #[pyo3(from_py_with = arg::base)] base: Option<&str>,
-    #[pyo3(from_py_with = arg::tip)] tip: Option<&str>,
+    #[pyo3(from_py_with = arg::free)] free: Option<Words>,
+    #[pyo3(from_py_with = arg::fix)] fix: Option<Words>,
 ) -> PyResult<Findings> {
     let actual = match &actual {
         RobotOrCalibration::Robot(robot) => (*robot).clone(),
         RobotOrCalibration::Calibration(calibration) => calibration.calibrated()?.clone(),
     };
     let (nominal, actual) = (&nominal.model, &actual.model);
-    let base = base.map(|word| end("base", word)).transpose()?;
-    let tip = tip.map(|word| end("tip", word)).transpose()?;
-    let explained = py.detach(|| ModelOffsets::between(nominal, actual, [base, tip])).map_err(raise)?;
+    let mut ends = [None, None];
+    for (name, stated, end) in [("free", free, End::Free), ("fix", fix, End::Kept)] {
+        let frames = stated.map(|it| it.chosen(name, words::OUTER_FRAME)).transpose()?;
+        for frame in frames.into_iter().flatten() {
+            if ends[usize::from(frame == words::OuterFrame::Tip)].replace(end).is_some_and(|it| it != end) {
+                return Err(argument(
+                    name,
+                    "found a frame that is in free too, expected it in one of the two",
+                ));
+            }
+        }
+    }
+    let explained = py.detach(|| ModelOffsets::between(nominal, actual, ends)).map_err(raise)?;
     let found = report::Offsets::new(nominal, actual, &explained);
     let mut warnings = Vec::new();
     for joint in &nominal.robot.joints {
@@ -286,9 +297,9 @@ pub(crate) fn compare(
 ///     The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
 ///     are judged by the model.
 /// device
-///     "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+///     "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
 /// tool
-///     "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+///     "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
 /// repeatability_mm
 ///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
 /// report
@@ -303,7 +314,7 @@ pub(crate) fn compare(
 /// Visit
 ///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
 #[pyfunction]
-#[pyo3(signature = (calibration, measurements, earlier=None, *, device="anew", tool="same", repeatability_mm=None, report=None, record=None,
+#[pyo3(signature = (calibration, measurements, earlier=None, *, device="refit", tool="same", repeatability_mm=None, report=None, record=None,
                     force=false))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn track(
@@ -351,8 +362,8 @@ pub(crate) fn visit_options(
     repeatability_mm: Option<f64>,
 ) -> PyResult<TrackOptions> {
     Ok(TrackOptions {
-        device_is_known: chosen("device", device, &[("anew", false), ("known", true)])?,
-        tool_is_anew: chosen("tool", tool, &[("same", false), ("anew", true)])?,
+        device_is_known: one_of("device", device, words::DEVICE)?,
+        tool_is_anew: one_of("tool", tool, words::TOOL)?,
         repeatability_m: repeatability_mm.map(|it| sigma("repeatability_mm", it, from_mm)).transpose()?,
     })
 }

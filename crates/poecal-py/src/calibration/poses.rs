@@ -1,6 +1,7 @@
 //! Where the tip of the calibrated robot is, and configurations that have it at poses.
 
-use poecal_results::predictions::{PredictionFrame, predicted};
+use poecal_cli::words;
+use poecal_results::predictions::predicted;
 use pyo3::IntoPyObjectExt as _;
 use pyo3::prelude::*;
 
@@ -11,7 +12,7 @@ use crate::errors::raise;
 use crate::prediction::Prediction;
 use crate::reach;
 use crate::robot::poses;
-use crate::words::chosen;
+use crate::words::one_of;
 
 #[pymethods]
 impl Calibration {
@@ -23,7 +24,7 @@ impl Calibration {
     ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
     /// with_uncertainty
     ///     Whether to give the expected error of each pose too.
-    /// frame
+    /// output_frame
     ///     Frame of the poses: "base" or "device".
     /// target
     ///     Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
@@ -37,21 +38,20 @@ impl Calibration {
     /// -------
     /// numpy.ndarray or Prediction
     ///     Poses of shape (m, 4, 4), or (4, 4) for one configuration; with `with_uncertainty` a `Prediction`, always of m poses.
-    #[pyo3(signature = (joints, *, with_uncertainty=false, frame="base", target=None, model="corrected", readings=None))]
+    #[pyo3(signature = (joints, *, with_uncertainty=false, output_frame="base", target=None, model="corrected", readings=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn predict<'py>(
         &self,
         py: Python<'py>,
         joints: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arg::with_uncertainty)] with_uncertainty: bool,
-        #[pyo3(from_py_with = arg::frame)] frame: &str,
+        #[pyo3(from_py_with = arg::output_frame)] output_frame: &str,
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
         #[pyo3(from_py_with = arg::model)] model: &str,
         #[pyo3(from_py_with = arg::readings)] readings: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let counting = reach::counting(self.file(), readings)?;
-        let frame =
-            chosen("frame", frame, &[("base", PredictionFrame::Base), ("device", PredictionFrame::Device)])?;
+        let frame = one_of("output_frame", output_frame, words::PREDICT_IN)?;
         let model = &self.actual(model)?.model;
         let joints = Joints::of(joints, &model.robot)?;
         let width = model.robot.reading_names().len();

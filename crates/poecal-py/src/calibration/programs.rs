@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use poecal_cli::words;
 use poecal_compensate::{Given, Language, ProgramOptions};
-use poecal_model::robot::ThirdAxis;
 use poecal_results::calibration_file::Counted;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -11,7 +11,7 @@ use pyo3::types::PyBytes;
 use super::content::Calibration;
 use crate::errors::{argument, raise};
 use crate::reach;
-use crate::words::chosen;
+use crate::words::one_of;
 
 /// What is stated of a program beside its text.
 pub(super) struct Stated<'a> {
@@ -60,10 +60,8 @@ pub(super) fn compensate<'py>(
     let factors = reach::factors(&actual.model.robot, factors)?;
     let language = reach::language(path, stated.language.as_deref())?;
     let change = reach::change(nearest, most)?;
-    let third_axis = stated
-        .third_axis
-        .map(|word| chosen("third_axis", word, &[("level", ThirdAxis::Level), ("arm", ThirdAxis::Arm)]))
-        .transpose()?;
+    let third_axis =
+        stated.third_axis.map(|word| one_of("third_axis", word, words::THIRD_AXIS)).transpose()?;
     if third_axis.is_some() && language != Language::Fanuc {
         return Err(argument(
             "third_axis",

@@ -24,9 +24,9 @@ use crate::measurements::Measurements;
 /// part
 ///     What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
 /// device
-///     "anew" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
+///     "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
 /// tool
-///     "same" if the tool stayed on the flange; "anew" if it was mounted anew, so that its targets are fitted.
+///     "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
 /// repeatability_mm
 ///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
 ///
@@ -35,7 +35,7 @@ use crate::measurements::Measurements;
 /// Calibration
 ///     The calibration with this joint corrected. `write(folder)` writes it.
 #[pyfunction]
-#[pyo3(signature = (calibration, measurements, earlier=None, *, part, device="anew", tool="same", repeatability_mm=None))]
+#[pyo3(signature = (calibration, measurements, earlier=None, *, part, device="refit", tool="same", repeatability_mm=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 pub(crate) fn recalibrate(
     py: Python<'_>,

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use poecal_calibrate::AcceptedModel;
+use poecal_cli::words;
 use poecal_report as report;
 use poecal_results::export::{ExportFormat, ExportOptions, export};
 use poecal_results::output::{self, Contents, Existing, Results};
@@ -15,7 +17,7 @@ use super::report_place::ReportPlace;
 use crate::arguments as arg;
 use crate::errors::raise;
 use crate::places::{reserved_file, reserved_folder, said};
-use crate::words::chosen;
+use crate::words::{chosen, one_of};
 
 #[pymethods]
 impl Calibration {
@@ -113,9 +115,9 @@ impl Calibration {
     ) -> PyResult<String> {
         let words = ExportFormat::ALL.map(|format| (format.word(), format));
         let format = chosen("format", format, &words)?;
-        let robot = match chosen("model", model, &[("calibrated", false), ("corrected", true)])? {
-            true => self.corrected()?.unwrap_or(self.calibrated()?),
-            false => self.calibrated()?,
+        let robot = match one_of("model", model, words::MODEL)? {
+            AcceptedModel::Corrected => self.corrected()?.unwrap_or(self.calibrated()?),
+            AcceptedModel::Calibrated => self.calibrated()?,
         };
         let options = ExportOptions { hash, motors };
         let exported = py.detach(|| export(&robot.model, format, &options)).map_err(raise)?;
@@ -172,26 +174,21 @@ impl Calibration {
     ///     The file.
     /// logo
     ///     Picture for its head: PNG, JPEG or SVG.
-    /// valid_until
-    ///     Day until which it is valid, like "2027-11-28".
     /// record
-    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
     /// force
     ///     Whether to write over a file that is none of poecal.
-    #[pyo3(signature = (path, *, logo=None, valid_until=None, record=None, force=false))]
+    #[pyo3(signature = (path, *, logo=None, record=None, force=false))]
     fn certificate(
         &self,
         py: Python<'_>,
         #[pyo3(from_py_with = arg::path)] path: PathBuf,
         #[pyo3(from_py_with = arg::logo)] logo: Option<PathBuf>,
-        #[pyo3(from_py_with = arg::valid_until)] valid_until: Option<String>,
         #[pyo3(from_py_with = arg::record)] record: Option<Record>,
         #[pyo3(from_py_with = arg::force)] force: bool,
     ) -> PyResult<()> {
         let file = self.file();
-        let until = valid_until.as_deref().map(|day| ("valid_until", day));
         let stated = file.record.clone().overridden(&record.unwrap_or_default());
-        let stated = stated.overridden(&Record::of(until).map_err(raise)?);
         let logo = logo.as_deref().map(poecal_formats::logo::read).transpose().map_err(raise)?;
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;

@@ -38,8 +38,8 @@ pub(crate) struct MeasurementSource {
     /// How files were joined.
     #[serde(default)]
     pub(crate) joins: Vec<JoinEntry>,
-    /// Whether `fit_where` chose the rows to fit.
-    pub(crate) fit_where: bool,
+    /// Whether `train_where` chose the rows to fit.
+    pub(crate) train_where: bool,
 }
 
 /// Pickled measurements.
@@ -128,7 +128,7 @@ impl Measurements {
                     source.joins.push(join.clone());
                 }
             }
-            source.fit_where |= part.source.fit_where;
+            source.train_where |= part.source.train_where;
         }
         let file =
             MeasurementFile { data: rows::joined(&data)?, notes, warnings, ..MeasurementFile::default() };

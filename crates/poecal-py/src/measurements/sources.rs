@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use poecal_cli::words;
 use poecal_import as measurements;
 use poecal_import::{ColumnMap, Frames, Join, PlaneContact, ReadOptions};
 use poecal_results::calibration_file::Inputs;
@@ -16,15 +17,12 @@ use crate::errors::raise;
 use crate::from_arrays::{ArrayColumns, dataset};
 use crate::from_dataframe;
 use crate::robot::Robot;
-use crate::words::chosen;
-
-/// How planes are touched.
-const CONTACTS: [(&str, PlaneContact); 2] = [("point", PlaneContact::Point), ("flush", PlaneContact::Flush)];
+use crate::words::one_of;
 
 /// Options of a reader, from the arguments of the same names.
 fn options(
     columns: Option<&PathBuf>,
-    fit_where: Option<&str>,
+    train_where: Option<&str>,
     [ignore_sets, strict]: [bool; 2],
     (frames, join, lag): (Frames, Option<Join>, Option<&str>),
     (socket_distance, contact): (Option<&str>, PlaneContact),
@@ -39,7 +37,7 @@ fn options(
         body: body.map(str::to_owned),
         topics: topics.unwrap_or_default().to_vec(),
         mapping: columns.map(ColumnMap::read).transpose()?,
-        fit_where: fit_where.map(str::parse).transpose()?,
+        train_where: train_where.map(str::parse).transpose()?,
         ignore_sets,
         strict,
         socket_distances: socket_distance.map(str::parse).transpose()?,
@@ -75,13 +73,13 @@ impl Measurements {
     ///     The robot whose joints the columns name.
     /// columns
     ///     A mapping file for files with other column names.
-    /// fit_where
+    /// train_where
     ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets
     ///     Whether the files' column `set` means nothing, as for rows that judge a calibration.
     /// strict
     ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
-    /// frames
+    /// device_frames
     ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
     ///     "per-file", those of a file.
     /// join
@@ -122,17 +120,17 @@ impl Measurements {
     /// MeasurementError
     ///     It holds no measurements of this robot; the error tells the line and the column.
     #[staticmethod]
-    #[pyo3(signature = (paths, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, frames="common", join=None, lag=None, units=None, sheet=None, body=None, topics=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (paths, robot, *, columns=None, train_where=None, ignore_sets=false, strict=false, device_frames="common", join=None, lag=None, units=None, sheet=None, body=None, topics=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_csv(
         py: Python<'_>,
         #[pyo3(from_py_with = arg::paths)] paths: Paths,
         #[pyo3(from_py_with = arg::robot)] robot: &Robot,
         #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
-        #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
+        #[pyo3(from_py_with = arg::train_where)] train_where: Option<&str>,
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
-        #[pyo3(from_py_with = arg::frames)] frames: &str,
+        #[pyo3(from_py_with = arg::device_frames)] device_frames: &str,
         #[pyo3(from_py_with = arg::join)] join: Option<&str>,
         #[pyo3(from_py_with = arg::lag)] lag: Option<&str>,
         #[pyo3(from_py_with = arg::units)] units: Option<&str>,
@@ -145,19 +143,16 @@ impl Measurements {
         #[pyo3(from_py_with = arg::cameras)] cameras: Option<Vec<String>>,
         #[pyo3(from_py_with = arg::markers)] markers: Option<Vec<String>>,
     ) -> PyResult<Self> {
-        let contact = chosen("contact", contact, &CONTACTS)?;
-        let words = [("common", Frames::Common), ("per-file", Frames::PerFile)];
-        let frames = chosen("frames", frames, &words)?;
-        let joins =
-            [("name", Join::Name), ("rows", Join::Rows), ("time", Join::Time), ("motion", Join::Motion)];
-        let join = join.map(|word| chosen("join", word, &joins)).transpose()?;
+        let contact = one_of("contact", contact, words::CONTACT)?;
+        let frames = one_of("device_frames", device_frames, words::FRAMES)?;
+        let join = join.map(|word| one_of("join", word, words::JOIN)).transpose()?;
         let Paths(paths) = paths;
         let bags = db3::bags(py, &paths)?;
         let read = || {
             refuse_repeats(&paths)?;
             let options = options(
                 columns.as_ref(),
-                fit_where,
+                train_where,
                 [ignore_sets, strict],
                 (frames, join, lag),
                 (socket_distance, contact),
@@ -174,7 +169,7 @@ impl Measurements {
         crate::warn(py, &file.warnings)?;
         let names = paths.iter().map(|path| path.display().to_string()).collect();
         let (files, joins) = (file.inputs(), file.joins.clone());
-        let source = MeasurementSource { names, sha256, files, joins, fit_where: fit_where.is_some() };
+        let source = MeasurementSource { names, sha256, files, joins, train_where: train_where.is_some() };
         Ok(Measurements::new(file, source))
     }
 
@@ -294,7 +289,7 @@ impl Measurements {
     ///     The robot whose joints the columns name.
     /// columns
     ///     A mapping file for a table with other column names.
-    /// fit_where
+    /// train_where
     ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets
     ///     Whether the column `set` means nothing, as for rows that judge a calibration.
@@ -325,14 +320,14 @@ impl Measurements {
     /// MeasurementError
     ///     The table holds no measurements of this robot; the error tells the row.
     #[staticmethod]
-    #[pyo3(signature = (frame, robot, *, columns=None, fit_where=None, ignore_sets=false, strict=false, units=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
+    #[pyo3(signature = (frame, robot, *, columns=None, train_where=None, ignore_sets=false, strict=false, units=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn from_dataframe(
         py: Python<'_>,
         frame: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = arg::robot)] robot: &Robot,
         #[pyo3(from_py_with = arg::columns)] columns: Option<PathBuf>,
-        #[pyo3(from_py_with = arg::fit_where)] fit_where: Option<&str>,
+        #[pyo3(from_py_with = arg::train_where)] train_where: Option<&str>,
         #[pyo3(from_py_with = arg::ignore_sets)] ignore_sets: bool,
         #[pyo3(from_py_with = arg::strict)] strict: bool,
         #[pyo3(from_py_with = arg::units)] units: Option<&str>,
@@ -342,12 +337,12 @@ impl Measurements {
         #[pyo3(from_py_with = arg::cameras)] cameras: Option<Vec<String>>,
         #[pyo3(from_py_with = arg::markers)] markers: Option<Vec<String>>,
     ) -> PyResult<Self> {
-        let contact = chosen("contact", contact, &CONTACTS)?;
+        let contact = one_of("contact", contact, words::CONTACT)?;
         let text = from_dataframe::text(frame)?;
         let read = || {
             let options = options(
                 columns.as_ref(),
-                fit_where,
+                train_where,
                 [ignore_sets, strict],
                 (Frames::Common, None, None),
                 (socket_distance, contact),
@@ -363,7 +358,7 @@ impl Measurements {
         file.data.observations.iter_mut().for_each(|row| row.source = Default::default());
         let names = vec![from_dataframe::NAME.to_owned()];
         let source =
-            MeasurementSource { names, fit_where: fit_where.is_some(), ..MeasurementSource::default() };
+            MeasurementSource { names, train_where: train_where.is_some(), ..MeasurementSource::default() };
         Ok(Measurements::new(file, source))
     }
 

@@ -22,7 +22,7 @@ pub(crate) struct Believe<'a> {
     pub(crate) sigma_position_mm: Option<f64>,
     pub(crate) sigma_rotation_deg: Option<f64>,
     pub(crate) robot_error_mm: Option<RobotError>,
-    pub(crate) frame: &'a str,
+    pub(crate) device_frame: &'a str,
     pub(crate) tolerance_deg_mm: &'a Believed,
     pub(crate) corrections: Option<Corrections>,
     pub(crate) gravity: Option<GravityDirection>,
@@ -57,7 +57,7 @@ impl Believe<'_> {
                     position_m.unwrap_or(usual.noise[Quantity::Position]),
                     rotation_rad.unwrap_or(usual.noise[Quantity::Rotation]),
                 ),
-                device_free: frame_word(self.frame)? == DeviceFrameKnowledge::Unknown,
+                device_free: frame_word(self.device_frame)? == DeviceFrameKnowledge::Unknown,
             },
             count,
             tolerance,
@@ -91,17 +91,18 @@ pub(crate) fn corners(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3
 /// The workspace where predictions shall be good: configurations, or those with the tip in a box.
 pub(crate) fn workspace(
     robot: &Robot,
-    over: Option<&Bound<'_, PyAny>>,
-    over_box_mm: Option<&Bound<'_, PyAny>>,
+    workspace: Option<&Bound<'_, PyAny>>,
+    workspace_box_mm: Option<&Bound<'_, PyAny>>,
     seed: u64,
 ) -> PyResult<Option<Vec<f64>>> {
-    match (over, over_box_mm) {
-        (Some(_), Some(_)) => {
-            Err(argument("over_box_mm", "found both over and over_box_mm, expected one of the two"))
-        }
+    match (workspace, workspace_box_mm) {
+        (Some(_), Some(_)) => Err(argument(
+            "workspace_box_mm",
+            "found both workspace and workspace_box_mm, expected one of the two",
+        )),
         (over, None) => configurations(over, robot),
         (None, Some(corners_mm)) => {
-            let corners = corners(corners_mm, "over_box_mm")?;
+            let corners = corners(corners_mm, "workspace_box_mm")?;
             workspace_in(&robot.model.robot, &corners, seed).map(Some).map_err(raise)
         }
     }

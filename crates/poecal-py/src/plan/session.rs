@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use poecal_plan::plan::{
-    Conditions, PlanCriterion, PlanOptions, PlannedRow, RowPart, Sight, plan as planned,
-};
+use poecal_cli::words;
+use poecal_plan::plan::{Conditions, PlanOptions, PlannedRow, RowPart, Sight, plan as planned};
 use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::shapes::capsules_of;
@@ -20,7 +19,7 @@ use crate::plan_options::{Believe, configurations, corners, place, workspace};
 use crate::planned::Plan;
 use crate::robot::Robot;
 use crate::visit_plan::VisitOptions;
-use crate::words::{chosen, from_mm, kind as kind_word, sigma, size};
+use crate::words::{chosen, from_mm, kind as kind_word, one_of, sigma, size};
 
 /// Most configurations of a plan, and most rows to judge by, as by the program.
 const MOST: usize = 1000;
@@ -30,18 +29,18 @@ const MOST_TARGETS: usize = 8;
 /// Which rows are planned, and those that are there already.
 pub(super) struct Rows<'a, 'py> {
     pub(super) count: Option<usize>,
-    pub(super) judge: Option<usize>,
+    pub(super) held_out_count: Option<usize>,
     pub(super) candidates: Option<&'a Bound<'py, PyAny>>,
-    pub(super) keep: Option<&'a Bound<'py, PyAny>>,
-    pub(super) replace: Option<Vec<usize>>,
+    pub(super) keep_rows: Option<&'a Bound<'py, PyAny>>,
+    pub(super) replace_rows: Option<Vec<usize>>,
 }
 
 /// What is measured, and where predictions shall be good.
 pub(super) struct Aim<'a, 'py> {
     pub(super) kind: &'a str,
     pub(super) criterion: &'a str,
-    pub(super) over: Option<&'a Bound<'py, PyAny>>,
-    pub(super) over_box_mm: Option<&'a Bound<'py, PyAny>>,
+    pub(super) workspace: Option<&'a Bound<'py, PyAny>>,
+    pub(super) workspace_box_mm: Option<&'a Bound<'py, PyAny>>,
     pub(super) targets: usize,
     pub(super) target_offset_mm: Option<[f64; 3]>,
 }
@@ -50,7 +49,7 @@ pub(super) struct Aim<'a, 'py> {
 pub(super) struct Room<'a, 'py> {
     pub(super) margin_deg_mm: Option<(f64, f64)>,
     pub(super) keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
-    pub(super) floor_mm: Option<f64>,
+    pub(super) floor_height_mm: Option<f64>,
     pub(super) separation_deg: Option<f64>,
     pub(super) self_collision: &'a str,
 }
@@ -58,11 +57,11 @@ pub(super) struct Room<'a, 'py> {
 /// What the measuring device sees.
 pub(super) struct View {
     pub(super) device_mm: Option<[f64; 3]>,
-    pub(super) cone_deg: Option<f64>,
-    pub(super) device_looks_at_mm: Option<[f64; 3]>,
+    pub(super) device_half_angle_deg: Option<f64>,
+    pub(super) device_aim_mm: Option<[f64; 3]>,
     pub(super) distance_mm: Option<(f64, f64)>,
-    pub(super) acceptance_deg: Option<f64>,
-    pub(super) facing: Option<[f64; 3]>,
+    /// Half the angle about its normal, degrees, and the normal.
+    pub(super) of_target: (Option<f64>, Option<[f64; 3]>),
 }
 
 /// A session that is to be planned.
@@ -99,31 +98,31 @@ impl Session<'_, '_> {
         let usual = *believe.tolerance_deg_mm == Believed::Given((0.5, 5.0));
         let stated = [
             ("kind", aim.kind != "point"),
-            ("judge", rows.judge.is_some()),
-            ("over", aim.over.is_some()),
-            ("over_box_mm", aim.over_box_mm.is_some()),
-            ("keep", rows.keep.is_some()),
-            ("replace", rows.replace.is_some()),
+            ("held_out_count", rows.held_out_count.is_some()),
+            ("workspace", aim.workspace.is_some()),
+            ("workspace_box_mm", aim.workspace_box_mm.is_some()),
+            ("keep_rows", rows.keep_rows.is_some()),
+            ("replace_rows", rows.replace_rows.is_some()),
             ("criterion", aim.criterion != "expected"),
             ("targets", aim.targets != 1),
             ("target_offset_mm", aim.target_offset_mm.is_some()),
             ("sigma_position_mm", believe.sigma_position_mm.is_some()),
             ("sigma_rotation_deg", believe.sigma_rotation_deg.is_some()),
             ("robot_error_mm", believe.robot_error_mm.is_some()),
-            ("frame", believe.frame != "unknown"),
+            ("device_frame", believe.device_frame != "unknown"),
             ("tolerance_deg_mm", !usual),
             ("corrections", believe.corrections.is_some()),
             ("gravity", believe.gravity.is_some()),
             ("margin_deg_mm", room.margin_deg_mm.is_some()),
             ("keep_out_mm", room.keep_out_mm.is_some()),
-            ("floor_mm", room.floor_mm.is_some()),
+            ("floor_height_mm", room.floor_height_mm.is_some()),
             ("separation_deg", room.separation_deg.is_some()),
             ("device_mm", view.device_mm.is_some()),
-            ("cone_deg", view.cone_deg.is_some()),
-            ("device_looks_at_mm", view.device_looks_at_mm.is_some()),
+            ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
+            ("device_aim_mm", view.device_aim_mm.is_some()),
             ("distance_mm", view.distance_mm.is_some()),
-            ("acceptance_deg", view.acceptance_deg.is_some()),
-            ("facing", view.facing.is_some()),
+            ("target_half_angle_deg", view.of_target.0.is_some()),
+            ("target_normal", view.of_target.1.is_some()),
             ("self_collision", room.self_collision != "avoid"),
             ("stop_s", *stop_s != 30.0),
             ("seed", *seed != 1),
@@ -139,23 +138,23 @@ impl Session<'_, '_> {
     fn plan(self, py: Python<'_>, robot: &Robot) -> PyResult<Plan> {
         let Session { rows, aim, believe, room, view, stop_s, seed } = self;
         let count = rows.count.unwrap_or(30);
-        refuse_numbers(count, rows.judge.unwrap_or(0), aim.targets)?;
+        refuse_numbers(count, rows.held_out_count.unwrap_or(0), aim.targets)?;
         let model = &robot.model;
         let conditions = conditions(py, model, &room, &view)?;
-        let kept = kept(rows.keep, robot)?;
-        let replaced = rows.replace.unwrap_or_default();
+        let kept = kept(rows.keep_rows, robot)?;
+        let replaced = rows.replace_rows.unwrap_or_default();
         if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
             let expected = format!("found {row}, expected a row of keep, from 0 to below {}", kept.len());
-            return Err(argument("replace", expected));
+            return Err(argument("replace_rows", expected));
         }
         let options = PlanOptions {
             fit: believe
                 .fit(model, kind_word(aim.kind)?, count)?
                 .with_targets(aim.targets, aim.target_offset_mm.map(|it| it.map(from_mm))),
-            criterion: chosen("criterion", aim.criterion, &PlanCriterion::WORDS)?,
+            criterion: one_of("criterion", aim.criterion, words::CRITERION)?,
             list: configurations(rows.candidates, robot)?,
-            workspace: workspace(robot, aim.over, aim.over_box_mm, seed)?,
-            judge: rows.judge,
+            workspace: workspace(robot, aim.workspace, aim.workspace_box_mm, seed)?,
+            judge: rows.held_out_count,
             conditions,
             kept,
             replaced,
@@ -172,7 +171,7 @@ impl Session<'_, '_> {
 /// Refuses numbers of rows and targets that a plan cannot have.
 fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
     for (name, number, least, most) in
-        [("count", count, 1, MOST), ("judge", judge, 0, MOST), ("targets", targets, 1, MOST_TARGETS)]
+        [("count", count, 1, MOST), ("held_out_count", judge, 0, MOST), ("targets", targets, 1, MOST_TARGETS)]
     {
         if !(least..=most).contains(&number) {
             return Err(argument(name, format!("found {number}, expected {least} to {most}")));
@@ -184,21 +183,21 @@ fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
 /// What a configuration must fulfil.
 fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -> PyResult<Conditions> {
     let sight = [
-        ("cone_deg", view.cone_deg.is_some()),
-        ("device_looks_at_mm", view.device_looks_at_mm.is_some()),
+        ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
+        ("device_aim_mm", view.device_aim_mm.is_some()),
         ("distance_mm", view.distance_mm.is_some()),
-        ("acceptance_deg", view.acceptance_deg.is_some()),
-        ("facing", view.facing.is_some()),
+        ("target_half_angle_deg", view.of_target.0.is_some()),
+        ("target_normal", view.of_target.1.is_some()),
     ];
     if let Some((name, _)) = sight.into_iter().find(|it| it.1 && view.device_mm.is_none()) {
         return Err(argument(name, "found it without device_mm, expected the device's place beside it"));
     }
     let angle = |name, value: Option<f64>| value.map(|it| sigma(name, it, f64::to_radians)).transpose();
-    let cone = angle("cone_deg", view.cone_deg)?;
-    let acceptance_rad = angle("acceptance_deg", view.acceptance_deg)?;
+    let cone = angle("device_half_angle_deg", view.device_half_angle_deg)?;
+    let acceptance_rad = angle("target_half_angle_deg", view.of_target.0)?;
     let boxes = room.keep_out_mm.iter().flatten();
     let named = |(at, value): (usize, &Bound<'_, PyAny>)| corners(value, &format!("keep_out_mm[{at}]"));
-    let is_avoiding = chosen("self_collision", room.self_collision, &[("avoid", true), ("ignore", false)])?;
+    let is_avoiding = one_of("self_collision", room.self_collision, words::SELF_COLLISION)?;
     let (capsules, notes) = if is_avoiding { capsules_of(model) } else { Default::default() };
     crate::warn(py, &notes)?;
     Ok(Conditions {
@@ -210,22 +209,22 @@ fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -
             None => None,
         },
         keep_out: boxes.enumerate().map(named).collect::<PyResult<_>>()?,
-        floor_m: room.floor_mm.map(from_mm),
+        floor_m: room.floor_height_mm.map(from_mm),
         separation_rad: angle("separation_deg", room.separation_deg)?.unwrap_or(0.0),
         sight: place(view.device_mm).map(|at| Sight {
             place: at,
-            cone: cone.map(|half| (place(view.device_looks_at_mm).unwrap_or_default(), half)),
+            cone: cone.map(|half| (place(view.device_aim_mm).unwrap_or_default(), half)),
             distance_m: view.distance_mm.map_or([0.0, f64::INFINITY], |(low, high)| [low, high].map(from_mm)),
             acceptance_rad,
-            facing: view.facing.map_or_else(Vector3::z, Vector3::from),
+            facing: view.of_target.1.map_or_else(Vector3::z, Vector3::from),
         }),
         capsules,
     })
 }
 
 /// Rows that are there already: those of a plan, or configurations to fit.
-fn kept(keep: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
-    let Some(value) = keep else { return Ok(Vec::new()) };
+fn kept(keep_rows: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
+    let Some(value) = keep_rows else { return Ok(Vec::new()) };
     if let Ok(plan) = value.cast::<Plan>() {
         return Ok(plan.get().found.rows.clone());
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use poecal_calibrate::DeviceFrameKnowledge;
+use poecal_cli::words;
 use poecal_import::to_measure_again;
 use poecal_report as report;
 use poecal_results::output::Existing;
@@ -17,7 +18,7 @@ use crate::errors::{argument, raise};
 use crate::findings::Findings;
 use crate::measurements::Measurements;
 use crate::places::reserved_file;
-use crate::words::{chosen, from_mm, sigma};
+use crate::words::{from_mm, one_of, sigma};
 
 /// Most configurations of a visit, as by the program, and how many there are by default.
 const MOST: usize = 1000;
@@ -84,8 +85,8 @@ impl VisitOptions<'_> {
             return Err(argument("count", format!("found {count}, expected 1 to {MOST}")));
         }
         let (file, robot) = (calibration.file(), &calibration.calibrated()?.model.robot);
-        let known = self.device.map(|word| chosen("device", word, &[("anew", false), ("known", true)]));
-        let anew = self.tool.map(|word| chosen("tool", word, &[("same", false), ("anew", true)]));
+        let known = self.device.map(|word| one_of("device", word, words::DEVICE));
+        let anew = self.tool.map(|word| one_of("tool", word, words::TOOL));
         let options = TrackOptions {
             device_is_known: known.transpose()?.unwrap_or(file.frame() == DeviceFrameKnowledge::Base),
             tool_is_anew: anew.transpose()?.unwrap_or(false),

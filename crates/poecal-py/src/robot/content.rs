@@ -172,16 +172,16 @@ pub(crate) fn poses<'py>(
 }
 
 /// The named form, or that of a file's extension.
-pub(crate) fn form(to: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
-    if let Some(word) = to {
-        return chosen("to", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
+pub(crate) fn form(format: Option<&str>, path: Option<&Path>) -> PyResult<ModelFormat> {
+    if let Some(word) = format {
+        return chosen("format", word, &[("urdf", ModelFormat::Urdf), ("toml", ModelFormat::Toml)]);
     }
     path.and_then(ModelFormat::of_path).ok_or_else(|| {
         argument(
-            "to",
+            "format",
             match path {
                 Some(path) => format!(
-                    "found no form in the name `{}`, expected .urdf or .toml, or to=\"urdf\" or \"toml\"",
+                    "found no form in the name `{}`, expected .urdf or .toml, or format=\"urdf\" or \"toml\"",
                     path.display()
                 ),
                 None => "found none, expected the form to write: \"urdf\" or \"toml\"".to_owned(),

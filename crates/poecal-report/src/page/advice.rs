@@ -79,7 +79,7 @@ mod tests {
         for (text, plain) in [
             ("nothing to run", "nothing to run"),
             (
-                "the device was moved between a and b; give each file its own with --frames per-file",
+                "the device was moved between a and b; give each file its own with --device-frames per-file",
                 "the device was moved between a and b",
             ),
             (
@@ -87,7 +87,7 @@ mod tests {
                 "no length, or a height; hold axes to find offsets",
             ),
             ("a zero is 90 deg off (`--free zero` finds it)", "a zero is 90 deg off"),
-            ("--frame base is wrong", "--frame base is wrong"),
+            ("--device-frame base is wrong", "--device-frame base is wrong"),
             ("a--b, and -- alone", "a--b, and -- alone"),
         ] {
             assert_eq!(without_options(text), plain);

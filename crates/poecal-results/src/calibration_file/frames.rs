@@ -93,7 +93,7 @@ pub struct FrameEntry {
 /// A station of the measuring device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StationEntry {
-    /// Name of the instrument: from the column `instrument`, or the file with `--frames per-file`.
+    /// Name of the instrument: from the column `instrument`, or the file with `--device-frames per-file`.
     pub instrument: Option<String>,
     /// Pose of the device in the base; of an instrument on the robot, at zero joint values.
     pub base_from_device: PoseEntry,

@@ -97,7 +97,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Problem`] if the calibration does not know one of them, [`ErrorKind::Model`] if the file holds no valid pose.
     pub fn devices_of(&self, data: &Dataset) -> Result<Vec<Pose>> {
-        const REFIT: &str = "or refit the frames with --refit-frame";
+        const REFIT: &str = "or refit the frames with --refit device";
         let stations = data.station_count();
         if self.stations.is_empty() {
             if stations == 1 {
@@ -140,7 +140,7 @@ impl CalibrationFile {
     /// # Errors
     /// [`ErrorKind::Problem`].
     pub fn check_targets(&self, data: &Dataset) -> Result<()> {
-        let refit = "or refit the targets with --refit-tool";
+        let refit = "or refit the targets with --refit tool";
         let names = || self.targets.keys().map(String::as_str);
         let frames = data.frames(&data.all_rows());
         let known = first_few(&names().collect::<Vec<_>>());

@@ -28,7 +28,7 @@ impl CalibrationFile {
     /// The nominal robot with the base and tool of an actual one, the calibrated or the corrected robot of this file: tips of both are of the
     /// same thing, and what is between them is of the joints. The tip of the actual robot is what was measured, mostly a reflector, while
     /// that of the nominal one is the flange of its model; and where the measuring device stood is a choice, unless it was known. Both are
-    /// fitted over the sampled range, least squares; a base that is known (`--frame base`) is that of the model.
+    /// fitted over the sampled range, least squares; a base that is known (`--device-frame base`) is that of the model.
     ///
     /// # Errors
     /// As [`CalibrationFile::robot`] and [`Robot::arm`].

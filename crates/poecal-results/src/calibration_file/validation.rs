@@ -217,7 +217,7 @@ impl CalibrationFile {
         let inside = delivered.in_sampled_range;
         let Some(some) = inside.filter(|some| some.count >= FEW.min(judgement.count)) else {
             let moved =
-                if refit_frame { "" } else { ". If the device was set up again, add `--refit-frame`" };
+                if refit_frame { "" } else { ". If the device was set up again, add `--refit device`" };
             let lie = match inside.map_or(0, |some| some.count) {
                 0 => "no row lies".to_owned(),
                 1 => "only 1 row lies".to_owned(),
@@ -261,7 +261,7 @@ fn moved_words(leading: Quantity, rms: f64, own: f64) -> String {
     let (name, unit, times) = (leading.name(), leading.unit().symbol(), rms / own);
     format!(
         "the {name} error is {times:.0} times that of the calibration itself ({rms:.2e} {unit}, {own:.2e} {unit}): \
-         if the measuring device was moved, refit its frame with --refit-frame"
+         if the measuring device was moved, refit its frame with --refit device"
     )
 }
 
@@ -271,7 +271,7 @@ fn doubt_of_device(judgement: &Judgement, moved: &MovedDevice) -> Option<String>
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
     Some(format!(
         "the device stands {:.3} mm and {:.4} deg from where the calibration has it: with its frame refitted the {name} error is {:.4} {unit} \
-         instead of {:.4} {unit} (RMS); judge the robot by --refit-frame, or let --refit auto do so",
+         instead of {:.4} {unit} (RMS); judge the robot by --refit device, or let --refit auto do so",
         moved.shift_mm, moved.turn_deg, moved.after_rms, moved.before_rms
     ))
 }

@@ -142,11 +142,11 @@ impl Project<'_> {
 
 /// First step of the instructions.
 const PLANNED: &str = "1. **Before measuring**: which unknowns would these configurations determine, and with which expected error? `poecal plan` chooses \
-others: with your reflector's place, the device, and what is in the way.\n\n   ```sh\n   poecal identify {model} joints.csv --kind {kind}{chain options}\n   ```";
+others: with your reflector's place, the device, and what is in the way.\n\n   ```sh\n   poecal plan {model} --rows joints.csv --kind {kind}{chain options}\n   ```";
 /// The same where something is touched: random configurations do not.
 const TOUCHED: &str = "1. **Before measuring**: `joints.csv` has random configurations, to start from; in each, the robot must then be led to what it \
 touches. When a dozen rows are in `measurements.csv`, ask which unknowns they determine, and what is missing.\n\n   ```sh\n   \
-poecal identify {model} measurements.csv --kind {kind}{chain options}\n   ```";
+poecal plan {model} --rows measurements.csv --kind {kind}{chain options}\n   ```";
 
 const KNOWN_DISTANCE: &str = "# The known distance of the two sockets of each place; without it the size of the robot is not told.\n#socket_distance = \"50mm\"\n\n";
 const CONTACT: &str = "# Kind of contact for rows whose `contact` cell is empty: \"point\" or \"flush\".\n#contact = \"flush\"\n\n";

@@ -51,7 +51,7 @@ pub(crate) fn wider(is_stated: bool, is_explained: bool, times: f64) -> String {
 
 /// That no single change explains what is seen.
 pub(crate) fn unexplained(change_m: f64, usual_m: f64, device_is_known: bool) -> String {
-    let device = if device_is_known { "if the device was set up anew, state --device anew; " } else { "" };
+    let device = if device_is_known { "if the device was set up anew, state --device refit; " } else { "" };
     format!(
         "the rows are {:.3} mm off (RMS), where errors of the model and noise explain {:.3} mm a coordinate, and no change of one joint, the tool or the \
          device explains the rest: {device}if the calibration is of this robot and this tool, calibrate anew",

@@ -152,7 +152,7 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
             println!(
                 "{} {count} points, device {}: {} smallest {:.4} deg, found {:.1} % of {}, right {:.1} %, among those named {:.1} %; at twice the size {:.1} and {:.1} %",
                 robot.name,
-                if known { "known" } else { "anew" },
+                if known { "known" } else { "refit" },
                 seen.joint,
                 seen.smallest_deg / seen.visits as f64,
                 percent(seen.found),

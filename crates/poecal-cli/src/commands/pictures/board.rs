@@ -1,4 +1,4 @@
-//! `poecal board`: a board on paper, to scale, and what a ruler says of the print.
+//! `poecal detect --print`: a board on paper, to scale, and what a ruler says of the print.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_results::output::{Existing, FilePlace};
 
 use crate::DONE;
-use crate::args::Board;
+use crate::args::Detect;
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
@@ -18,30 +18,29 @@ enum Form {
     Pdf,
 }
 
-pub(crate) fn board(arguments: &Board, console: &Console) -> Result<u8> {
-    if arguments.out.is_none() && arguments.measured.is_none() {
+pub(super) fn board(arguments: &Detect, spec: &Spec, console: &Console) -> Result<u8> {
+    if arguments.place.out.is_none() && arguments.measured.is_none() {
         return ErrorKind::Option.refuse("found neither --out nor --measured, expected the file to draw, --out board.pdf or --out board.svg");
     }
     let mut code = DONE;
-    if let Some(out) = &arguments.out {
-        code = drawn(arguments, out, console)?;
+    if let Some(out) = &arguments.place.out {
+        code = drawn(arguments, (spec, out), console)?;
     }
     if let Some(measured) = &arguments.measured {
-        corrected(&arguments.spec, measured, console)?;
+        corrected(spec, measured, console)?;
     }
     Ok(code)
 }
 
 /// Writes the page, and says what is on it.
-fn drawn(arguments: &Board, out: &Path, console: &Console) -> Result<u8> {
+fn drawn(arguments: &Detect, (spec, out): (&Spec, &Path), console: &Console) -> Result<u8> {
     let form = form(out)?;
-    let spec = &arguments.spec;
     if let Some(measured) = &arguments.measured {
         // What cannot be corrected is refused before anything is written.
         measured.correct(spec).map_err(|error| refused("--measured", &error))?;
     }
-    let sheet = Sheet::new(spec, &arguments.page).map_err(|error| refused("SPEC", &error))?;
-    let place = FilePlace::reserve(out, Existing::forced(arguments.force), &[], &mut console.warner())?;
+    let sheet = Sheet::new(spec, &arguments.paper).map_err(|error| refused("--print", &error))?;
+    let place = FilePlace::reserve(out, Existing::forced(arguments.place.force), &[], &mut console.warner())?;
     let text = match form {
         Form::Svg => sheet.svg(),
         Form::Pdf => sheet.pdf(),

@@ -15,6 +15,7 @@ use poecal_storage::folder;
 use poecal_storage::limits::{self, Limit};
 use rayon::prelude::*;
 
+use super::board::board;
 use crate::DONE;
 use crate::args::Detect;
 use crate::console::Console;
@@ -39,14 +40,18 @@ struct Seen {
 }
 
 pub(crate) fn detect(arguments: &Detect, console: &Console) -> Result<u8> {
-    let of_file = board_of_file(&arguments.board)?;
-    let words = of_file.as_ref().map_or(arguments.board.as_str(), |board| &board.words);
+    if let Some(spec) = &arguments.print {
+        return board(arguments, spec, console);
+    }
+    let stated = arguments.board.as_deref().unwrap_or_default();
+    let of_file = board_of_file(stated)?;
+    let words = of_file.as_ref().map_or(stated, |board| &board.words);
     let spec: Spec = words.parse().map_err(|error| refused(&error))?;
     if let Some(board) = &of_file {
         console.remark(&board.said);
     }
     let paths = pictures(&arguments.pictures, console)?;
-    let board = of_file.as_ref().map(|_| Path::new(&arguments.board));
+    let board = of_file.as_ref().map(|_| Path::new(stated));
     let inputs: Vec<&Path> = paths.iter().map(PathBuf::as_path).chain(board).collect();
     let place = arguments.place.reserve(&inputs, console)?;
     let names = names(&paths)?;

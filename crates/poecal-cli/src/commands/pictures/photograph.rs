@@ -3,6 +3,7 @@
 use poecal_arm::lie::{Pose, rotation};
 use poecal_detect::render::{Camera, Random, Scene, clutter};
 use poecal_detect::{Layout, Spec, png};
+use poecal_fit::hand_eye::CameraPlace;
 use poecal_import::read_boards;
 use poecal_model::camera::{Board, CommonError, Distortion, Lens};
 use poecal_model::simulate::{PictureSimulation, Simulation};
@@ -11,7 +12,7 @@ use poecal_results::model::Model;
 use poecal_results::output::{FolderPlace, PhotographedSession, write_photographs};
 use rayon::prelude::*;
 
-use crate::args::{CameraPlace, Simulate};
+use crate::args::Simulate;
 use crate::console::Console;
 use crate::style;
 

@@ -98,7 +98,7 @@ fn cases() -> Vec<Case> {
     }
     let first = empty.copy();
     assert_eq!(run(&first, "calibrate robot.urdf monday.csv --out out --report page.html").code, 0);
-    assert_eq!(run(&first, "convert out/calibration.json --to toml --out robot.toml").code, 0);
+    assert_eq!(run(&first, "export out/calibration.json --format toml --out robot.toml").code, 0);
     let others = first.copy();
     others.put("out/notes.txt", b"mine");
     others.put("out/calibrated.toml", b"of an earlier run");
@@ -134,8 +134,8 @@ fn cases() -> Vec<Case> {
             &["sim"],
         ),
         case("report", &reported, "report out/calibration.json", &["out"]),
-        case("file", &first, "convert robot.urdf --to toml --out robot.toml --force", &["robot.toml"]),
-        case("new file", &first, "convert robot.urdf --to toml --out new.toml", &["new.toml"]),
+        case("file", &first, "export robot.urdf --format toml --out robot.toml --force", &["robot.toml"]),
+        case("new file", &first, "export robot.urdf --format toml --out new.toml", &["new.toml"]),
         case("project", &empty, "init robot.urdf --count 5 --out cell", &["cell"]),
     ]
 }

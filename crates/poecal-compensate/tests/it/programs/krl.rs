@@ -92,7 +92,8 @@ const EXTERNAL: &str = "external axes that the model does not have are not at ze
 const PARTIAL: &str = "it does not state all values: the others are those of the position before";
 const COMPUTED: &str = "it is computed while the program runs";
 const ABSENT: &str = "its values are in another file: correct the one that states them";
-const PLACE: &str = "its tool or base is not known: state them by --tool NUMBER= and --frame NUMBER=";
+const PLACE: &str =
+    "its tool or base is not known: state them by --tool-data NUMBER= and --work-object NUMBER=";
 
 /// Twenty programs; what each has is its name.
 const CASES: [Case; 20] = [
@@ -130,8 +131,8 @@ const CASES: [Case; 20] = [
         text: "DEF p()\nDECL E6POS P1\nP1={@s{10 -70 80 20 40 -30|t}}\nPTP P1\n$TOOL=$NULLFRAME\nP2={@s{5 -65 75 10 45 -20}}\nPTP P2\nEND\n",
         options: &[],
         listed: &[
-            (3, "P1", "the tool is not known: state it by --tool (motion on line 4)"),
-            (6, "P2", "the frame is not known: state it by --frame (motion on line 7)"),
+            (3, "P1", "the tool is not known: state it by --tool-data (motion on line 4)"),
+            (6, "P2", "the frame is not known: state it by --work-object (motion on line 7)"),
         ],
     },
     Case {
@@ -288,7 +289,7 @@ const CASES: [Case; 20] = [
             (
                 4,
                 "XA",
-                "no configuration of the nominal robot fits the one that is stated: check it, --base and --flange (motion on line 5)",
+                "no configuration of the nominal robot fits the one that is stated: check it, --controller-base and --controller-flange (motion on line 5)",
             ),
             (
                 7,
@@ -329,7 +330,7 @@ const CASES: [Case; 20] = [
         name: "a routine of another file may set the tool",
         text: program!("gripper(TRUE)", "XA={@s{10 -70 80 20 40 -30|t}}", "PTP XA"),
         options: &[],
-        listed: &[(5, "XA", "the tool is not known: state it by --tool (motion on line 6)")],
+        listed: &[(5, "XA", "the tool is not known: state it by --tool-data (motion on line 6)")],
     },
     Case {
         name: "points with one base and with two, and a tool that stands outside",
@@ -351,7 +352,7 @@ const CASES: [Case; 20] = [
         options: &[],
         listed: &[
             (5, "XC", "it is used with several tools or frames: make a target for each (motion on line 9)"),
-            (15, "XB", "the tool is not known: state it by --tool (motion on line 16)"),
+            (15, "XB", "the tool is not known: state it by --tool-data (motion on line 16)"),
         ],
     },
     Case {

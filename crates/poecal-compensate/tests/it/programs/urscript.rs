@@ -83,7 +83,7 @@ const CASES: [Case; 20] = [
         name: "no tool: poses stay, joints do not",
         text: "movej([@J{10 -70 80 -100 -80 20}])\nwp = p[@p{25 -60 70 -95 -75 35|t}]\nmovel(wp)\n",
         options: &[],
-        listed: &[(2, "wp", "the tool is not known: state it by --tool (motion on line 3)")],
+        listed: &[(2, "wp", "the tool is not known: state it by --tool-data (motion on line 3)")],
     },
     Case {
         name: "a tool that the user states",
@@ -116,7 +116,7 @@ const CASES: [Case; 20] = [
         listed: &[(
             4,
             "wp",
-            "its frame is stated in no line of this file: state it by --frame NAME= (motion on line 5)",
+            "its frame is stated in no line of this file: state it by --work-object NAME= (motion on line 5)",
         )],
     },
     Case {
@@ -204,7 +204,7 @@ const CASES: [Case; 20] = [
         text: "thread T():\n  while True:\n    set_tcp(p[0,0,0.2,0,0,0])\n    sync()\n  end\nend\nrun T()\nmovej([@J{10 -70 80 -100 -80 \
                20}])\nset_tcp(p[0,0,0.2,0,0,0])\nwp = p[@p{15 -65 75 -90 -85 25|u}]\nmovel(wp)\n",
         options: &[],
-        listed: &[(10, "wp", "the tool is not known: state it by --tool (motion on line 11)")],
+        listed: &[(10, "wp", "the tool is not known: state it by --tool-data (motion on line 11)")],
     },
     Case {
         name: "speeds, streams, and a pose nearest to qnear that stands in the statement",

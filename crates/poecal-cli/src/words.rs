@@ -1,103 +1,80 @@
-//! Options that are one of a few words: of each its help and what it means to the library.
+//! Options that are one of a few words: of each its help and what it means to the library. Command line and Python package read the same tables.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
 use poecal_compensate::Language;
+use poecal_fit::hand_eye::CameraPlace;
 use poecal_import::{Frames, Join, PlaneContact};
 use poecal_lou2009::{Formulation, Method, Residual};
-use poecal_model::offsets::End;
 use poecal_model::robot::ThirdAxis;
 use poecal_model::simulate::Kind;
 use poecal_plan::plan::PlanCriterion;
 use poecal_results::export::ExportFormat;
-use poecal_results::model::ModelFormat;
 use poecal_results::predictions::PredictionFrame;
 
 /// Words, each with its help and its meaning.
-type Words<T> = &'static [(&'static str, &'static str, T)];
+pub type Words<T> = &'static [(&'static str, &'static str, T)];
 
 /// The word of a meaning; empty where it has none.
 pub(crate) fn word_of<T: PartialEq>(words: Words<T>, meaning: &T) -> &'static str {
     words.iter().find(|(.., it)| it == meaning).map_or("", |(word, ..)| word)
 }
 
-/// Where a camera is.
-#[cfg(any(unix, windows))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum CameraPlace {
-    /// On the tip.
-    InHand,
-    /// Beside the robot.
-    Beside,
-}
-
-#[cfg(any(unix, windows))]
-impl CameraPlace {
-    /// Its word on the command line.
-    pub(crate) fn word(self) -> &'static str {
-        word_of(CAMERA, &self)
-    }
-}
-
 /// What is known of the measuring device's frame.
-pub(super) const FRAME: Words<DeviceFrameKnowledge> = &[
+pub const FRAME: Words<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
 ];
 
 /// Where the camera of simulated pictures is.
 #[cfg(any(unix, windows))]
-pub(super) const CAMERA: Words<CameraPlace> = &[
+pub const CAMERA: Words<CameraPlace> = &[
     ("in-hand", "On the tip, and the board stays", CameraPlace::InHand),
     ("beside", "Beside the robot, and the board is on the tip", CameraPlace::Beside),
 ];
 
 /// Where the camera of a hand-eye calibration is.
-pub(super) const HAND_EYE_CAMERA: Words<poecal_fit::hand_eye::CameraPlace> = &[
-    ("in-hand", "On the flange, and the target stays", poecal_fit::hand_eye::CameraPlace::InHand),
-    (
-        "beside",
-        "Beside the robot, and the target is on the flange",
-        poecal_fit::hand_eye::CameraPlace::Beside,
-    ),
+pub const HAND_EYE_CAMERA: Words<CameraPlace> = &[
+    ("in-hand", "On the flange, and the target stays", CameraPlace::InHand),
+    ("beside", "Beside the robot, and the target is on the flange", CameraPlace::Beside),
 ];
 
 /// Whether the arm's poses are inverted.
-pub(super) const FLANGE_POSES: Words<bool> = &[
+pub const FLANGE_POSES: Words<bool> = &[
     ("base-from-flange", "The flange in the base, as controllers show it", false),
     ("flange-from-base", "The base in the flange", true),
 ];
 
 /// Whether the target's poses are inverted.
-pub(super) const TARGET_POSES: Words<bool> = &[
+pub const TARGET_POSES: Words<bool> = &[
     ("camera-from-target", "The target as the camera sees it, as OpenCV's rvec and tvec", false),
     ("target-from-camera", "The camera in the target's frame", true),
 ];
 
 /// Whether the device stands where it stood.
-pub(crate) const DEVICE: Words<bool> = &[
-    ("anew", "It was set up anew: its frame is fitted, and a shift of the first joint does not show", false),
+pub const DEVICE: Words<bool> = &[
+    ("refit", "It was set up anew: its frame is fitted, and a shift of the first joint does not show", false),
     ("known", "It stands where it stood, as on fixed nests", true),
 ];
 
 /// Whether the tool was mounted anew.
-pub(crate) const TOOL: Words<bool> = &[
+pub const TOOL: Words<bool> = &[
     ("same", "It stayed on the flange, or was mounted on pins", false),
     (
-        "anew",
+        "refit",
         "It was mounted anew: its targets are fitted, and a shift of the last joint does not show",
         true,
     ),
 ];
 
 /// Which rows share a device frame.
-pub(crate) const FRAMES: Words<Frames> = &[
+pub const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
 ];
 
 /// How two files are joined.
-pub(crate) const JOIN: Words<Join> = &[
+pub const JOIN: Words<Join> = &[
     ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
     (
         "rows",
@@ -113,19 +90,19 @@ pub(crate) const JOIN: Words<Join> = &[
 ];
 
 /// From where third axes count.
-pub(super) const THIRD_AXIS: Words<ThirdAxis> = &[
+pub const THIRD_AXIS: Words<ThirdAxis> = &[
     ("level", "From the level: where J2 turns alone, the forearm keeps its direction", ThirdAxis::Level),
     ("arm", "From the lower arm, as joint 3 of a model", ThirdAxis::Arm),
 ];
 
 /// How planes are touched.
-pub(crate) const CONTACT: Words<PlaneContact> = &[
+pub const CONTACT: Words<PlaneContact> = &[
     ("point", "By a point: a height", PlaneContact::Point),
     ("flush", "By a face that lies flush: a height and two tilts", PlaneContact::Flush),
 ];
 
 /// How errors of the joints are parameterised.
-pub(super) const FORMULATION: Words<Formulation> = &[
+pub const FORMULATION: Words<Formulation> = &[
     ("adjoint", "Axes move as rigid bodies, without offsets: minimal, unconstrained", Formulation::Adjoint),
     ("screw", "Screws are free numbers, normalised after every step", Formulation::Screw),
     ("screw-offsets", "Free screws and joint offsets, 7n + 6 unknowns", Formulation::ScrewOffsets),
@@ -133,19 +110,19 @@ pub(super) const FORMULATION: Words<Formulation> = &[
 ];
 
 /// Residuals of measured frames.
-pub(super) const RESIDUAL: Words<Residual> = &[
+pub const RESIDUAL: Words<Residual> = &[
     ("tool", "Position and rotation at the target", Residual::Tool),
     ("spatial", "The twist about the device's origin", Residual::Spatial),
 ];
 
 /// Method of the solver.
-pub(super) const METHOD: Words<Method> = &[
+pub const METHOD: Words<Method> = &[
     ("levenberg-marquardt", "Damped steps, taken only if they reduce the cost", Method::LevenbergMarquardt),
     ("gauss-newton", "Full steps, taken as they are", Method::GaussNewton),
 ];
 
 /// How to treat outliers.
-pub(super) const ROBUST: Words<Robust> = &[
+pub const ROBUST: Words<Robust> = &[
     ("auto", "Least squares, unless outliers are evident: then the tukey loss, and a warning", Robust::Auto),
     ("off", "Least squares: every row counts in full", Robust::Off),
     ("huber", "The influence of a residual is bounded", Robust::Loss(Loss::Huber)),
@@ -154,13 +131,13 @@ pub(super) const ROBUST: Words<Robust> = &[
 ];
 
 /// Whether a session is repaired.
-pub(super) const REPAIR: Words<Repairs> = &[
+pub const REPAIR: Words<Repairs> = &[
     ("auto", "What evidently happened is repaired, if other rows are predicted better then", Repairs::Auto),
     ("off", "It is said only", Repairs::Off),
 ];
 
 /// The verdicts that can be asked for.
-pub(super) const REQUIRED_LEVEL: Words<Level> = &[
+pub const REQUIRED_LEVEL: Words<Level> = &[
     ("good", "Good to use anywhere within the limits", Level::Good),
     ("inside_sampled_range", "Good to use inside the sampled range, or better", Level::InsideSampledRange),
     (
@@ -172,26 +149,28 @@ pub(super) const REQUIRED_LEVEL: Words<Level> = &[
 ];
 
 /// The frame of predicted poses.
-pub(super) const PREDICT_IN: Words<PredictionFrame> = &[
+pub const PREDICT_IN: Words<PredictionFrame> = &[
     ("base", "The robot's base", PredictionFrame::Base),
     ("device", "The measuring device of a calibration", PredictionFrame::Device),
 ];
 
 /// Which model of a calibration predicts, or shall keep limits.
-pub(super) const MODEL: Words<AcceptedModel> = &[
+pub const MODEL: Words<AcceptedModel> = &[
     ("corrected", "Screws and terms of the joints", AcceptedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", AcceptedModel::Calibrated),
 ];
 
 /// What a program is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum ProgramLanguage {
+pub enum ProgramLanguage {
+    /// A table of joint readings.
     Table,
+    /// A robot program.
     Robot(Language),
 }
 
 /// What a program may be written in.
-pub(super) const LANGUAGE: Words<ProgramLanguage> = &[
+pub const LANGUAGE: Words<ProgramLanguage> = &[
     ("csv", "A table of joint readings", ProgramLanguage::Table),
     ("urscript", "URScript of Universal Robots (.script)", ProgramLanguage::Robot(Language::UrScript)),
     ("rapid", "RAPID of ABB (.mod, .prg, .sys)", ProgramLanguage::Robot(Language::Rapid)),
@@ -201,8 +180,10 @@ pub(super) const LANGUAGE: Words<ProgramLanguage> = &[
 
 /// A form, or one that cannot be written, with the reason.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum ExportForm {
+pub enum ExportForm {
+    /// One that can.
     Open(ExportFormat),
+    /// One that cannot, and why.
     Closed(&'static str),
 }
 
@@ -217,7 +198,7 @@ const fn closed(word: &'static str, why: &'static str) -> (&'static str, &'stati
 }
 
 /// Parser of the forms of exports: only those that can be written are offered.
-pub(super) fn export_form() -> impl TypedValueParser<Value = ExportForm> {
+pub(crate) fn export_form() -> impl TypedValueParser<Value = ExportForm> {
     let value = |(word, help, form): &(&'static str, &'static str, ExportForm)| {
         PossibleValue::new(*word).help(*help).hide(matches!(form, ExportForm::Closed(_)))
     };
@@ -225,7 +206,7 @@ pub(super) fn export_form() -> impl TypedValueParser<Value = ExportForm> {
 }
 
 /// Help of the form, with those that cannot be written.
-pub(super) fn export_form_help() -> String {
+pub(crate) fn export_form_help() -> String {
     let closed = EXPORT_FORMAT.iter().filter_map(|(word, _, form)| match form {
         ExportForm::Closed(why) => Some(format!("{word} ({why})")),
         ExportForm::Open(_) => None,
@@ -268,12 +249,6 @@ const EXPORT_FORMAT: Words<ExportForm> = &[
     closed("abb", "the frames and signs of ABB's MOC.cfg are not published"),
 ];
 
-/// The forms that a model can be written in.
-pub(super) const FORM: Words<ModelFormat> = &[
-    ("urdf", "The URDF that was read or calibrated, with other numbers; else a new one", ModelFormat::Urdf),
-    ("toml", "A table of screws", ModelFormat::Toml),
-];
-
 /// Words that the library knows: of each its help and its meaning.
 fn listed<T: Clone + Send + Sync + 'static>(
     words: Vec<(&'static str, &'static str, T)>,
@@ -307,25 +282,48 @@ fn kinds(some: Vec<Kind>) -> impl TypedValueParser<Value = Kind> {
 }
 
 /// Parser of what a simulated device sees.
-pub(super) fn simulated() -> impl TypedValueParser<Value = Kind> {
+pub(crate) fn simulated() -> impl TypedValueParser<Value = Kind> {
     kinds(Kind::all().into_iter().collect())
 }
 
 /// Parser of what a session measures.
-pub(super) fn measured() -> impl TypedValueParser<Value = Kind> {
+pub(crate) fn measured() -> impl TypedValueParser<Value = Kind> {
     kinds(Kind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
 }
 
-/// When the device's frame is refitted by itself.
-pub(super) const REFIT: Words<bool> =
-    &[("never", "Only by --refit-frame", false), ("auto", "Where the device stands elsewhere", true)];
+/// What is fitted to the measurements of a validation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refit {
+    /// The frame of the device.
+    Device,
+    /// The targets.
+    Tool,
+    /// The frame of the device where the rows show that.
+    Auto,
+}
 
-/// Whether a frame is the same in both models.
-pub(super) const END: Words<End> =
-    &[("free", "It is fitted with the offsets", End::Free), ("kept", "It is the same in both", End::Kept)];
+/// What is fitted to the measurements of a validation.
+pub const REFIT: Words<Refit> = &[
+    ("device", "The frame of the device, which was set up again", Refit::Device),
+    ("tool", "The targets, which were mounted again", Refit::Tool),
+    ("auto", "The frame of the device where it stands elsewhere", Refit::Auto),
+];
+
+/// Frames of a robot beside its joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OuterFrame {
+    /// The base frame.
+    Base,
+    /// The tip frame.
+    Tip,
+}
+
+/// Frames of a robot beside its joints.
+pub const OUTER_FRAME: Words<OuterFrame> =
+    &[("base", "The base frame", OuterFrame::Base), ("tip", "The tip frame", OuterFrame::Tip)];
 
 /// What a planned list shall be good at.
-pub(super) const CRITERION: Words<PlanCriterion> = &[
+pub const CRITERION: Words<PlanCriterion> = &[
     (
         "expected",
         "Expected errors of the calibrated and the corrected model over the workspace",
@@ -338,12 +336,12 @@ pub(super) const CRITERION: Words<PlanCriterion> = &[
 ];
 
 /// Whether collisions of the robot with itself are avoided.
-pub(super) const SELF_COLLISION: Words<bool> = &[
+pub const SELF_COLLISION: Words<bool> = &[
     ("avoid", "Configurations in which links overlap are left out", true),
     ("ignore", "Shapes are not looked at", false),
 ];
 
 /// Parser of one of these words for clap.
-pub(super) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(words: Words<T>) -> impl TypedValueParser<Value = T> {
     listed(words.to_vec())
 }

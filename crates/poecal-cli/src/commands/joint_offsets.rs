@@ -1,40 +1,32 @@
-//! `poecal convert`: a model in another form, or without the offsets of its joints.
+//! `poecal export --offset`: a robot whose joints read something else.
 
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result, nearest};
 use poecal_numerics::unit::Unit;
-use poecal_results::model::{self, ModelFormat};
+use poecal_results::model::Model;
 
-use super::models::read_model;
-use crate::DONE;
-use crate::args::Convert;
 use crate::console::Console;
 use crate::quantity::signed;
 
-pub(crate) fn convert(arguments: &Convert, console: &Console) -> Result<u8> {
-    let form = form(arguments)?;
-    let place = arguments.place.reserve(&[&arguments.model], console)?;
-    let mut model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
-    if !arguments.offset.is_empty() {
-        let offsets = offsets(&arguments.offset, &model.robot)?;
-        for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {
-            let followers = model.robot.followers(&joint.name);
-            if !followers.is_empty() {
-                console.warning(format!(
-                    "--offset: joint `{}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by \
-                     their multiplier: state their offsets too",
-                    joint.name,
-                    quoted(&followers)
-                ));
-            }
-        }
-        model.robot = into_screws(&model.robot, &offsets)?;
+/// The model with offsets of its joints in the screws, and a warning where others follow such a joint.
+pub(super) fn with_offsets(model: Model, stated: &[String], console: &Console) -> Result<Model> {
+    if stated.is_empty() {
+        return Ok(model);
     }
-    let converted = model::convert(&model, form)?;
-    console.warnings(&converted.notes);
-    console.deliver(converted.text, place)?;
-    Ok(DONE)
+    let offsets = offsets(stated, &model.robot)?;
+    for (joint, _) in model.robot.joints.iter().zip(&offsets).filter(|(_, offset)| **offset != 0.0) {
+        let followers = model.robot.followers(&joint.name);
+        if !followers.is_empty() {
+            console.warning(format!(
+                "--offset: joint `{}` alone is moved, not {}, which follows its reading; if its encoder is off, so are these, by \
+                 their multiplier: state their offsets too",
+                joint.name,
+                quoted(&followers)
+            ));
+        }
+    }
+    Ok(Model { robot: into_screws(&model.robot, &offsets)?, ..model })
 }
 
 /// Offsets of `--offset JOINT=VALUE`, in the order of the joints.
@@ -71,19 +63,4 @@ fn unknown_joint(name: &str, robot: &Robot) -> String {
     let hint = nearest(name, names.iter().copied())
         .map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     format!("found no moving joint `{name}`, expected one of {}{hint}", names.join(", "))
-}
-
-fn form(arguments: &Convert) -> Result<ModelFormat> {
-    let named = arguments.place.out.as_ref().and_then(ModelFormat::of_path);
-    arguments.to.or(named).ok_or_else(|| {
-        ErrorKind::Option.error(match &arguments.place.out {
-            Some(out) => format!(
-                "found no form in the name `{}`, expected .urdf or .toml, or --to urdf|toml",
-                out.display()
-            ),
-            None => {
-                "found neither --to nor --out, expected the form to write: --to urdf or --to toml".to_owned()
-            }
-        })
-    })
 }
