@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anstream::{AutoStream, ColorChoice};
 use poecal_import::MeasurementFile;
@@ -60,6 +61,8 @@ pub(crate) fn usage(error: &clap::Error) -> Result<()> {
 /// Output of the program.
 pub(crate) struct Console {
     quiet: bool,
+    /// Lines of warnings and remarks.
+    said: AtomicUsize,
 }
 
 /// Most columns of a line of help.
@@ -67,7 +70,7 @@ const HELP_WIDTH: usize = 100;
 
 impl Console {
     pub(crate) fn new(quiet: bool) -> Self {
-        Console { quiet }
+        Console { quiet, said: AtomicUsize::new(0) }
     }
 
     /// A result that must arrive completely; only a closed pipe is no error.
@@ -150,9 +153,20 @@ impl Console {
     }
 
     pub(crate) fn warning(&self, message: impl Display) {
+        self.aside("warning:", &message.to_string());
+    }
+
+    /// A warning or a remark, unless `--quiet` suppresses it.
+    fn aside(&self, word: &str, message: &str) {
         if !self.quiet {
-            tell("warning:", style::WARNING, &message.to_string());
+            self.said.fetch_add(message.chars().count().div_ceil(HELP_WIDTH), Ordering::Relaxed);
+            tell(word, style::WARNING, message);
         }
+    }
+
+    /// Lines of warnings and remarks until now, on a wide terminal.
+    pub(crate) fn lines_said(&self) -> usize {
+        self.said.load(Ordering::Relaxed)
     }
 
     pub(crate) fn warnings(&self, messages: &[String]) {
@@ -167,9 +181,7 @@ impl Console {
 
     /// What a result is made of, on standard error, unless `--quiet` suppresses it.
     pub(crate) fn remark(&self, message: impl Display) {
-        if !self.quiet {
-            tell("note:", style::WARNING, &message.to_string());
-        }
+        self.aside("note:", &message.to_string());
     }
 
     /// A line about the run itself, which was asked for and is never suppressed.

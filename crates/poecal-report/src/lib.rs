@@ -49,7 +49,7 @@ pub use page::{
     validation_page, visit_page,
 };
 pub use plan::Plan;
-pub use summary::{Detail, summary, unsaid};
+pub use summary::{Detail, Short, short, summary};
 pub use tcp::{tool_tip, tool_tip_answer};
 pub use track::{Track, WitnessPlan, recalibrated};
 pub use watched::Watched;

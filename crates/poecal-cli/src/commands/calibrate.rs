@@ -71,12 +71,12 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     let Repaired { calibration, data } = repaired?;
     let file = CalibrationFile { record, ..CalibrationFile::new(&calibration, &data, inputs) };
     let detail = if arguments.verbose { Detail::Full } else { Detail::Short };
-    let (text, unsaid) = if arguments.json {
-        (file.to_text()?, doubts(&file))
+    let text = if arguments.json {
+        console.warnings(&doubts(&file));
+        file.to_text()?
     } else {
-        (table(&file, detail), report::unsaid(&file, detail))
+        table(&file, detail, console)
     };
-    console.warnings(&unsaid);
     let code = code(arguments, &calibration);
     let written = write((places, &out), arguments, (&model, &data, &calibration), file, console)?;
     timings.end("write");
@@ -88,13 +88,14 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     Ok(code.max(told))
 }
 
-/// The table, and how to see more of it.
-fn table(file: &CalibrationFile, detail: Detail) -> String {
-    let more = match detail {
-        Detail::Short => labelled("more", "--verbose: fitted rows, noise, solver, cross-validation, joints"),
-        Detail::Full => String::new(),
-    };
-    report::summary(file, detail) + &more
+/// The table, how to see more of it, and what to do next.
+fn table(file: &CalibrationFile, detail: Detail, console: &Console) -> String {
+    if detail == Detail::Full {
+        return report::summary(file, detail);
+    }
+    let short = report::short(file, console.lines_said());
+    let next = short.next.map_or_else(String::new, |next| labelled("next", next));
+    short.table + &labelled("more", &format!("--verbose: {}", short.left)) + &next
 }
 
 /// All warnings and diagnoses: what JSON says of them is not where people read.
@@ -288,7 +289,16 @@ fn write(
     let written =
         output::write(places.folder, places.report, model, &calibration.robot_with_targets(), results)?;
     console.warnings(&written.notes);
-    let mut words = style::written(&written.folder, &written.files);
+    let has_report = written.files.iter().any(|name| *name == output::REPORT);
+    let mut words = if has_report && !arguments.verbose {
+        let beside = written.files.len() - 1;
+        labelled(
+            "written",
+            &format!("{}: open {}; {beside} files beside it", shown(&written.folder), output::REPORT),
+        )
+    } else {
+        style::written(&written.folder, &written.files)
+    };
     if arguments.verbose {
         let text = format!(
             "read back within {:.1e} m and {:.1e} rad in 1,000 configurations",
@@ -297,7 +307,7 @@ fn write(
         words.push_str(&labelled("", &text));
     }
     if let Some(ReportPlace::File(path)) = place
-        && !written.files.iter().any(|name| *name == output::REPORT)
+        && !has_report
     {
         words.push_str(&labelled("report", &shown(path)));
     }

@@ -88,7 +88,7 @@ fn pictures_calibrate_an_arm_in_three_commands() {
     assert!(corners.contains("\n10.png,corner0,") && corners.find("\n9.png") < corners.find("\n10.png"));
     assert!(fs::read(folder.path("seen/0.png")).unwrap().starts_with(b"\x89PNG"));
     let words = format!(
-        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results"
+        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results --verbose"
     );
     let out = folder.done(&words);
     let line = out.lines().find(|line| line.starts_with("held out")).unwrap();
@@ -119,8 +119,9 @@ fn a_board_in_a_file_is_the_one_in_words() {
     println!("{}", read.err);
     assert!(read.err.contains(&format!("cal_data.yaml: read the board `{SPEC}` (industrial_calibration)")));
     assert_eq!(folder.read("read.csv"), folder.read("stated.csv"));
-    let refused = folder
-        .run(&format!("calibrate robot.urdf cal_data.yaml --camera lens.csv --markers {SPEC} --out results"));
+    let refused = folder.run(&format!(
+        "calibrate robot.urdf cal_data.yaml --camera lens.csv --markers {SPEC} --out results --verbose"
+    ));
     println!("{}", refused.err);
     assert!(refused.code == 2 && refused.err.contains("expected the joint readings of each picture"));
     assert!(!folder.path("results").exists());
@@ -157,7 +158,7 @@ fn grids_of_dots_and_of_tags_calibrate_an_arm() {
             .unwrap();
         assert!(pictures >= 20, "{}", found.err);
         let words = format!(
-            "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results"
+            "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results --verbose"
         );
         assert!(held_out_px(&folder.done(&words)) < 0.3, "{spec}");
     }
@@ -171,7 +172,7 @@ fn loose_tags_calibrate_an_arm_each_at_a_place_of_its_own() {
     folder.done(&format!("detect pictures --board {spec} --out corners.csv"));
     assert!(folder.read("corners.csv").contains("\n0.png,tag7.3,"));
     let words = format!(
-        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results"
+        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {spec} --out results --verbose"
     );
     assert!(held_out_px(&folder.done(&words)) < 0.5);
 }
@@ -246,7 +247,7 @@ fn a_board_that_moved_once_is_named() {
     session(&folder, 30, 17);
     folder.done(&format!("detect pictures --board {SPEC} --out corners.csv"));
     let words = format!(
-        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results"
+        "calibrate robot.urdf joints.csv corners.csv --camera lens.csv --markers {SPEC} --out results --verbose"
     );
     let run = folder.run(&words);
     println!("{}", run.out);

@@ -78,7 +78,7 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
     right.insert(29, &rows[30][joints..]);
     table(&folder, "joints.csv", &header[..joints], &left, None);
     table(&folder, "points.csv", &header[joints..], &right, None);
-    let run = folder.run(&format!("calibrate {MODEL} joints.csv points.csv --out out"));
+    let run = folder.run(&format!("calibrate {MODEL} joints.csv points.csv --out out --verbose"));
     assert_eq!(run.code, 0, "{}", run.err);
     // With the header line 8 and 24; the 31st row is in line 32.
     assert!(run.err.contains("joints.csv: nothing was measured at lines 8, 24"), "{}", run.err);

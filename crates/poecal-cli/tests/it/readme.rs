@@ -31,10 +31,9 @@ fn the_first_command_prints_what_the_readme_shows() {
     let folder = Folder::new();
     let out = folder.path("poecal-out");
     let shown = printed(words, &out).replace(&out.display().to_string(), "poecal-out");
-    assert_eq!(
-        without_rounding_errors(&shown),
-        without_rounding_errors(first_block(&readme, "text").trim_end())
-    );
+    // The line with the folder, whose name is longer here, is broken elsewhere.
+    let lines = |text: &str| without_rounding_errors(text).replace("\n              ", " ");
+    assert_eq!(lines(&shown), lines(first_block(&readme, "text").trim_end()));
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
     moved(&folder, "fit.csv", "knocked.csv", 40, 2.0);
     moved(&folder, "judge.csv", "after.csv", 0, 2.0);
 
-    let out = folder.done("calibrate robot.urdf knocked.csv --out knocked");
+    let out = folder.done("calibrate robot.urdf knocked.csv --out knocked --verbose");
     println!("{out}");
     let said = out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("repaired from knocked.csv:42 on the measuring device is 2."), "{said}");

@@ -9,7 +9,7 @@ use crate::session::{calibration, session, write_measurements};
 fn calibrate_writes_the_report_where_it_is_asked_to() {
     let folder = session(Kind::POINT);
     let out = folder.done("calibrate robot.urdf measurements.csv");
-    assert!(out.ends_with("residuals.csv, report.html\n"), "{out}");
+    assert!(out.ends_with("poecal-out: open report.html; 3 files beside it\n"), "{out}");
     let page = folder.read("poecal-out/report.html");
     let out = folder.done("calibrate robot.urdf measurements.csv --out other --report page.html");
     assert!(

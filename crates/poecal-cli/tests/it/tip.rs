@@ -39,7 +39,7 @@ fn changed(folder: &Folder) -> Vec<(String, String)> {
 fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
     for kind in [Kind::POINT, Kind::POSE] {
         let folder = with_gripper(kind);
-        let told = folder.done("calibrate robot.urdf measurements.csv --out results");
+        let told = folder.done("calibrate robot.urdf measurements.csv --out results --verbose");
         let found = changed(&folder);
         println!(
             "{kind:?}: {} lines changed; {}",
@@ -119,7 +119,7 @@ fn the_device_sees_the_target_and_the_base_frame_has_the_tip() {
 #[test]
 fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
     let folder = session(Kind::POINT);
-    let told = folder.done("calibrate robot.urdf measurements.csv --out results --move-tip");
+    let told = folder.done("calibrate robot.urdf measurements.csv --out results --move-tip --verbose");
     assert!(told.contains("tip           the point that was measured, by --move-tip"), "{told}");
     let file = calibration(&folder, "results");
     assert!(file.move_tip && file.targets.is_empty());

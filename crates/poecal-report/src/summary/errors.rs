@@ -286,7 +286,7 @@ mod tests {
         let all = &file.accuracy.training;
         assert!(leading.set.count == 29 && rms(&all.calibrated) > 50.0 * rms(after.1), "{after:?}");
         assert!(rms(before.1) < rms(&all.registered));
-        let text = summary(&file, Detail::Short);
+        let text = summary(&file, Detail::Full);
         assert!(text.contains("(RMS) on fitted rows without 1 suspected:"), "{text}");
         assert!(text.contains("29 rows, at most") && text.contains("; with 1 suspected:"), "{text}");
     }

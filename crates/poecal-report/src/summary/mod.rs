@@ -1,12 +1,12 @@
 //! The table of a calibration in 80 columns: the verdict, what to look at, the errors, the unknowns. All else on demand.
 
+mod brief;
 mod details;
 mod errors;
 mod look;
 mod names;
 
-use std::mem::discriminant;
-
+pub use brief::Short;
 pub(crate) use errors::{
     Leading, ModelRow, cross_validated, has_terms, judged_on, none_held_out, why_larger,
 };
@@ -28,7 +28,7 @@ const UPRIGHT: f64 = 1e-4;
 /// How much a table tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// What everyone needs: about twenty lines.
+    /// What everyone needs, in eleven lines: more only where limits are accepted.
     #[default]
     Short,
     /// Everything, and lists as long as they are.
@@ -52,33 +52,42 @@ pub enum Detail {
 /// ```
 #[must_use]
 pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
+    if detail == Detail::Short {
+        return short(file, 0).table;
+    }
     let mut out = String::new();
-    verdict(&mut out, file);
-    errors::figures(&mut out, file);
-    if let Some(acceptance) = &file.acceptance {
-        acceptance::lines(&mut out, acceptance);
-    }
-    points(&mut out, file, detail);
-    known(&mut out, file);
-    file.clocks.iter().for_each(|clock| line(&mut out, "clock", &clock_words(clock)));
-    if detail == Detail::Full {
-        out.push('\n');
-        errors::table(&mut out, file);
-        out.push('\n');
-        details::all(&mut out, file);
-    }
+    top(&mut out, file);
+    lines(&mut out, "look at", look_at(file).iter().map(|point| &point.text));
+    rest(&mut out, file);
+    out.push('\n');
+    errors::table(&mut out, file);
+    out.push('\n');
+    details::all(&mut out, file);
     if out.contains('±') {
         line(&mut out, "±", "one standard deviation");
     }
     out
 }
 
-/// Warnings and diagnoses of a calibration that its table does not name for want of room.
+/// The short table with what belongs to it, where so many lines were said before.
 #[must_use]
-pub fn unsaid(file: &CalibrationFile, detail: Detail) -> Vec<String> {
-    let (_, rest) = shown(look_at(file), detail);
-    let is_warning = |point: &&Point| matches!(point.place, Place::Warning(_) | Place::Diagnosis(_));
-    rest.iter().filter(is_warning).map(|point| point.text.clone()).collect()
+pub fn short(file: &CalibrationFile, said: usize) -> Short {
+    brief::brief(file, said)
+}
+
+/// The verdict, the errors, where they hold, limits.
+fn top(out: &mut String, file: &CalibrationFile) {
+    verdict(out, file);
+    errors::figures(out, file);
+    if let Some(acceptance) = &file.acceptance {
+        acceptance::lines(out, acceptance);
+    }
+}
+
+/// What the rows determine, and what was found of targets, joints and clocks.
+fn rest(out: &mut String, file: &CalibrationFile) {
+    known(out, file);
+    file.clocks.iter().for_each(|clock| line(out, "clock", &clock_words(clock)));
 }
 
 /// What to expect of the model that is delivered.
@@ -148,33 +157,6 @@ pub(crate) fn repaired_words(found: &Event) -> String {
         format!("; cross-validation {} mm (RMS) instead of {}", number(after), number(before))
     });
     format!("{}{}", found.statement, gain.unwrap_or_default())
-}
-
-/// What needs attention.
-fn points(out: &mut String, file: &CalibrationFile, detail: Detail) {
-    let (shown, rest) = shown(look_at(file), detail);
-    lines(out, "look at", shown.iter().map(|point| &point.text));
-    if !rest.is_empty() {
-        line(out, "", &format!("… and {} more, in the report", rest.len()));
-    }
-}
-
-/// The points of which there is room to tell, and the others. Of every sort one is told before a second one of another.
-fn shown(points: Vec<Point>, detail: Detail) -> (Vec<Point>, Vec<Point>) {
-    if points.len() <= MOST || detail == Detail::Full {
-        return (points, Vec::new());
-    }
-    // Points of one sort compete for room.
-    let sort = |k: usize| discriminant(&points[k].place);
-    let earlier = |k: usize| (0..k).filter(|&other| sort(other) == sort(k)).count();
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    order.sort_by_key(|&k| (earlier(k), k));
-    let chosen = &order[..MOST - 1];
-    let mut parts = (Vec::new(), Vec::new());
-    for (k, point) in points.iter().enumerate() {
-        if chosen.contains(&k) { &mut parts.0 } else { &mut parts.1 }.push(point.clone());
-    }
-    parts
 }
 
 /// Lag and drift of an instrument's clock, with their standard deviations.

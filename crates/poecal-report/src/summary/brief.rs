@@ -1,0 +1,196 @@
+//! The table in few lines: the verdict, the figures, where they hold, what to look at. All else is named and left out.
+
+use super::look::{Place, look_at};
+use crate::table::{INDENT, WIDTH, lines};
+use poecal_calibrate::Level;
+use poecal_results::calibration_file::CalibrationFile;
+
+/// Lines of the table, beside those that state what is left out, what to do next and where the results are.
+const LINES: usize = 11;
+/// Lines of the table at least, however much was said before it.
+const FEWEST: usize = 7;
+/// Lines under a label of verdict, errors and range.
+const PARAGRAPH: usize = 5;
+/// Parts that are left out and named; at least as many more are counted.
+const NAMED: usize = 3;
+/// Labels of what has no less room: a verdict with its remedy, repairs, figures, and limits that were asked for.
+const WHOLE: [&str; 4] = ["verdict", "repaired", "expected", "acceptance"];
+/// Importance of points and of labels; others, on verdict, errors and range, are always there.
+const FIRST_POINTS: usize = 1;
+const POINTS: usize = 3;
+const RANKS: [(usize, &[&str]); 3] = [
+    (2, &["held out", "fitted", "found"]),
+    (4, &["determined", "undetermined"]),
+    (5, &["corrected", "target", "tip", "held", "corners", "gravity", "terms", "clock"]),
+];
+
+/// Lines under one label.
+struct Block {
+    label: String,
+    text: Vec<String>,
+    rank: usize,
+    is_shown: bool,
+}
+
+/// The short table of a calibration.
+pub struct Short {
+    /// The lines.
+    pub table: String,
+    /// What it leaves out, on one line.
+    pub left: String,
+    /// What to do next, by the verdict.
+    pub next: Option<&'static str>,
+}
+
+/// The short table, where so many lines were said before.
+pub(super) fn brief(file: &CalibrationFile, said: usize) -> Short {
+    let mut blocks = blocks(file);
+    choose(&mut blocks, LINES.saturating_sub(said).max(FEWEST));
+    let (mut out, mut label) = (String::new(), "");
+    for block in blocks.iter().filter(|it| it.is_shown) {
+        for (k, text) in block.text.iter().enumerate() {
+            let head = if k == 0 && label != block.label { block.label.as_str() } else { "" };
+            out.push_str(format!("{head:<INDENT$}{text}").trim_end());
+            out.push('\n');
+        }
+        label = &block.label;
+    }
+    let points = blocks.iter().filter(|it| !it.is_shown && it.label == "look at").count();
+    let mut left = Vec::new();
+    if points > 0 {
+        left.push(format!("{points} more to look at"));
+    }
+    let others = blocks.iter().filter(|it| !it.is_shown && it.label != "look at");
+    left.extend(others.map(|it| it.label.clone()).chain(["noise", "solver", "joints"].map(str::to_owned)));
+    let named = left.len().min(NAMED);
+    let more = left.len() - named;
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    Short { table: out, left: left[..named].join(", ") + &more, next: next(file) }
+}
+
+/// What to do next.
+fn next(file: &CalibrationFile) -> Option<&'static str> {
+    Some(match file.verdict.as_ref()?.level {
+        Level::Good => "export or compensate puts it on the robot, track watches it",
+        Level::InsideSampledRange => "use it inside the sampled range; plan --keep-rows extends that",
+        Level::MeasuredConfigurations => "use it in such configurations only; plan --keep-rows adds others",
+        Level::Located => "use the located frames; axes need more rows: plan",
+        Level::DoNotUse => "read the report, mend what is named, and calibrate again",
+    })
+}
+
+/// All blocks of the table, in its order; each point to look at is one.
+fn blocks(file: &CalibrationFile) -> Vec<Block> {
+    let [mut top, mut rest] = [String::new(), String::new()];
+    super::top(&mut top, file);
+    super::rest(&mut rest, file);
+    let mut all = parsed(&top);
+    for (k, point) in look_at(file).into_iter().enumerate() {
+        let is_doubt = matches!(point.place, Place::Suspicion(_) | Place::Diagnosis(_) | Place::Warning(_));
+        let mut text = String::new();
+        lines(&mut text, "look at", [&point.text]);
+        let rank = if k == 0 || is_doubt { FIRST_POINTS } else { POINTS };
+        all.extend(parsed(&text).into_iter().map(|block| Block { rank, ..block }));
+    }
+    all.extend(parsed(&rest));
+    all
+}
+
+/// Labelled lines as blocks.
+fn parsed(table: &str) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    for line in table.lines() {
+        let (label, text) = line.split_at(line.floor_char_boundary(INDENT));
+        match (label.trim(), blocks.last_mut()) {
+            ("", Some(block)) => block.text.push(text.to_owned()),
+            (label, _) => {
+                let rank =
+                    RANKS.iter().find(|(_, labels)| labels.contains(&label)).map_or(0, |(rank, _)| *rank);
+                blocks.push(Block {
+                    label: label.to_owned(),
+                    text: vec![text.to_owned()],
+                    rank,
+                    is_shown: rank == 0,
+                });
+            }
+        }
+    }
+    blocks
+}
+
+/// Decides what is shown, by importance, and shortens paragraphs.
+fn choose(blocks: &mut [Block], lines: usize) {
+    for block in blocks.iter_mut().filter(|it| it.rank == 0 && it.label != "acceptance") {
+        shorten(&mut block.text, PARAGRAPH);
+    }
+    let mut used: usize = blocks.iter().filter(|it| it.rank == 0).map(|it| it.text.len()).sum();
+    while used >= lines {
+        let stated = blocks.iter_mut().filter(|it| it.rank == 0 && it.text.len() > 1);
+        let stated = stated.filter(|it| !WHOLE.contains(&it.label.as_str()));
+        let Some(block) = stated.max_by_key(|it| (it.label == "before", it.text.len())) else { break };
+        let most = block.text.len() - 1;
+        shorten(&mut block.text, most);
+        used -= 1;
+    }
+    let mut room = lines.saturating_sub(used).max(1);
+    for rank in FIRST_POINTS..=RANKS.len() + 2 {
+        for block in blocks.iter_mut().filter(|it| it.rank == rank) {
+            if block.label == "look at" {
+                shorten(&mut block.text, room.max(1));
+            }
+            block.is_shown = block.text.len() <= room;
+            room -= if block.is_shown { block.text.len() } else { 0 };
+        }
+    }
+}
+
+/// The first few lines of a paragraph.
+fn shorten(text: &mut Vec<String>, most: usize) {
+    if text.len() <= most {
+        return;
+    }
+    text.truncate(most);
+    if let Some(last) = text.last_mut() {
+        while last.chars().count() + 2 > WIDTH - INDENT {
+            let end = last.rfind(' ').unwrap_or(0);
+            last.truncate(end);
+        }
+        last.push_str(" …");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::super::{Detail, summary};
+    use super::*;
+    use poecal_calibrate::{CalibrationOptions, calibrate};
+    use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
+    use poecal_results::calibration_file::Inputs;
+
+    /// Of good and of spoilt sessions: few lines, each of them that of the whole table, and points that are left out are counted.
+    #[test]
+    fn the_short_table_is_short_and_says_what_it_leaves_out() {
+        for (count, kind, share) in
+            [(40, Kind::POSE, 0.0), (60, Kind::POINT, 0.2), (30, Kind::POINT, 0.1), (25, Kind::MIXED, 0.0)]
+        {
+            let mut made = Simulation { count, ..Simulation::default() }.run(&elbow(), kind).unwrap();
+            Gross { share, ..Gross::default() }.spoil(&mut made.data);
+            let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
+            let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
+            file.warnings.extend((0..7).map(|k| format!("{k}{}", " a warning of many words".repeat(9))));
+            let [short, full] = [Detail::Short, Detail::Full].map(|detail| summary(&file, detail));
+            let Short { table, left, next } = brief(&file, 3);
+            assert!(table.lines().count() <= LINES - 3, "{table}");
+            println!("{short}{left:?} {next:?}\n");
+            assert!(
+                short.lines().count() <= LINES && short.lines().all(|line| line.chars().count() <= WIDTH),
+                "{short}"
+            );
+            let is_there = |line: &str| full.contains(line.trim_end_matches(" …"));
+            assert!(short.lines().all(is_there) && short.contains("look at       "), "{short}\n{full}");
+            assert!(left.contains(" more to look at, ") && next.is_some());
+        }
+    }
+}
