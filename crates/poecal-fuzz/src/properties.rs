@@ -40,7 +40,7 @@ fn check_error(error: &Error, text: &str) {
     let Some(place) = error.place() else { return };
     assert_eq!(place.path.with_extension(""), Path::new(PATH), "{error}");
     let Some(line) = place.line else { return };
-    // Tables may have the line ends of an old Mac, other texts not; YAML ends lines by either.
+    // Tables may have the line ends of an old Mac, other texts not; YAML, and JSON that is read as such, ends lines by either.
     let is_place = |ends: char| {
         let found = line.checked_sub(1).and_then(|line| text.split(ends).nth(line));
         // One beyond the last character is where something is missing.
@@ -52,7 +52,7 @@ fn check_error(error: &Error, text: &str) {
         let found = line.checked_sub(1).and_then(|line| lines.split('\n').nth(line));
         found.is_some_and(|found| (1..=found.chars().count() + 1).contains(&place.column.unwrap_or(1)))
     };
-    let is_yaml = place.path.extension().is_some_and(|it| it == "yaml");
+    let is_yaml = place.path.extension().is_some_and(|it| it == "yaml" || it == "json");
     let has_place = is_place('\n') || (!text.contains('\n') && is_place('\r')) || (is_yaml && is_of_either());
     assert!(has_place, "{error}: no place of {text:?}");
 }
