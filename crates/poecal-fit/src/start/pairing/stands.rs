@@ -276,10 +276,10 @@ fn row_noise(bends: &[f64], rows: &Range<usize>) -> f64 {
 
 /// The value that this share of all is below.
 fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let at = (share * sorted.len() as f64) as usize;
-    sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or_default()
+    let mut values = values.to_vec();
+    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+    let at = (share * values.len() as f64) as usize;
+    *values.select_nth_unstable_by(at.min(last), f64::total_cmp).1
 }
 
 fn span(values: &[f64]) -> f64 {
