@@ -113,7 +113,6 @@ pub(crate) struct Reader<'a> {
     pub(crate) readings: Option<ReadingsByLine>,
     /// The time of each row so far, seconds, where it is asked for.
     pub(crate) times: Option<Vec<f64>>,
-    /// The cameras.
     pub(crate) cameras: Vec<Camera>,
     /// The boards, one that is at several places by its names there.
     pub(crate) boards: Vec<Board>,

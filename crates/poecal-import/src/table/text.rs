@@ -14,10 +14,8 @@ use poecal_storage::source::{self, Input, unreadable};
 
 /// Approximate number of bytes held at a time.
 const BLOCK: usize = 1 << 18;
-
 /// Longest line, bytes.
 const LONGEST_LINE: usize = 16 << 20;
-
 /// Fewest lines of the first block.
 const FIRST_LINES: usize = 64;
 
@@ -123,14 +121,13 @@ impl<'a> Blocks<'a> {
     }
 
     fn of(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
-        let (text, rest) = (String::new(), Vec::new());
         Blocks {
             path,
             expected,
             source,
             size,
-            text,
-            rest,
+            text: String::new(),
+            rest: Vec::new(),
             newline: None,
             lines: 0,
             is_marked: false,
