@@ -83,7 +83,7 @@ def test_paths_are_read_and_a_certificate_is_written(tmp_path, capfd):
     assert "####" in capfd.readouterr().err
     assert calibration == poecal.calibrate(poecal.Robot.read(tmp_path / "made/nominal.toml"), str(tmp_path / "made/measurements.csv"))
     assert "40 points" in str(poecal.check(str(tmp_path / "made/nominal.toml"), tmp_path / "made/measurements.csv"))
-    calibration.certificate(tmp_path / "certificate.html", record={"valid_until": "2027-11-28"}, record={"serial": "4711"})
+    calibration.certificate(tmp_path / "certificate.html", record={"valid_until": "2027-11-28", "serial": "4711"})
     page = (tmp_path / "certificate.html").read_text()
     assert "4711" in page and "2027-11-28" in page
     with pytest.raises(poecal.OptionError, match="expected a day like"):
