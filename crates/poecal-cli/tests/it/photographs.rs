@@ -26,7 +26,7 @@ fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
             assert!(folder.listing() == first, "another session of the same seed");
         }
         folder.done(&format!("detect s --board {spec} --out corners.csv"));
-        let words = "calibrate s/nominal.urdf s/joints.csv corners.csv --camera s/cameras.csv --out results";
+        let words = "calibrate s/nominal.urdf s/joints.csv corners.csv --camera s/cameras.csv --out results --verbose";
         let said = folder.done(&format!("{words} --markers {spec}"));
         let line = said.lines().find(|line| line.starts_with("held out")).unwrap();
         println!("{place}, {spec}: {line}");

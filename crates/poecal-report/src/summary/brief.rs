@@ -2,7 +2,7 @@
 
 use super::look::{Place, look_at};
 use crate::table::{INDENT, WIDTH, lines};
-use poecal_calibrate::Level;
+use poecal_calibrate::{Decision, Level};
 use poecal_results::calibration_file::CalibrationFile;
 
 /// Lines of the table, beside those that state what is left out, what to do next and where the results are.
@@ -70,6 +70,13 @@ pub(super) fn brief(file: &CalibrationFile, said: usize) -> Short {
 
 /// What to do next.
 fn next(file: &CalibrationFile) -> Option<&'static str> {
+    match file.acceptance.as_ref().map(|it| it.decision) {
+        Some(Decision::Fail) => return Some("the limits of --accept are not met: see acceptance"),
+        Some(Decision::NotShown) => {
+            return Some("measure more rows: they do not show whether the limits are met");
+        }
+        Some(Decision::Pass) | None => {}
+    }
     Some(match file.verdict.as_ref()?.level {
         Level::Good => "export or compensate puts it on the robot, track watches it",
         Level::InsideSampledRange => "use it inside the sampled range; plan --keep-rows extends that",
@@ -133,7 +140,8 @@ fn choose(blocks: &mut [Block], lines: usize) {
         used -= 1;
     }
     let mut room = lines.saturating_sub(used).max(1);
-    for rank in FIRST_POINTS..=RANKS.len() + 2 {
+    share_room(blocks, &mut room);
+    for rank in FIRST_POINTS + 1..=RANKS.len() + 2 {
         for block in blocks.iter_mut().filter(|it| it.rank == rank) {
             if block.label == "look at" {
                 shorten(&mut block.text, room.max(1));
@@ -141,6 +149,25 @@ fn choose(blocks: &mut [Block], lines: usize) {
             block.is_shown = block.text.len() <= room;
             room -= if block.is_shown { block.text.len() } else { 0 };
         }
+    }
+}
+
+/// Gives the first points their lines: each has one before any has another.
+fn share_room(blocks: &mut [Block], room: &mut usize) {
+    let mut points: Vec<&mut Block> = blocks.iter_mut().filter(|it| it.rank == FIRST_POINTS).collect();
+    let mut given = vec![0; points.len()];
+    let longest = points.iter().map(|it| it.text.len()).max().unwrap_or_default();
+    for line in 0..longest {
+        for (point, given) in points.iter().zip(&mut given) {
+            if *room > 0 && point.text.len() > line {
+                *given += 1;
+                *room -= 1;
+            }
+        }
+    }
+    for (point, given) in points.iter_mut().zip(given) {
+        point.is_shown = given > 0;
+        shorten(&mut point.text, given);
     }
 }
 
