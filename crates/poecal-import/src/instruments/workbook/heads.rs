@@ -10,8 +10,9 @@ use crate::table::roles::{plain, unit_of};
 const FIRST: usize = 60;
 /// Fewest columns of a table.
 const FEWEST_COLUMNS: usize = 3;
-/// First words of lines that sum up the rows above them.
-const SUMS: &str = "average mean max min maximum minimum std stdev stddev rms sum total median mittelwert mittel standardabweichung";
+/// Names of lines that sum up the rows above them, in letters alone.
+const SUMS: &str = "average avg mean meanvalue max min maximum minimum std stdev stddev stddeviation standarddeviation sd rms sum total median range spread \
+                    variance var count sigma σ ø mittelwert mittel standardabweichung streuung spannweite varianz anzahl summe";
 
 /// The head of a table.
 pub(super) struct Head {
@@ -117,8 +118,28 @@ fn joined(group: &str, name: &str, with_words: bool) -> String {
     unit.or(of_group).map_or(both.trim().to_owned(), |unit| format!("{} [{unit}]", both.trim()))
 }
 
-/// Whether a row sums up those above it: its only text says so.
+/// Whether a row sums up those above it: its name is such a word as a whole, beside a unit in brackets.
 pub(super) fn is_sum(row: &[Data]) -> bool {
     let first = row.iter().find(|it| !is_empty(it)).filter(is_text);
-    first.is_some_and(|it| SUMS.split(' ').any(|word| plain(&text(it)).starts_with(word)))
+    first.is_some_and(|it| {
+        let name = text(it);
+        let name = plain(name.split(['(', '[']).next().unwrap_or_default());
+        SUMS.split_whitespace().any(|word| name == word)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_named_by_whole_words() {
+        let is_sum = |name: &str| is_sum(&[Data::Empty, Data::String(name.to_owned()), Data::Float(1.0)]);
+        for name in ["Max.", "RANGE", "Ø", "Std. dev.", "Mean [mm]", "Streuung", "Σ"] {
+            assert!(is_sum(name), "{name}");
+        }
+        for name in ["Max reach", "Minimal", "Meanwhile", "P1"] {
+            assert!(!is_sum(name), "{name}");
+        }
+    }
 }

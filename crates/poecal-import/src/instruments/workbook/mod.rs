@@ -110,6 +110,9 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
     })
 }
 
+/// Last rows of a table among which sums are sought.
+const LAST: usize = 10;
+
 /// The table of a sheet: its header, units and rows by their numbers in the range.
 struct Found {
     range: Range<Data>,
@@ -131,10 +134,11 @@ impl Found {
         let is_filled =
             |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
         let mut rows_at: Vec<usize> = (begin..rows.len()).filter(is_filled).collect();
-        let mut sums = Vec::new();
-        while let Some(at) = rows_at.pop_if(|at| rows.get(*at).is_some_and(|it| is_sum(it))) {
-            sums.push(at);
-        }
+        // From the first sum on, what stands below the rows is of the same kind.
+        let first = rows_at.len().saturating_sub(LAST);
+        let is_sum = |at: &usize| rows.get(*at).is_some_and(|it| is_sum(it));
+        let sum = rows_at.iter().skip(first).position(is_sum).map_or(rows_at.len(), |it| first + it);
+        let sums = rows_at.split_off(sum);
         let first_column = range.start().map_or(0, |it| it.1 as usize);
         let sheet = Sheet { name: name.to_owned(), first_column };
         Some(Found { sheet, header, names, units, rows: rows_at, is_two, sums, range })
@@ -191,7 +195,7 @@ impl Found {
             ));
         }
         if !self.sums.is_empty() {
-            let sums: Vec<String> = self.sums.iter().rev().map(|at| self.line(*at).to_string()).collect();
+            let sums: Vec<String> = self.sums.iter().map(|at| self.line(*at).to_string()).collect();
             made.say(format!("left out what sums up the rows in row {}", sums.join(", ")));
         }
         if !stored.is_empty() {
