@@ -71,7 +71,7 @@ impl Damage {
     }
 }
 
-/// Bytes that the records of a file have after they are unpacked, as their heads state: nothing is unpacked, and a chunk is held to it later.
+/// Bytes that the records of a file have after they are unpacked, as their heads state, or those up to the first beyond the limit: nothing is unpacked, and a chunk is held to it later.
 pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
     let mut input = BufReader::with_capacity(STEP, input);
     let mut data = Vec::new();
@@ -95,6 +95,10 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
             unpacked = Fields(data.get(16..).unwrap_or_default()).u64().unwrap_or_default();
         }
         sum = sum.saturating_add(unpacked);
+        // Such a file is refused: the rest may take minutes to unpack.
+        if sum > Limit::Bag.most() {
+            break;
+        }
         if io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
             break;
         }

@@ -50,11 +50,13 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
             true => mcap::stated_size(&mut unpack::stream(&mut input, most).map_err(unreadable)?),
             false => mcap::stated_size(&mut input),
         };
-        unpacked = unpacked.saturating_add(stated.map_err(unreadable)?);
+        let stated = stated.map_err(unreadable)?;
+        unpacked = unpacked.saturating_add(stated);
         refuse_large(unpacked, path)?;
         let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
-        if !is_packed && !head.starts_with(mcap::MAGIC) {
-            let message = format!("found a file that is no MCAP, expected {EXPECTED}");
+        if stated == 0 && (is_packed || !head.starts_with(mcap::MAGIC)) {
+            let packed = if is_packed { "compressed " } else { "" };
+            let message = format!("found a {packed}file that is no MCAP, expected {EXPECTED}");
             return Err(ErrorKind::File.error(message).in_file(part));
         }
         hashing = hashing.over(Box::new(input));
@@ -94,7 +96,13 @@ fn take(
     let damage = damage.map_err(|error| source::unreadable(path, &error, EXPECTED))?;
     match &topics.refused {
         Some(sentence) => Err(ErrorKind::Measurement.error(sentence.clone()).in_file(path)),
-        None => Ok(warnings(&damage, name, topics)),
+        None => {
+            let mut found = warnings(&damage, name, topics);
+            if let Some((count, why)) = topics.damaged.take() {
+                found.push(format!("left out {count} compressed messages that are damaged: found {why}"));
+            }
+            Ok(found)
+        }
     }
 }
 

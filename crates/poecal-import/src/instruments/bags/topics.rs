@@ -122,6 +122,8 @@ pub(crate) struct Topics<'a> {
     held: usize,
     /// Bytes of the messages that were unpacked one by one.
     unpacked: u64,
+    /// Number of compressed messages of a file that are damaged, and what was found of the first one.
+    pub(crate) damaged: Option<(u64, String)>,
     /// Number of messages of channels that are nowhere described.
     pub(crate) unknown: u64,
 }
@@ -192,9 +194,13 @@ impl Records for Topics<'_> {
                 // Compressed by rosbag2 one by one.
                 if message.starts_with(unpack::ZSTD) && !matches!(topic.content, Content::Other) {
                     let left = Limit::Bag.most().saturating_sub(self.unpacked);
-                    match unpack::message(message, left, &mut whole) {
+                    let most = left.min(Limit::Chunk.most().saturating_add(1));
+                    match unpack::message(message, most, &mut whole) {
+                        _ if whole.len() as u64 > Limit::Chunk.most() => {
+                            self.refused = Some(Limit::Chunk.exceeded("a message of a bag"));
+                        }
                         Ok(()) => topic.take(log_ns, &whole),
-                        Err(found) => topic.broken = topic.broken.take().or(Some((topic.count + 1, found))),
+                        Err(found) => self.damaged.get_or_insert((0, found)).0 += 1,
                     }
                     self.unpacked += whole.len() as u64;
                     if whole.len() as u64 >= left {
