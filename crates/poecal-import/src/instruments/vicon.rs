@@ -1,11 +1,13 @@
 //! Exports of Vicon (Nexus, Tracker) as CSV: segments with rotation vectors, or trajectories of markers, below a head of five lines.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 
 use super::bodies::{Body, Frames, cells};
 use super::maker::{At, Made, Refused, Value};
-use super::words::{lines, number};
+use super::words::{lines, number, quoted};
 use super::{Form, Opening};
 
 pub(crate) const FORM: Form = Form { title: "an export of Vicon", is_it, table };
@@ -19,12 +21,13 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     head(text).is_some()
 }
 
+fn is_part(line: &str, part: &str) -> bool {
+    line.trim_start_matches('\u{feff}').split(',').next().is_some_and(|it| it.trim() == part)
+}
+
 /// The first line of the part that is read, and the line behind its last.
 fn part(text: &str) -> Option<(usize, usize)> {
     let all: Vec<&str> = text.lines().collect();
-    let is_part = |line: &&str, part: &str| {
-        line.trim_start_matches('\u{feff}').split(',').next().is_some_and(|it| it.trim() == part)
-    };
     let first = PARTS.iter().find_map(|part| all.iter().position(|line| is_part(line, part)))?;
     let is_blank = |line: &&str| line.split(',').all(|it| it.trim().is_empty());
     let last = all.iter().skip(first).position(is_blank).map_or(all.len(), |it| first + it);
@@ -52,6 +55,18 @@ fn head(text: &str) -> Option<Head<'_>> {
 }
 
 impl Head<'_> {
+    /// The one unit of all these columns.
+    fn unit(&self, columns: impl Iterator<Item = usize>, of: &str) -> Result<Option<&str>, Refused> {
+        let unit = |at: usize| self.units.get(at).copied().unwrap_or_default();
+        let units: BTreeSet<&str> = columns.map(unit).collect();
+        if units.len() > 1 {
+            let units = quoted(units);
+            return At(self.line + 1)
+                .refuse(format!("found the units {units} of {of}, expected the same for all"));
+        }
+        Ok(units.first().copied())
+    }
+
     /// Bodies or markers: each begins where it is named.
     fn bodies(&self) -> Vec<(Body, Option<Vec<usize>>)> {
         let starts: Vec<usize> = (0..self.columns.len())
@@ -77,16 +92,15 @@ impl Head<'_> {
 fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let head = head(text).ok_or("found no head of Vicon")?;
     let found = head.bodies();
-    let Some((first, turn)) = found.first() else {
+    if found.is_empty() {
         return At(head.line).refuse("found no columns TX, TY, TZ or X, Y, Z below the names of Vicon's segments or markers, expected them");
-    };
-    let unit_of = |at: Option<&usize>| at.and_then(|at| head.units.get(*at)).copied().unwrap_or_default();
-    let length = unit_of(first.position.first());
+    }
+    let length = head.unit(found.iter().flat_map(|it| it.0.position), "positions")?.unwrap_or_default();
     let Some(unit) = UNITS.into_iter().find(|it| it.0 == length) else {
         return At(head.line + 1)
             .refuse(format!("found the unit `{length}` of positions, expected mm, cm or m"));
     };
-    let angle = turn.as_ref().map(|it| unit_of(it.first()));
+    let angle = head.unit(found.iter().filter_map(|it| it.1.as_ref()).flatten().copied(), "rotations")?;
     let to_rad = match angle {
         None | Some("rad") => 1.0,
         Some("deg") => 1.0_f64.to_radians(),
@@ -123,6 +137,13 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         bodies.push(body);
     }
     let mut made = frames.table(&bodies, "segment or marker", opening)?;
+    let has = |part: &&&str| text.lines().any(|line| is_part(line, part));
+    let parts: Vec<&str> = PARTS.iter().filter(has).copied().collect();
+    if let [read, left @ ..] = parts.as_slice()
+        && !left.is_empty()
+    {
+        made.say(format!("read {read}, left out {}", left.join(", ")));
+    }
     if let Some(angle) = angle {
         made.say(format!("rotations as rotation vectors (helical) in {angle}"));
     }
