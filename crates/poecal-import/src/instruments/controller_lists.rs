@@ -1,6 +1,9 @@
 //! Joint readings as controllers and ROS list them: FANUC's position registers (posreg.va), Stäubli's data of a program (.dtx), telegrams of KUKA's
 //! sensor interface (RSI), and `ros2 topic echo --csv` of joint states.
 
+use std::collections::BTreeMap;
+
+use super::axes::{Axis, Listed, Words, made};
 use super::maker::{At, Column, Made, Refused, Value};
 use super::words::{cells, lines, number, quoted};
 use super::{Form, Opening};
@@ -17,40 +20,17 @@ pub(crate) const ECHO: Form =
 
 /// Lines in which a form is sought.
 const FIRST: usize = 60;
-
-/// A listed configuration: its line, its name, its readings in the units of the controller.
-struct Listed<'t> {
-    line: usize,
-    name: String,
-    readings: Vec<&'t str>,
-}
-
-/// The table of configurations in degrees and millimetres.
-fn made(listed: &[Listed<'_>], opening: &Opening<'_>) -> Result<Made, Refused> {
-    let columns = std::iter::once(Column::from("id")).chain(opening.joint_columns("deg"));
-    let mut made = Made::new(listed.first().map_or(1, |it| it.line), columns);
-    let expected = opening.robot.joint_reading_names().len();
-    for Listed { line, name, readings } in listed {
-        let (found, beyond) = readings.split_at(expected.min(readings.len()));
-        if found.len() < expected || beyond.iter().any(|it| number(it) != Some(0.0)) {
-            let count = readings.len();
-            return At(*line).refuse(format!(
-                "found {count} axes of `{name}`, expected {expected} as the model has joints"
-            ));
-        }
-        made.row(*line, std::iter::once(Value::Text(name)).chain(found.iter().map(|it| Value::Text(it))));
-    }
-    if made.rows() == 0 {
-        return Refused::whole(
-            "found no joint readings, expected at least one configuration as angles of the joints",
-        );
-    }
-    made.say(format!("{} configurations in deg", made.rows()));
-    Ok(made)
-}
+/// Most axes that angles are filled in for.
+const MOST_AXES: usize = 64;
+/// Names of axes, and of what has them.
+const FANUC_WORDS: Words = Words { own: "J", external: "EXT", all: "configurations" };
+const STAUBLI_WORDS: Words = Words { own: "j", external: "", all: "configurations" };
+const KUKA_WORDS: Words = Words { own: "A", external: "E", all: "telegrams" };
 
 fn is_fanuc(text: &str, _: &Opening<'_>) -> bool {
-    lines(text).next().is_some_and(|it| it.1.contains("$POSREG"))
+    // A controller's web page has tags before it.
+    let mut first = lines(text).take(FIRST);
+    first.any(|(line, it)| it.contains("[*POSREG*]") || line == 1 && it.contains("$POSREG"))
 }
 
 /// `[1,4] = 'name'`, then `J1 = 10.000 deg …`; other registers are poses, of other groups, or not initialized.
@@ -66,37 +46,51 @@ fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             is_first_group = group.trim() == "1";
             let own = rest.split('\'').nth(1).unwrap_or_default();
             let name = if own.is_empty() { format!("PR{at}") } else { own.to_owned() };
+            if !rest.contains('=') {
+                return At(line)
+                    .refuse(format!("found the register `{name}` cut off, expected a whole file"));
+            }
             if is_first_group {
-                listed.push(Listed { line, name, readings: Vec::new() });
+                listed.push(Listed::new(line, name));
             }
         }
         let Some(last) = listed.last_mut().filter(|_| is_first_group) else { continue };
         poses += usize::from(trimmed.starts_with("X:"));
         let mut words = trimmed.split([' ', '=', ':']).filter(|it| !it.is_empty());
-        while let Some(word) = words.next() {
-            let is_axis = |before: &str| word.strip_prefix(before).is_some_and(|it| it.parse::<u8>().is_ok());
-            if (is_axis("J") || is_axis("EXT")) && !trimmed.starts_with('[') {
-                last.readings.extend(words.next());
-            }
+        while let Some(word) = words.next().filter(|_| !trimmed.starts_with('[')) {
+            let numbered = |before: &str| word.strip_prefix(before).and_then(|it| it.parse::<u8>().ok());
+            let Some((of, axis)) = (numbered("J").map(|it| (&mut last.own, it)))
+                .or_else(|| numbered("EXT").map(|it| (&mut last.external, it)))
+            else {
+                continue;
+            };
+            let (Some(value), Some(unit @ ("deg" | "mm"))) = (words.next(), words.next()) else {
+                return At(line).refuse(format!(
+                    "found {word} of `{}` without its unit, expected deg or mm behind the number: the file is cut off",
+                    last.name
+                ));
+            };
+            of.insert(axis.into(), Axis { value, unit: Some(unit) });
         }
     }
     // A pose has no angle of a joint, but may have external axes.
-    let (with, without): (Vec<_>, Vec<_>) =
-        listed.into_iter().partition(|it| it.readings.len() >= opening.robot.joint_reading_names().len());
-    let mut made = made(&with, opening)?;
+    let (with, without): (Vec<_>, Vec<_>) = listed.into_iter().partition(|it| !it.own.is_empty());
+    let mut made = made(&with, Column::from("id"), &FANUC_WORDS, opening)?;
     if !without.is_empty() {
         made.say(format!("left out {} registers that are poses ({poses}) or not initialized", without.len()));
     }
     Ok(made)
 }
 
-/// The values of attributes with this letter and a number of an element's text, in their order.
-fn numbered(element: &str, letter: char) -> impl Iterator<Item = (usize, &str)> {
-    element.split_whitespace().filter_map(move |it| {
-        let (name, value) = it.split_once('=')?;
-        let number = name.strip_prefix(letter)?.parse().ok()?;
-        Some((number, value.trim_matches(|it: char| matches!(it, '"' | '\'' | '/' | '>'))))
-    })
+/// The values of attributes with this letter and a number of an element's text, by their number.
+fn numbered(element: &str, letter: char) -> BTreeMap<usize, Axis<'_>> {
+    let attributes = element.split_whitespace().filter_map(|it| it.split_once('='));
+    attributes
+        .filter_map(|(name, value)| {
+            let value = value.trim_matches(['"', '\'', '/', '>']);
+            Some((name.strip_prefix(letter)?.parse().ok()?, Axis { value, unit: None }))
+        })
+        .collect()
 }
 
 fn is_staubli(text: &str, _: &Opening<'_>) -> bool {
@@ -107,7 +101,6 @@ fn is_staubli(text: &str, _: &Opening<'_>) -> bool {
 
 /// `<Data name="…" type="jointRx"> <Value key="0" j1="…" …/>`; angles that are zero are left out of newer files.
 fn of_staubli(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let count = opening.robot.joint_reading_names().len();
     let mut arrays: Vec<(&str, Vec<Listed<'_>>)> = Vec::new();
     let mut is_joints = false;
     for (line, content) in lines(text) {
@@ -123,30 +116,50 @@ fn of_staubli(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
                 && is_joints
                 && let Some((name, listed)) = arrays.last_mut()
             {
-                let mut readings = vec!["0"; count];
-                for (at, value) in numbered(element, 'j') {
-                    match readings.get_mut(at.wrapping_sub(1)) {
-                        Some(own) => *own = value,
-                        None => readings.push(value),
-                    }
+                if !element.contains('>') {
+                    return At(line).refuse(
+                        "found a `Value` without its `>`, expected it in the same line: the file is cut off",
+                    );
                 }
-                listed.push(Listed {
-                    line,
-                    name: format!("{name}[{}]", attribute("key").unwrap_or_default()),
-                    readings,
-                });
+                let own = numbered(element, 'j');
+                let name = format!("{name}[{}]", attribute("key").unwrap_or_default());
+                listed.push(Listed { own, ..Listed::new(line, name) });
             }
         }
     }
     let longest = arrays.iter().map(|it| it.1.len()).max().unwrap_or_default();
     let at = arrays.iter().position(|it| it.1.len() == longest).unwrap_or_default();
-    let mut made = made(arrays.get(at).map_or(&[], |it| it.1.as_slice()), opening)?;
-    made.say(format!("of the array `{}`", arrays.get(at).map_or("", |it| it.0)));
     let left = quoted(arrays.iter().enumerate().filter(|it| it.0 != at).map(|it| it.1.0));
+    let (name, listed) = arrays.get_mut(at).map_or(("", &mut [][..]), |it| (it.0, it.1.as_mut_slice()));
+    let zeros = fill(name, listed)?;
+    let mut made = made(listed, Column::from("id"), &STAUBLI_WORDS, opening)?;
+    made.say(format!("of the array `{name}`"));
+    if zeros > 0 {
+        made.say(format!("{zeros} angles that are left out taken as 0"));
+    }
     if !left.is_empty() {
         made.say(format!("left out {left}"));
     }
     Ok(made)
+}
+
+/// Puts 0 where angles are left out of an array, and counts them.
+fn fill(name: &str, listed: &mut [Listed<'_>]) -> Result<usize, Refused> {
+    let last = listed.iter().filter_map(|it| it.own.keys().max()).max().copied().unwrap_or_default();
+    let mut count = 0;
+    for axis in 1..=last.min(MOST_AXES) {
+        let without = listed.iter_mut().filter(|it| !it.own.contains_key(&axis)).map(|it| {
+            it.own.insert(axis, Axis { value: "0", unit: None });
+        });
+        let zeros = without.count();
+        if zeros == listed.len() {
+            return Refused::whole(format!(
+                "found no angle j{axis} in any value of `{name}`, expected it in one at least: if it is 0 throughout, write j{axis}=\"0\""
+            ));
+        }
+        count += zeros;
+    }
+    Ok(count)
 }
 
 fn is_kuka(text: &str, _: &Opening<'_>) -> bool {
@@ -155,36 +168,27 @@ fn is_kuka(text: &str, _: &Opening<'_>) -> bool {
 
 /// `<AIPos A1="…" …/>`, `<EIPos E1="…" …/>` of external axes, and `<IPOC>` with the controller's time in milliseconds.
 fn of_kuka(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
-    let names = opening.robot.joint_reading_names();
-    let columns = std::iter::once(Column::from("time").in_unit("ms")).chain(opening.joint_columns("deg"));
-    let mut made = Made::new(1, columns);
-    let mut readings: Vec<&str> = Vec::new();
+    let mut listed: Vec<Listed<'_>> = Vec::new();
+    let (mut own, mut external) = (BTreeMap::new(), BTreeMap::new());
     for (line, content) in lines(text) {
         for element in content.split('<') {
             match element.split([' ', '>']).next() {
-                Some("AIPos") => readings = numbered(element, 'A').map(|it| it.1).collect(),
-                Some("EIPos") => readings.extend(numbered(element, 'E').map(|it| it.1)),
+                Some("AIPos") => own = numbered(element, 'A'),
+                Some("EIPos") => external = numbered(element, 'E'),
                 Some("IPOC") => {
-                    let found = readings.len();
-                    let beyond = readings.split_off(names.len().min(found));
-                    // External axes that the model does not have stand at zero.
-                    if found < names.len() || beyond.iter().any(|it| number(it) != Some(0.0)) {
-                        return At(line).refuse(format!(
-                            "found a telegram with {found} axes, expected {} as the model has joints",
-                            names.len()
-                        ));
-                    }
-                    let time = element.split_once('>').map_or("", |it| it.1.trim());
-                    made.row(line, std::iter::once(time).chain(readings.drain(..)).map(Value::Text));
+                    let time = element.split_once('>').map_or("", |it| it.1.trim()).to_owned();
+                    let (own, external) = (std::mem::take(&mut own), std::mem::take(&mut external));
+                    listed.push(Listed { line, name: time, own, external });
                 }
                 _ => {}
             }
         }
     }
-    if made.rows() == 0 {
+    if listed.is_empty() {
         return Refused::whole("found no telegram with AIPos and IPOC, expected both of each");
     }
-    made.say(format!("{} telegrams, axes (AIPos) in deg, times (IPOC) in ms", made.rows()));
+    let mut made = made(&listed, Column::from("time").in_unit("ms"), &KUKA_WORDS, opening)?;
+    made.say("axes (AIPos) in deg, times (IPOC) in ms");
     Ok(made)
 }
 
@@ -215,6 +219,14 @@ fn of_echo(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         let Some(names) = echo_names(&cells) else {
             return At(line).refuse("found a line that is no joint state, expected seconds, nanoseconds, a frame, names of joints and their positions");
         };
+        // Behind the names are positions, and velocities and efforts if there are any.
+        let beyond = cells.iter().skip(3 + names.len()).filter(|it| !it.is_empty()).count();
+        if beyond == 0 || beyond % names.len() != 0 {
+            return At(line).refuse(format!(
+                "found {beyond} numbers behind the names of {} joints, expected as many or a multiple",
+                names.len()
+            ));
+        }
         let value = |at: usize| cells.get(at).copied().and_then(number);
         let time = value(0).zip(value(1)).map_or(Value::Empty, |(s, ns)| Value::Number(s + 1e-9 * ns));
         let mut row = vec![time];

@@ -6,6 +6,7 @@
 //! (`recording.rs`) is two entries of the plan of files. `marker_words.rs` says which markers their distances tell apart.
 
 mod auto_id;
+mod axes;
 #[cfg(feature = "bags")]
 mod bags;
 mod bodies;

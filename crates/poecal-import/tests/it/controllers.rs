@@ -1,9 +1,10 @@
 //! Lists of joint readings as controllers, ROS and theses write them, and Vicon's exports: the rows of a plain table in each form.
 
 use nalgebra::Vector3;
-use poecal_arm::lie::rotation;
+use poecal_arm::lie::{Screw, rotation};
 use poecal_import::{Join, MeasurementFile, ReadOptions, read, read_joints};
 use poecal_model::measurement::Dataset;
+use poecal_model::robot::{Joint, Robot};
 use poecal_model::simulate::{Kind, Simulation, elbow};
 use poecal_testing::files::Folder;
 
@@ -47,7 +48,7 @@ fn lists_of_controllers_have_the_readings_of_a_plain_table() {
         )
     });
     let fanuc = format!(
-        "[*POSREG*]$POSREG  Storage: SHADOW  Access: RW  : ARRAY[2,100] OF Position Reg\n{fanuc}    [1,90] =   '' Uninitialized\n    [1,91] =   'CART' \n  Group: 1   \
+        "<HTML>\n<PRE>\n[*POSREG*]$POSREG  Storage: SHADOW  Access: RW  : ARRAY[2,100] OF Position Reg\n{fanuc}    [1,90] =   '' Uninitialized\n    [1,91] =   'CART' \n  Group: 1   \
          Config: N U T, 0, 0, 0\n  X:  2066.881   Y: -1269.113   Z: -1122.291\n  W:  -179.786   P:     -.649   R:   -58.819\n    [2,1] =   'OTHER'   Group: 2\n  \
          J1 =     5.000 deg\n"
     );
@@ -110,11 +111,66 @@ fn lists_of_controllers_have_the_readings_of_a_plain_table() {
         (
             "rsi.xml",
             "<Rob Type=\"KUKA\"><AIPos A1=\"1\" A2=\"2\"/><IPOC>4</IPOC></Rob>\n",
-            "rsi.xml:1: found a telegram with 2 axes, expected 6 as the model has joints",
+            "rsi.xml:1: found the axes A1, A2, which are not one to one the joints `joint1`",
         ),
         ("echo.csv", &format!("{echo}1,2,,other,0.5\n"), "found no joint `"),
+        ("echo.csv", &format!("{echo}1,2,,a,b,0.5,0.5,1\n"), "found 3 numbers behind the names of 2 joints"),
     ] {
         let error = readings(name, text).unwrap_err();
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+/// The robot with a rail before its first joint, or behind its last one.
+fn on_a_rail(is_before: bool) -> Robot {
+    let mut robot = elbow();
+    let at = if is_before { 0 } else { robot.joints.len() };
+    robot.joints.insert(at, Joint::prismatic("rail", Screw::prismatic(&Vector3::x())));
+    robot
+}
+
+#[test]
+fn external_axes_are_the_slides_wherever_they_stand() {
+    let fanuc = "[*POSREG*]$POSREG  Storage\n [1,1] =   'P'   Group: 1\n J1 = 1.0 deg J2 = 2.0 deg J3 = 3.0 deg\n J4 = 4.0 deg J5 = 5.0 deg J6 = 6.0 deg\n EXT1: 100.0 mm\n";
+    let kuka = "<Rob Type=\"KUKA\"><EIPos E2=\"0\" E1=\"100\"/><AIPos A6=\"6\" A2=\"2\" A3=\"3\" A4=\"4\" A5=\"5\" A1=\"1\"/><IPOC>4</IPOC></Rob>\n";
+    let folder = Folder::new();
+    let found = |robot: &Robot, name: &str, text: &str| {
+        let found = read_joints(folder.write(name, text), robot, &ReadOptions::default());
+        found.map(|it| it.readings).map_err(|error| folder.without_path(&error.to_string()))
+    };
+    for (name, text) in [("posreg.va", fanuc), ("rsi.xml", kuka)] {
+        for is_before in [true, false] {
+            let mut expected: Vec<f64> = (1..=6).map(|it| f64::from(it).to_radians()).collect();
+            expected.insert(if is_before { 0 } else { 6 }, 0.1);
+            let own = found(&on_a_rail(is_before), name, text).unwrap();
+            assert!(own.iter().zip(&expected).all(|it| (it.0 - it.1).abs() < 1e-12), "{name}: {own:?}");
+        }
+        let error = found(&elbow(), name, text).unwrap_err();
+        assert!(error.contains("which are not one to one the joints `joint1`"), "{error}");
+    }
+    let turned = fanuc.replace("100.0 mm", "100.0 deg");
+    let error = found(&on_a_rail(true), "posreg.va", &turned).unwrap_err();
+    assert!(error.contains("EXT1 (deg), which are not one to one the joints `rail` (slides)"), "{error}");
+}
+
+#[test]
+fn lists_that_are_cut_off_are_refused() {
+    let fanuc = "[*POSREG*]$POSREG  Storage\n [1,1] =   'P'   Group: 1\n J1 = 1.0 deg J2 = 2.0 deg J3 = 3.0 deg\n J4 = 4.0 deg J5 = 5.0 deg J6 = 6";
+    let staubli = |values: &str| {
+        format!(
+            "<Database xmlns=\"http://www.staubli.com/robotics/VAL3/Data/2\">\n<Data name=\"a\" type=\"jointRx\">\n{values}"
+        )
+    };
+    let whole = staubli(
+        "<Value key=\"0\" j1=\"1\" j2=\"2\" j3=\"3\" j4=\"4\" j6=\"6\" />\n<Value key=\"1\" j5=\"5\" />\n",
+    );
+    assert_eq!(readings("a.dtx", &whole).unwrap()[4], 0.0);
+    for (name, text, part) in [
+        ("p.va", fanuc.to_owned(), "p.va:4: found J6 of `P` without its unit"),
+        ("a.dtx", staubli("<Value key=\"0\" j1=\"1\" j2=\"2"), "a.dtx:3: found a `Value` without its `>`"),
+        ("a.dtx", whole.replace("j5", "k5"), "found no angle j5 in any value of `a`"),
+    ] {
+        let error = readings(name, &text).unwrap_err();
         assert!(error.contains(part), "{error}");
     }
 }
@@ -178,6 +234,18 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
         let off = (own.translation - expected.translation).norm() + (own.rotation - expected.rotation).norm();
         assert!(off < 1e-9, "{off}");
     }
+    let both = joined(&joints, &format!("{segments}\r\n{markers}"));
+    assert!(
+        both.notes.iter().any(|it| it.contains("read Segments, left out Trajectories")),
+        "{:?}",
+        both.notes
+    );
+    let folder = Folder::new();
+    let mixed = markers.replace("mm,mm,mm,mm\n", "mm,mm,mm,mm/s\n");
+    let paths = [folder.write("joints.csv", &joints), folder.write("vicon.csv", &mixed)];
+    let options = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
+    let error = read(&paths, &elbow(), &options).unwrap_err().to_string();
+    assert!(error.contains("vicon.csv:5: found the units `mm`, `mm/s` of positions"), "{error}");
     let found = joined(&joints, &markers);
     assert_eq!((found.data.len(), found.data.targets.len()), (2 * poses.len(), 2));
     let own = found.data.observations[0].measurement.pose().translation;

@@ -1,0 +1,202 @@
+//! Axes as controllers number them, and the joints of the model that they are: an arm's own axes, and external ones such as a rail.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Opening;
+use super::maker::{At, Column, Made, Refused, Value};
+use super::words::{number, quoted};
+use crate::table::mapping::ColumnMap;
+
+/// The value of an axis, and its unit if that is stated.
+#[derive(Clone, Copy)]
+pub(super) struct Axis<'t> {
+    pub(super) value: &'t str,
+    pub(super) unit: Option<&'t str>,
+}
+
+/// A configuration: its line, its name, and its axes by their numbers.
+pub(super) struct Listed<'t> {
+    pub(super) line: usize,
+    pub(super) name: String,
+    pub(super) own: BTreeMap<usize, Axis<'t>>,
+    pub(super) external: BTreeMap<usize, Axis<'t>>,
+}
+
+/// Names of axes before their number, and of configurations.
+pub(super) struct Words {
+    pub(super) own: &'static str,
+    pub(super) external: &'static str,
+    pub(super) all: &'static str,
+}
+
+/// An axis by its number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    Own(usize),
+    External(usize),
+}
+
+impl<'t> Listed<'t> {
+    /// One without axes.
+    pub(super) fn new(line: usize, name: String) -> Self {
+        Listed { line, name, own: BTreeMap::new(), external: BTreeMap::new() }
+    }
+
+    fn axis(&self, place: Place) -> Option<Axis<'t>> {
+        match place {
+            Place::Own(at) => self.own.get(&at),
+            Place::External(at) => self.external.get(&at),
+        }
+        .copied()
+    }
+}
+
+impl Axis<'_> {
+    fn is_zero(&self) -> bool {
+        number(self.value) == Some(0.0)
+    }
+
+    /// Whether its unit, if one is stated, is that of a joint.
+    fn fits(&self, slides: bool) -> bool {
+        self.unit.is_none_or(|it| (it == "mm") == slides)
+    }
+}
+
+/// All axes of a file, and the joints of the model.
+struct Axes<'a, 't> {
+    listed: &'a [Listed<'t>],
+    words: &'a Words,
+    own: usize,
+    external: Vec<usize>,
+    slides: Vec<bool>,
+}
+
+impl<'a, 't> Axes<'a, 't> {
+    fn new(listed: &'a [Listed<'t>], words: &'a Words, slides: Vec<bool>) -> Self {
+        let last = listed.iter().filter_map(|it| it.own.keys().max()).max();
+        let external: BTreeSet<usize> = listed.iter().flat_map(|it| it.external.keys().copied()).collect();
+        let mut own = last.copied().unwrap_or_default();
+        // Telegrams have six axes of arms with four.
+        let is_unused = |own: usize| listed.iter().all(|it| it.own.get(&own).is_none_or(Axis::is_zero));
+        while own > slides.len() && is_unused(own) {
+            own -= 1;
+        }
+        Axes { listed, words, own, external: external.into_iter().collect(), slides }
+    }
+
+    fn name(&self, place: Place) -> String {
+        match place {
+            Place::Own(at) => format!("{}{at}", self.words.own),
+            Place::External(at) => format!("{}{at}", self.words.external),
+        }
+    }
+
+    /// The unit that an axis has where it first stands.
+    fn unit(&self, place: Place) -> Option<&'t str> {
+        self.listed.iter().find_map(|it| it.axis(place)).and_then(|it| it.unit)
+    }
+
+    /// The axis of each joint: own axes are the joints that turn, or all joints where their units say so, and external ones the others.
+    fn of_joints(&self) -> Option<Vec<Place>> {
+        let turning = self.slides.iter().filter(|it| !**it).count();
+        // A slide at an end of the chain may be a rail, which has no number of the arm's.
+        let ends = self.slides.first() == Some(&true) || self.slides.last() == Some(&true);
+        let is_stated = (1..=self.own).all(|at| self.unit(Place::Own(at)).is_some());
+        let is_all = self.own == self.slides.len() && (is_stated || !ends);
+        if !is_all && self.own != turning {
+            return None;
+        }
+        let mut own = (1..=self.own).map(Place::Own);
+        let mut external = self.external.iter().copied().map(Place::External);
+        let places =
+            self.slides.iter().map(|slides| if is_all || !slides { own.next() } else { external.next() });
+        let places: Vec<Place> = places.collect::<Option<_>>()?;
+        let fits = |row: &Listed<'_>| {
+            let mut all = places.iter().zip(&self.slides);
+            all.all(|(place, slides)| row.axis(*place).is_none_or(|it| it.fits(*slides)))
+                && row.external.iter().all(|(at, it)| places.contains(&Place::External(*at)) || it.is_zero())
+        };
+        self.listed.iter().all(fits).then_some(places)
+    }
+
+    /// All axes of the file.
+    fn all(&self) -> Vec<Place> {
+        let external = self.external.iter().copied().map(Place::External);
+        (1..=self.own).map(Place::Own).chain(external).collect()
+    }
+
+    /// Axes that are not the joints one to one.
+    fn refuse<T>(&self, joints: &[String]) -> Result<T, Refused> {
+        let axes = self.all().into_iter().map(|it| match self.unit(it) {
+            Some(unit) => format!("{} ({unit})", self.name(it)),
+            None => self.name(it),
+        });
+        let axes: Vec<String> = axes.collect();
+        let joint =
+            |(name, slides): (&String, &bool)| format!("`{name}`{}", if *slides { " (slides)" } else { "" });
+        let joints: Vec<String> = joints.iter().zip(&self.slides).map(joint).collect();
+        At(self.listed.first().map_or(1, |it| it.line)).refuse(format!(
+            "found the axes {}, which are not one to one the joints {}, expected an axis of the arm for each joint that turns, an external one for each that \
+             slides, and 0 of others: name the column of each joint by a mapping (--columns)",
+            axes.join(", "),
+            joints.join(", ")
+        ))
+    }
+}
+
+/// The table of configurations in degrees and millimetres, their names in the first column; by a mapping, with the axes as the file names them where these
+/// are not the joints.
+pub(super) fn made(
+    listed: &[Listed<'_>],
+    first: Column,
+    words: &Words,
+    opening: &Opening<'_>,
+) -> Result<Made, Refused> {
+    let joints = opening.robot.joint_reading_names();
+    if listed.is_empty() {
+        return Refused::whole(
+            "found no joint readings, expected at least one configuration as angles of the joints",
+        );
+    }
+    let axes = Axes::new(listed, words, opening.slides());
+    let is_mapped = opening.options.mapping.as_ref().is_some_and(ColumnMap::names_columns);
+    let (places, columns): (Vec<Place>, Vec<Column>) = match axes.of_joints() {
+        Some(places) => (places, opening.joint_columns("deg").collect()),
+        None if is_mapped => {
+            let column = |it: Place| {
+                let unit = axes.unit(it).or(matches!(it, Place::Own(_)).then_some("deg"));
+                let own = Column::from(axes.name(it));
+                (it, unit.map_or(own.clone(), |unit| own.in_unit(unit)))
+            };
+            axes.all().into_iter().map(column).unzip()
+        }
+        None => return axes.refuse(&joints),
+    };
+    let mut made = Made::new(listed.first().map_or(1, |it| it.line), std::iter::once(first).chain(columns));
+    for row in listed {
+        let values = places.iter().map(|place| row.axis(*place).ok_or(*place));
+        let values: Result<Vec<Axis<'_>>, Place> = values.collect();
+        match values {
+            Ok(values) => made.row(
+                row.line,
+                std::iter::once(Value::Text(&row.name)).chain(values.iter().map(|it| Value::Text(it.value))),
+            ),
+            Err(missing) => {
+                return At(row.line).refuse(format!(
+                    "found no axis {} of `{}`, expected it as in the others: the file may be cut off",
+                    axes.name(missing),
+                    row.name
+                ));
+            }
+        }
+    }
+    made.say(format!("{} {} in deg", made.rows(), words.all));
+    let external = |it: &(&Place, &String)| matches!(it.0, Place::External(_));
+    if axes.slides.len() == places.len() {
+        let taken: Vec<_> = places.iter().zip(&joints).filter(external).collect();
+        for (place, joint) in taken {
+            made.say(format!("{} is {} in mm", axes.name(*place), quoted([joint])));
+        }
+    }
+    Ok(made)
+}
