@@ -20,13 +20,20 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
         return Ok(None);
     }
     let refuse = |message: String| Err(ErrorKind::Measurement.error(message).in_file(path));
-    let numbers: BTreeMap<&str, f64> = text.lines().filter_map(parameter).collect();
+    let mut numbers = BTreeMap::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let refuse = |message: String| ErrorKind::Measurement.error(message).at_line(path, line);
+        let Some((key, number)) = parameter(text).map_err(refuse)? else { continue };
+        if numbers.insert(key, number).is_some() {
+            return Err(refuse(format!("found `{key}` a second time, expected one camera")));
+        }
+    }
     if let Some((key, number)) = numbers.iter().find(|(key, number)| !READ.contains(key) && **number != 0.0) {
         return refuse(format!(
             "found {number} for `{key}` of HALCON's camera, expected an area scan camera with the division model (Kappa): calibrate it so, {OTHERWISE}"
         ));
     }
-    let [Some(focus), kappa, Some(sx), Some(sy), Some(cx), Some(cy), width, height] =
+    let [Some(focus), Some(kappa), Some(sx), Some(sy), Some(cx), Some(cy), width, height] =
         READ.map(|key| numbers.get(key).copied())
     else {
         return refuse(format!("found HALCON's camera without one of {}, expected them", READ.join(", ")));
@@ -34,13 +41,13 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
     let size_px = size_of_pictures([width, height]).map_err(|error| error.in_file(path))?;
     let focal_px = [focus / sx, focus / sy];
     // u = 2 u' / (1 + sqrt(1 - 4 Kappa r'²)) of places u' without distortion, as the continued fraction of this function: OpenCV's rational model.
-    let bent = kappa.unwrap_or(0.0) * focus * focus;
+    let bent = kappa * focus * focus;
     let far = [(cx, width, focal_px[0]), (cy, height, focal_px[1])];
     let far = far.map(|(centre, size, focal)| centre.max(size.unwrap_or(2.0 * centre) - centre) / focal);
     if (bent * (far[0] * far[0] + far[1] * far[1])).abs() > MOST_BENT {
         return refuse(format!(
             "found the distortion Kappa = {}, which bends the corners of the picture by more than a tenth, expected less: {OTHERWISE}",
-            kappa.unwrap_or(0.0)
+            kappa
         ));
     }
     let [second, third] = [bent * bent, bent * bent * bent];
@@ -63,12 +70,19 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
     Ok(Some((vec![Camera::new(String::new(), lens)], said)))
 }
 
-/// The parameter of a line, if it is a number.
-fn parameter(line: &str) -> Option<(&str, f64)> {
-    let mut parts = line.trim().split(':');
-    let (key, short, value) = (parts.next()?, parts.next()?, parts.next()?);
-    let value: f64 = value.trim().trim_end_matches(';').trim().parse().ok()?;
+/// The parameter of a line, if it has one.
+fn parameter(line: &str) -> std::result::Result<Option<(&str, f64)>, String> {
+    let mut parts = line.trim().splitn(3, ':');
+    let (Some(key), Some(short), Some(value)) = (parts.next(), parts.next(), parts.next()) else {
+        return Ok(None);
+    };
     // Below a parameter are its type with bounds, and words.
-    let is_named = short.starts_with(|it: char| it.is_ascii_alphabetic());
-    (is_named && parts.next().is_none() && value.is_finite()).then_some((key, value))
+    if !short.starts_with(|it: char| it.is_ascii_alphabetic()) || key.starts_with(['#', '"']) {
+        return Ok(None);
+    }
+    let value = value.trim().trim_end_matches(';').trim();
+    match value.parse() {
+        Ok(number) if f64::is_finite(number) => Ok(Some((key, number))),
+        _ => Err(format!("found `{value}` for `{key}`, expected one number with a decimal point")),
+    }
 }

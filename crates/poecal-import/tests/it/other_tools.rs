@@ -110,7 +110,7 @@ fn halcon(parameter: &str) -> String {
 
 #[test]
 fn the_division_model_of_halcon_is_exact_to_a_thousandth_of_a_pixel() {
-    let pinhole = cameras("camera.dat", &halcon("")).unwrap();
+    let pinhole = cameras("camera.dat", &halcon("Kappa:kappa: 0;\n")).unwrap();
     assert_eq!(
         pinhole.cameras[0].lens.distortion,
         Distortion::Brown([-0.0, 0.0, 0.0, 0.0, -0.0, -0.0, 0.0, -0.0])
@@ -173,6 +173,16 @@ fn lenses_of_other_models_are_named() {
         ),
         "{error}"
     );
+    for (parameter, part) in [
+        ("", "without one of Focus, Kappa"),
+        ("Kappa:kappa: -1200,5;\n", "found `-1200,5` for `Kappa`, expected one number"),
+        ("Kappa:kappa: -12 (1/m2);\n", "found `-12 (1/m2)` for `Kappa`, expected one number"),
+        ("Kappa:kappa: -12; Sx:sx: 5e-6;\n", "for `Kappa`, expected one number"),
+        ("Kappa:kappa: -12;\nKappa:kappa: -13;\n", "found `Kappa` a second time"),
+    ] {
+        let error = cameras("camera.dat", &halcon(parameter)).unwrap_err();
+        assert!(error.contains(part), "{error}");
+    }
     let differing = format!("%YAML:1.0\n---\n{OPENCV}---\n{}", OPENCV.replace("1410.", "1411."));
     assert!(cameras("two.yaml", &differing).unwrap_err().contains("found another camera in document 2"));
 }
