@@ -58,7 +58,7 @@ SENTENCES = [
     (lambda: poecal.simulate(elbow(), noise_position_mm=float("inf")), "noise_position_mm: found inf, expected a finite number not below 0"),
     (lambda: elbow().forward_kinematics([1, 2]), "joints: found an array of shape (2,), expected shape (m, 6) or (6,): in each configuration joint1, joint2, joint3, joint4, joint5, joint6 (radians; metres of sliding joints)"),
     (lambda: elbow().forward_kinematics(JOINTS, target="ball"), "elbow: found no target `ball`, expected none: the model has no targets, leave out target to predict the tip"),
-    (lambda: elbow().to_text("xml"), "to: found `xml`, expected one of urdf, toml"),
+    (lambda: elbow().to_text("xml"), "format: found `xml`, expected one of urdf, toml"),
     (lambda: elbow().write("robot.step"), "format: found no form in the name `robot.step`, expected .urdf or .toml, or format=\"urdf\" or \"toml\""),
     (lambda: poecal.Robot.from_dh(**(ELBOW | {"d_m": [0]})), "d_m: found an array of shape (1,), expected shape (6,) as a_m"),
     (lambda: poecal.Robot.from_dh(**ELBOW, names=["a"] * 6), "found a second joint named `a`, expected unique joint names"),

@@ -20,7 +20,7 @@ def made() -> poecal.Simulation:
     ("call", "said"),
     [
         (lambda made: poecal.calibrate(made.nominal, made.measurements, correctons="off"), "calibrate: found the keyword `correctons`, did you mean `corrections`?"),
-        (lambda made: poecal.check(made.nominal, frme="base"), "check: found the keyword `frme`, did you mean `frame`?"),
+        (lambda made: poecal.check(made.nominal, device_frme="base"), "check: found the keyword `device_frme`, did you mean `device_frame`?"),
         (lambda made: poecal.simulate(made.nominal, cont=5), "simulate: found the keyword `cont`, did you mean `count`?"),
         (lambda made: poecal.plan(made.nominal, criterium="D"), "plan: found the keyword `criterium`, did you mean `criterion`?"),
         (lambda made: poecal.Watch(made.nominal, candidate=[[0.0] * 6]), "Watch: found the keyword `candidate`, did you mean `candidates`?"),
@@ -101,7 +101,7 @@ def test_a_text_has_its_own_unit(made):
     joints = rows.joints
     numbers = poecal.plan(robot, count=8, held_out_count=0, robot_error_mm=(0.2, 0.1), device_mm=(3000, 0, 500), distance_mm=(500, 6000), floor_height_mm=-700)
     texts = poecal.plan(
-        robot, count=8, judge=0, robot_error_mm="0.2,0.1mm", device_mm="3000,0,500mm", distance_mm="500mm,6m", floor_height_mm="-70cm"
+        robot, count=8, held_out_count=0, robot_error_mm="0.2,0.1mm", device_mm="3000,0,500mm", distance_mm="500mm,6m", floor_height_mm="-70cm"
     )
     assert np.array_equal(texts.joints, numbers.joints)
     turned = poecal.export(robot, format="toml", offset={"joint2": "0.5deg"})

@@ -49,7 +49,7 @@ def test_conditions_are_kept_and_mistakes_are_one_sentence():
         ({"criterion": "F"}, "criterion: found `F`, expected one of expected, D, A, E, G"),
         ({"robot_error_mm": (0.1, 0.2)}, "robot_error_mm: found .*, expected the error of the calibrated model and the smaller one"),
         ({"keep_out_mm": [[1, 2, 3]]}, r"keep_out_mm\[0\]: found an array of shape \(3,\)"),
-        ({"replace": [0]}, "replace: found 0, expected a row of keep"),
+        ({"replace_rows": [0]}, "found 0, expected a row of keep"),
         ({"workspace": np.zeros((3, 6)), "workspace_box_mm": np.zeros((2, 3))}, "found both workspace and workspace_box_mm"),
     ]:
         with pytest.raises(poecal.OptionError, match=words):
@@ -136,7 +136,7 @@ def test_mistakes_in_planned_visits_are_one_sentence(tmp_path):
         ({"purpose": "drift", "floor_height_mm": 20}, 'floor_height_mm: found it with purpose="drift", expected only candidates, count, earlier'),
         ({"purpose": "drift", "count": 41}, "40 measured configurations"),
         ({"purpose": "drift", "count": 0}, "count: found 0, expected 1 to 1000"),
-        ({"purpose": "drift", "device": "moved"}, "device: found `moved`, expected one of anew, known"),
+        ({"purpose": "drift", "device": "moved"}, "device: found `moved`, expected one of refit, known"),
         ({"purpose": "drifts"}, "purpose: found `drifts`, expected one of calibration, drift; did you mean `drift`?"),
         ({"device": "known"}, 'device: found it without purpose="drift"'),
     ]:

@@ -85,7 +85,7 @@ fn read_tree(stated: &Stated<'_>) -> Result<Read> {
     let places = places(stated);
     let (mut cameras, mut said) = (Vec::with_capacity(places.len()), Vec::new());
     for place in &places {
-        let (camera, seen) = read_single(stated, place)?;
+        let (camera, seen) = read_single(stated, place, places.len() == 1)?;
         let name = if places.len() > 1 { place.join("_") } else { camera.name };
         if cameras.iter().any(|it: &Camera| it.name == name) {
             return refuse(stated.path, format!("found the camera `{name}` a second time, expected it once"));
@@ -182,8 +182,34 @@ fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
     )))
 }
 
+/// Words of lenses that are not OpenCV's usual one.
+const OTHER_LENSES: [&str; 6] = ["fisheye", "kannala", "equidistant", "mei", "omni", "division"];
+
+/// The word of another lens, wherever a document with one camera has it.
+fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
+    let is_one = |text: &str| {
+        let mut words = text.split(|it: char| !it.is_alphanumeric());
+        words.any(|word| OTHER_LENSES.iter().any(|it| word.eq_ignore_ascii_case(it)))
+    };
+    all.leaves.iter().map(|leaf| leaf.text.as_str()).find(|text| is_one(text))
+}
+
+/// Refuses a document with one camera whose distortion stands where it is not read.
+fn refuse_far_distortion(all: &Stated<'_>) -> Result<()> {
+    let is_far = |leaf: &&Leaf| {
+        leaf.path.iter().any(|key| key.to_lowercase().contains("dist"))
+            && leaf.text.parse::<f64>().is_ok_and(|number| number != 0.0)
+    };
+    let Some(leaf) = all.leaves.iter().find(is_far) else { return Ok(()) };
+    let message = format!(
+        "found the distortion `{}` away from its lens, expected it beside fx or the matrix: put it there, as `distortion_coefficients`",
+        leaf.path.join(".")
+    );
+    Err(ErrorKind::Measurement.error(message).at_line(all.path, leaf.line))
+}
+
 /// The camera below these keys, and what its region changed in words.
-fn read_single(all: &Stated<'_>, place: &[String]) -> Result<(Camera, Option<String>)> {
+fn read_single(all: &Stated<'_>, place: &[String], is_only: bool) -> Result<(Camera, Option<String>)> {
     let path = all.path;
     let in_file = |error: Error| error.in_file(path);
     let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);
@@ -194,13 +220,22 @@ fn read_single(all: &Stated<'_>, place: &[String]) -> Result<(Camera, Option<Str
     let word = |keys: &str| near().find_map(|it| it.word(keys));
     let (focal_px, centre_px) = focal(&own)?;
     let is_fisheye = word(IS_FISHEYE).is_some_and(|it| it == "1" || it == "true");
-    let kind = word(MODEL).unwrap_or(if is_fisheye { "fisheye" } else { "" });
+    if let Some(other) = word("cameraType").filter(|it| !matches!(*it, "0" | "1")) {
+        return Err(refused(format!("found cameraType {other}, expected 0 (perspective) or 1 (fisheye)")));
+    }
+    let usual = if is_fisheye { "fisheye" } else { "" };
+    let kind = word(MODEL).or_else(|| other_lens(all).filter(|_| is_only)).unwrap_or(usual);
     let mut distortion = distortion(kind, &[], path);
+    let mut is_bent = false;
     for near in near() {
         if let Some(found) = bent(near, kind)? {
             distortion = Ok(found);
+            is_bent = true;
             break;
         }
+    }
+    if is_only && !is_bent {
+        refuse_far_distortion(all)?;
     }
     let size_px = size_of_pictures(SIZE.map(|keys| word(keys)?.parse().ok())).map_err(in_file)?;
     let lens = Lens { focal_px, centre_px, distortion: distortion?, size_px };

@@ -30,6 +30,7 @@ __all__ = [
     "_calibration",
     "_measurements",
     "_nearest",
+    "_renamed",
     "_robot",
     "_shown",
     "_write_text",
@@ -1899,7 +1900,7 @@ def calibrate(
         No finite result is reached.
     """
 def check(
-    robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, frame: _Frame = "unknown"
+    robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, device_frame: _Frame = "unknown"
 ) -> Check:
     """How a model and measurements are understood, and mistakes that they show.
 
@@ -2554,5 +2555,6 @@ def _robot(state: bytes) -> Robot: ...
 def _measurements(state: bytes) -> Measurements: ...
 def _calibration(state: bytes) -> Calibration: ...
 def _shown(text: str, warnings: Sequence[str]) -> str: ...
+def _renamed(word: str, words: Sequence[str]) -> str | None: ...
 def _nearest(word: str, words: Sequence[str]) -> str | None: ...
 def _write_text(path: _Path, text: str, force: bool) -> None: ...
