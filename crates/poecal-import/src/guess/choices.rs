@@ -1,10 +1,8 @@
 //! Columns, words and units that were chosen in place of what was guessed.
 
 use super::Sample;
-use super::fields::{MappedField, UNITS, WAYS};
+use super::fields::{MappedField, WAYS};
 use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
-use poecal_numerics::named_unit::NamedUnit;
-use poecal_numerics::unit::Unit;
 
 impl Sample<'_> {
     /// Takes a column or a word in place of what was guessed.
@@ -45,26 +43,4 @@ impl Sample<'_> {
             ))
         })
     }
-}
-
-/// Takes a unit in place of what was guessed.
-pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
-    let unit = UNITS.iter().find(|it| it.key == key);
-    let of = unit.map_or(Unit::Radian, |it| it.of);
-    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, of));
-    let stated = stated.transpose().map_err(refused)?;
-    if unit.is_none() {
-        return ErrorKind::Option.refuse(format!(
-            "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
-        ));
-    }
-    if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
-        field.chosen = stated.map_or("", NamedUnit::symbol).to_owned();
-    }
-    Ok(())
-}
-
-/// An error of a value that was chosen.
-pub(super) fn refused(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
-    ErrorKind::Option.error(format!("--column: {}", error.message()))
 }

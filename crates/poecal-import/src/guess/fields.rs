@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::{Angles, MAKERS};
-use poecal_numerics::named_unit::units_of;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::named_unit::{NamedUnit, units_of};
 use poecal_numerics::unit::Unit;
 
 /// A choice of a mapping: a column for what poecal reads, or one of some words.
@@ -122,4 +123,26 @@ fn forms() -> Vec<MappedChoice> {
     };
     let none = MappedChoice::new("", "none: positions alone");
     std::iter::once(none).chain(OrientationForm::with_names().chain(angles).map(choice)).collect()
+}
+
+/// Takes a unit in place of what was guessed.
+pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
+    let unit = UNITS.iter().find(|it| it.key == key);
+    let of = unit.map_or(Unit::Radian, |it| it.of);
+    let stated = Some(value).filter(|it| !it.is_empty()).map(|it| NamedUnit::parse(it, of));
+    let stated = stated.transpose().map_err(refused)?;
+    if unit.is_none() {
+        return ErrorKind::Option.refuse(format!(
+            "--column: found `{key}`, expected unit.angle, unit.length, unit.position or unit.orientation"
+        ));
+    }
+    if let Some(field) = fields.iter_mut().find(|it| it.key == key) {
+        field.chosen = stated.map_or("", NamedUnit::symbol).to_owned();
+    }
+    Ok(())
+}
+
+/// An error of a value that was chosen.
+pub(super) fn refused(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
+    ErrorKind::Option.error(format!("--column: {}", error.message()))
 }

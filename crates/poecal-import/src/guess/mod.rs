@@ -10,8 +10,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use self::choices::{choose_unit, refused};
-use self::fields::{MOST_RADIANS, UNITS, UnitField};
+use self::fields::{MOST_RADIANS, UNITS, UnitField, choose_unit, refused};
 pub use self::fields::{MappedChoice, MappedField};
 use self::names::Names;
 use super::ReadOptions;

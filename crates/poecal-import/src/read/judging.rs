@@ -1,14 +1,10 @@
 //! Judges what was read: units, spread, and components that are missing.
 
-use std::path::Path;
-
 use super::Reader;
 use crate::table::Table;
 use crate::table::cursor::Cursor;
 use poecal_fit::input_doubts::{lengths, spread};
-use poecal_model::measurement::Observation;
 use poecal_numerics::error::Result;
-use poecal_numerics::text::NamedLines;
 
 impl Reader<'_> {
     /// Judges the scale of the readings and of what was measured.
@@ -41,23 +37,4 @@ impl Reader<'_> {
         let rows = self.found.data.observations.get(first..).unwrap_or_default();
         cursor.refuse(&table.header, lengths::of_positions(self.robot, [x, y, z], slides_m, rows))
     }
-}
-
-/// The warning of rows that have some components of a position beside rows that have all.
-pub(super) fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
-    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
-    let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
-    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
-    (has_whole && lines.count > 0).then(|| {
-        format!(
-            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
-            path.display(),
-            counted(lines.count),
-            lines.words()
-        )
-    })
-}
-
-fn counted(rows: usize) -> String {
-    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
 }

@@ -9,7 +9,6 @@ pub(crate) mod socket_distance;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use self::judging::incomplete;
 use self::socket_distance::Sockets;
 use super::messages::are_messages;
 use super::table::Table;
@@ -213,7 +212,7 @@ impl<'a> Reader<'a> {
         let skipped = lost::lost_words(&lost);
         self.warn(path, skipped.map(|it| format!("skipped {it}; --strict refuses them")));
         let new_rows = self.found.data.observations.get(first..).unwrap_or_default();
-        self.found.warnings.extend(incomplete(path, new_rows));
+        self.found.warnings.extend(lost::incomplete(path, new_rows));
         self.judge(&table, &cursor, first)?;
         self.understand(&table, &cursor, (first, rows, lost))
     }

@@ -1,11 +1,14 @@
 //! Lost beams: measurements without a position.
 
+use std::path::Path;
+
 use nalgebra::Matrix3;
 
 use super::cursor::Cursor;
 use super::orientation::MOST_PARTS;
 use super::targets::TargetLayout;
 use crate::table::Row;
+use poecal_model::measurement::Observation;
 use poecal_numerics::error::{Error, Result};
 use poecal_numerics::text::NamedLines;
 
@@ -113,4 +116,23 @@ fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>, found: &st
     let first = first.copied().unwrap_or(0);
     let message = format!("found {found}, as of a lost beam, expected what was measured; leave out the row");
     row.error(inputs.column(first), message)
+}
+
+/// The warning of rows that have some components of a position beside rows that have all.
+pub(crate) fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
+    let is_part = |row: &&Observation| row.measurement.is_part_of_position();
+    let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();
+    let has_whole = rows.iter().any(|row| row.measurement.is_place() && !row.measurement.sees_orientation());
+    (has_whole && lines.count > 0).then(|| {
+        format!(
+            "{}: took {} ({}) as positions of which only some components were measured; --strict refuses empty cells",
+            path.display(),
+            counted(lines.count),
+            lines.words()
+        )
+    })
+}
+
+fn counted(rows: usize) -> String {
+    if rows == 1 { "one row".to_owned() } else { format!("{rows} rows") }
 }

@@ -144,7 +144,8 @@ impl Session<'_, '_> {
         let kept = kept(rows.keep_rows, robot)?;
         let replaced = rows.replace_rows.unwrap_or_default();
         if let Some(row) = replaced.iter().find(|&&row| row >= kept.len()) {
-            let expected = format!("found {row}, expected a row of keep_rows, from 0 to below {}", kept.len());
+            let expected =
+                format!("found {row}, expected a row of keep_rows, from 0 to below {}", kept.len());
             return Err(argument("replace_rows", expected));
         }
         let options = PlanOptions {
