@@ -52,9 +52,9 @@ export interface CalibrateOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
-   * size of the pictures, for a lens that is found from them; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML,
+   * JSON or XML of OpenCV, ROS, Kalibr, ViSP, mrcal and makers of cameras, .dat of HALCON, a calibration.json with what it found, or
+   * unknown:1920x1080 with the size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
@@ -185,9 +185,9 @@ export interface ValidateOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
-   * size of the pictures, for a lens that is found from them; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML,
+   * JSON or XML of OpenCV, ROS, Kalibr, ViSP, mrcal and makers of cameras, .dat of HALCON, a calibration.json with what it found, or
+   * unknown:1920x1080 with the size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
@@ -300,9 +300,9 @@ export interface CheckOptions {
    */
   instrumentNoise?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
-   * size of the pictures, for a lens that is found from them; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML,
+   * JSON or XML of OpenCV, ROS, Kalibr, ViSP, mrcal and makers of cameras, .dat of HALCON, a calibration.json with what it found, or
+   * unknown:1920x1080 with the size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**
@@ -337,9 +337,9 @@ export interface PlanOptions {
   /** Units of columns that state none, like mm,deg; a mapping file takes precedence */
   units?: Value | readonly Value[];
   /**
-   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML
-   * of OpenCV, ROS, Kalibr or industrial_calibration, XML of ViSP, a calibration.json with what it found, or unknown:1920x1080 with the
-   * size of the pictures, for a lens that is found from them; may be given again
+   * Cameras of corners in pixels: CSV with name, fx, fy, cx, cy, k1 and so on in OpenCV's order (FILE#VERSION where it has several), YAML,
+   * JSON or XML of OpenCV, ROS, Kalibr, ViSP, mrcal and makers of cameras, .dat of HALCON, a calibration.json with what it found, or
+   * unknown:1920x1080 with the size of the pictures, for a lens that is found from them; may be given again
    */
   camera?: Value | readonly Value[];
   /**

@@ -297,7 +297,7 @@ fn boards_and_lenses_of_other_programs_are_read() {
         read_cameras(half.to_str().unwrap())
             .unwrap_err()
             .to_string()
-            .contains("without all of fx, fy, cx and cy")
+            .contains("found 0 numbers of `camera_matrix`")
     );
 }
 

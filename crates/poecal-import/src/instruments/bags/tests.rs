@@ -261,8 +261,8 @@ fn bags_that_rosbag2_compressed_by_message_or_by_file_are_the_same_rows() {
     // Damaged, cut, and more than there may be.
     let mut broken = each.clone();
     broken[5].3.truncate(9);
-    let error = read_all(&[&folder.write("cut.mcap", bag(&broken))], &options).unwrap_err();
-    assert!(error.contains("message"), "{error}");
+    let found = read_all(&[&folder.write("cut.mcap", bag(&broken))], &options).unwrap();
+    assert!(found.warnings.iter().any(|it| it.contains("that are damaged")), "{:?}", found.warnings);
     let cut = packed(&bag(&messages));
     let cut = folder.write("cut.mcap.zstd", &cut[..cut.len() / 2]);
     assert!(read_all(&[&cut], &options).is_err());
