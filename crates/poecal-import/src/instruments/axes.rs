@@ -137,7 +137,7 @@ impl<'a, 't> Axes<'a, 't> {
         let joints: Vec<String> = joints.iter().zip(&self.slides).map(joint).collect();
         At(self.listed.first().map_or(1, |it| it.line)).refuse(format!(
             "found the axes {}, which are not one to one the joints {}, expected an axis of the arm for each joint that turns, an external one for each that \
-             slides, and 0 of others: name the column of each joint in a mapping file",
+             slides, and 0 of others: name the column of each joint by --columns",
             axes.join(", "),
             joints.join(", ")
         ))
