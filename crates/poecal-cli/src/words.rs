@@ -291,7 +291,7 @@ pub(crate) fn measured() -> impl TypedValueParser<Value = Kind> {
     kinds(Kind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
 }
 
-/// What is fitted to the measurements of a validation.
+/// The frames and targets that a validation refits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refit {
     /// The frame of the device.
@@ -302,7 +302,7 @@ pub enum Refit {
     Auto,
 }
 
-/// What is fitted to the measurements of a validation.
+/// The frames and targets that a validation refits.
 pub const REFIT: Words<Refit> = &[
     ("device", "The frame of the device, which was set up again", Refit::Device),
     ("tool", "The targets, which were mounted again", Refit::Tool),

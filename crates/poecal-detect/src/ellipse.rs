@@ -142,7 +142,7 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
 /// The outline of an ellipse near the origin of pixels.
 struct Outline {
     place: [f32; 2],
-    /// What makes a unit circle of it: both of the diagonal, and the one beside it.
+    /// The matrix that makes a unit circle of it: both of the diagonal, and the one beside it.
     to_circle: [f32; 3],
 }
 
@@ -163,7 +163,7 @@ impl Outline {
         Outline { place, to_circle }
     }
 
-    /// How far a place is from it, by the way there from its middle.
+    /// The distance of a place from it, by the way there from its middle.
     #[inline(always)]
     fn distance(&self, dx: f32, dy: f32) -> Off {
         let [xx, yy, xy] = self.to_circle;
@@ -181,7 +181,7 @@ impl Outline {
         }
     }
 
-    /// How far the pixels of a row are from it.
+    /// The distances of the pixels of a row from it.
     #[inline(always)]
     fn row(&self, from: f32, y: f32, offs: &mut [Lanes]) {
         for (at, offs) in offs.iter_mut().enumerate() {
@@ -212,7 +212,7 @@ struct Sums {
 impl Model {
     fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &Pixels) -> Self {
         let outline = Outline::new(&to_circle, pixels.offset(place));
-        // Of the inside and the outside.
+        // The inside and the outside.
         let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
         for [x, y, level] in pixels.each() {
             let side = outline.distance(x - outline.place[0], y - outline.place[1]).off >= 0.0;
@@ -241,7 +241,7 @@ impl Model {
         Sums { normal, right, squares }
     }
 
-    /// How the levels of pixels change by the unknowns, and what is left of them.
+    /// Derivatives of the levels of pixels by the unknowns, and the residuals.
     #[inline(always)]
     fn rows(
         &self,

@@ -126,7 +126,7 @@ fn peaks(smooth: &Gray, least: f32, blur_px: f64) -> Vec<Cross> {
     found
 }
 
-/// How strongly the pixels of a row are saddles, by the rows around.
+/// The strength of the pixels of a row as saddles, by the rows around.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)]
 fn strengths(rows: [&[f32]; 5], target: &mut [f32]) {

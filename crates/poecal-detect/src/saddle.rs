@@ -285,7 +285,7 @@ impl Near {
         }
     }
 
-    /// How the levels of pixels change by the unknowns, and what is left of them.
+    /// Derivatives of the levels of pixels by the unknowns, and the residuals.
     #[inline(always)]
     fn rows(&self, [xs, ys, levels]: &[Lanes; 3]) -> ([Lanes; UNKNOWNS], Lanes) {
         const ROOT: f32 = 0.797_884_6;
@@ -321,7 +321,7 @@ impl Near {
     }
 }
 
-/// What the blur adds where both lines are not at right angles: the first terms of Mehler's series.
+/// The part of the blur where both lines are not at right angles: the first terms of Mehler's series.
 #[inline(always)]
 fn skew(rho: f32, h: f32, k: f32) -> f32 {
     rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))

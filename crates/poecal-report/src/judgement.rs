@@ -72,7 +72,7 @@ pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
     }
 }
 
-/// How far rows of one configuration lie from each other.
+/// Scatter of rows of one configuration.
 fn repeats_words(found: &RepeatScatter) -> String {
     let (least, most, unit) = (number(found.smallest), number(found.largest), found.quantity.unit().symbol());
     let range = if found.poses > 1 { format!("{least} to {most}") } else { most };

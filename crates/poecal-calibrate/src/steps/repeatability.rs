@@ -28,7 +28,7 @@ pub struct RepeatedPose {
     pub repeatability: f64,
 }
 
-/// How far rows of one configuration lie from each other, of measurements that judge a calibration.
+/// Scatter of rows of one configuration, of measurements that judge a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RepeatScatter {
     /// Number of targets in configurations with three rows or more.

@@ -38,7 +38,7 @@ impl Cells {
         if inside && columns.len() == 1 && rows.len() == 1 {
             return f32::from(u8::from(is_dark(rows.start, columns.start)));
         }
-        // How long the rectangle is on a row or column of cells.
+        // The length of the rectangle on a row or column of cells.
         let part = |at: i32, low: f32, high: f32| high.min(at as f32 + 1.0) - low.max(at as f32);
         let mut sum = 0.0;
         for row in rows {
@@ -63,7 +63,7 @@ pub(crate) struct Patch {
     pub(crate) variance: f64,
 }
 
-/// What a model has in a patch: how light pixels are, where they are on the tag, and 1 for each that counts, 0 for others.
+/// A model in a patch: the light of pixels, their places on the tag, and 1 for each that counts, 0 for others.
 #[derive(Clone)]
 pub(crate) struct Seen {
     pub(crate) shade: Vec<f32>,
@@ -97,7 +97,7 @@ impl Patch {
         [self.first[0] as f64 - self.middle.x, self.first[1] as f64 - self.middle.y].map(|it| it as f32)
     }
 
-    /// How light the pixels are by a model, blurred, from 0 to 1.
+    /// The light of the pixels by a model, blurred, from 0 to 1.
     pub(crate) fn seen(&self, model: &Model, cells: &Cells) -> Option<Seen> {
         let back = model.back()?.around(self.middle);
         let mut seen = vectorized(

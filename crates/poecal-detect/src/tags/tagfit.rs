@@ -152,7 +152,7 @@ impl Model {
 struct Adder {
     edge: Normal<UNKNOWNS>,
     plain: Normal<SHADES>,
-    /// Of the model.
+    /// Numbers of the model.
     dark: f32,
     contrast: f32,
     slope: [f32; 2],
@@ -219,7 +219,7 @@ impl Adder {
         for k in 0..LANES {
             let contrast = self.contrast * (shades[0][k] + shades[1][k]);
             let curve = left[k] + right[k] + up[k] + down[k] - 4.0 * s[k];
-            // Where the tag moves by a step, the pixel sees what was before it.
+            // As the tag moves by a step, the pixel sees the part before it.
             let by_x = -0.5 * (right[k] - left[k]) * contrast;
             let by_y = -0.5 * (down[k] - up[k]) * contrast;
             let (u, v) = (own_x[k], own_y[k]);

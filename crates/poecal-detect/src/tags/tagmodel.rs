@@ -8,7 +8,7 @@ use crate::quads::Quad;
 pub(crate) const UNKNOWNS: usize = 15;
 pub(crate) type Unknowns = SVector<f64, UNKNOWNS>;
 
-/// How far beyond the corners of a tag pixels are looked at, as a part of the way from its middle, and pixels more.
+/// The margin beyond the corners of a tag, as a part of the way from its middle, and pixels more.
 const BEYOND: f64 = 0.25;
 const BEYOND_PX: f64 = 3.0;
 
@@ -36,7 +36,7 @@ impl Model {
         Homography::of_corners(&self.corners, &SIGNS.map(Vector2::from))
     }
 
-    /// Whether its shades are not yet known.
+    /// True if its shades are not yet known.
     pub(crate) fn is_blank(&self) -> bool {
         self.light == self.dark
     }
@@ -121,7 +121,7 @@ impl Bent {
     }
 }
 
-/// How much a place on the tag is bent, by the squares of its sides: nothing at corners.
+/// The bend of a place on the tag, by the squares of its sides: nothing at corners.
 #[inline(always)]
 pub(crate) fn bent([x, y]: [f32; 2], sides: [f32; 2]) -> f32 {
     -(x * (1.0 - x) * sides[0] + y * (1.0 - y) * sides[1])

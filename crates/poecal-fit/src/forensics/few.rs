@@ -25,7 +25,7 @@ pub(crate) struct FewTargets<'a, 'd> {
 }
 
 impl<'a, 'd> FewTargets<'a, 'd> {
-    /// Whether all targets are fitted together.
+    /// True if all targets are fitted together.
     pub(crate) fn are_all(data: &Dataset) -> bool {
         data.targets.len() <= TARGETS
     }

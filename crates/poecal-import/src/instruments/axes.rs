@@ -56,7 +56,7 @@ impl Axis<'_> {
         number(self.value) == Some(0.0)
     }
 
-    /// Whether its unit, if one is stated, is that of a joint.
+    /// True if its unit, where one is stated, is that of a joint.
     fn fits(&self, slides: bool) -> bool {
         self.unit.is_none_or(|it| (it == "mm") == slides)
     }

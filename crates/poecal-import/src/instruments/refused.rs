@@ -5,7 +5,7 @@ use super::words::{lines, number};
 /// Lines by which a form is recognised.
 const FIRST: usize = 12;
 
-/// How texts of a kind begin, of XML any of the first lines; and why they are not read.
+/// The beginnings of texts of a kind, of XML any of the first lines; and why they are not read.
 const KINDS: [(&str, &str); 2] = [
     (
         "PathFileType",

@@ -77,7 +77,7 @@ pub(crate) fn value(cell: &Data) -> Option<f64> {
     }
 }
 
-/// Whether a cell has nothing.
+/// True of a cell without content.
 pub(crate) fn is_empty(cell: &Data) -> bool {
     matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
 }

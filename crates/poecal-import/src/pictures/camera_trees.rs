@@ -16,12 +16,12 @@ const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref ex
                         icam_intrinsics";
 /// Models of mrcal that are OpenCV's, in its order of coefficients.
 const MRCAL_MODELS: [&str; 4] = ["PINHOLE", "OPENCV4", "OPENCV5", "OPENCV8"];
-/// What leads to the matrix, row by row or, as Open3D has it, column by column.
+/// Keys of the matrix, row by row or, as Open3D has it, column by column.
 const MATRIX: &str = "camera_matrix.data cameraMatrix.data Camera_Matrix.data K.data M1.data K k camera_matrix cameraMatrix intrinsicMatrix \
                       intrinsic_matrix intrinsics mtx camera_intrinsics";
 /// Focal lengths and centre by their names.
 const FOCAL: [&str; 4] = ["fx", "fy", "cx ppx", "cy ppy"];
-/// What leads to the coefficients of the distortion.
+/// Keys of the coefficients of the distortion.
 const COEFFICIENTS: &str = "distortion_coefficients.data dist_coeffs.data distCoeffs.data Distortion_Coefficients.data distortion_coeffs.data D.data D1.data D \
                             d distortion_coefficients dist_coeffs dist_coeff distCoeffs distortionCoeff distortion_coeffs distortion dist coeffs";
 /// The same by their names, in OpenCV's order, and where they may be.
@@ -148,13 +148,18 @@ fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
         let [fx, fy, cx, cy] = exact(own.list("intrinsics")?, "intrinsics", path)?;
         let kind = own.word("distortion_model").unwrap_or("none");
         let distortion = distortion(kind, &own.list("distortion_coeffs")?, path)?;
-        let size = <[f64; 2]>::try_from(own.list("resolution")?).ok();
-        let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
-        let size_px = size_px.map_err(|error| error.in_file(path))?;
+        let size_px = listed_size(&own, "resolution")?;
         let lens = Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px };
         Ok(Camera::new(name.clone(), lens))
     };
     names.into_iter().map(camera).collect()
+}
+
+/// The size of pictures as a list of two numbers.
+fn listed_size(stated: &Stated<'_>, key: &str) -> Result<Option<[u32; 2]>> {
+    let size = <[f64; 2]>::try_from(stated.list(key)?).ok();
+    let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
+    size_px.map_err(|error| error.in_file(stated.path))
 }
 
 /// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
@@ -172,9 +177,7 @@ fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
     let mut numbers = stated.list("intrinsics")?;
     let bent = numbers.split_off(numbers.len().min(4));
     let [fx, fy, cx, cy] = exact(numbers, "intrinsics", stated.path)?;
-    let size = <[f64; 2]>::try_from(stated.list("imagersize")?).ok();
-    let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
-    let size_px = size_px.map_err(|error| error.in_file(stated.path))?;
+    let size_px = listed_size(stated, "imagersize")?;
     let distortion = distortion("opencv", &bent, stated.path)?;
     Ok(Some(Camera::new(
         String::new(),
@@ -225,20 +228,17 @@ fn read_single(all: &Stated<'_>, place: &[String], is_only: bool) -> Result<(Cam
     }
     let usual = if is_fisheye { "fisheye" } else { "" };
     let kind = word(MODEL).or_else(|| other_lens(all).filter(|_| is_only)).unwrap_or(usual);
-    let mut distortion = distortion(kind, &[], path);
-    let mut is_bent = false;
-    for near in near() {
-        if let Some(found) = bent(near, kind)? {
-            distortion = Ok(found);
-            is_bent = true;
-            break;
+    let distortion = match near().find_map(|it| bent(it, kind).transpose()) {
+        Some(found) => found?,
+        None => {
+            if is_only {
+                refuse_far_distortion(all)?;
+            }
+            distortion(kind, &[], path)?
         }
-    }
-    if is_only && !is_bent {
-        refuse_far_distortion(all)?;
-    }
+    };
     let size_px = size_of_pictures(SIZE.map(|keys| word(keys)?.parse().ok())).map_err(in_file)?;
-    let lens = Lens { focal_px, centre_px, distortion: distortion?, size_px };
+    let lens = Lens { focal_px, centre_px, distortion, size_px };
     let mut region = [0.0; REGION_KEYS.len()];
     for (number, keys) in region.iter_mut().zip(REGION_KEYS) {
         *number = own.number(keys)?.unwrap_or(0.0);
@@ -278,7 +278,7 @@ fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
         }
         let [k1, k2, p1, p2, k3, k4, ..] = numbers;
         if is_stated {
-            // Of a fisheye all are of the angle.
+            // A fisheye's are all of the angle.
             let is_fisheye =
                 matches!(distortion(kind, &[], own.path)?, Distortion::Fisheye(_)) && p1 == 0.0 && p2 == 0.0;
             let numbers = if is_fisheye { vec![k1, k2, k3, k4] } else { numbers.to_vec() };

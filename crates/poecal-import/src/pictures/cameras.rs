@@ -28,7 +28,7 @@ pub struct CameraFile {
     pub said: Vec<String>,
 }
 
-/// What a calibration.json has in it, and no other file of a camera.
+/// A key of calibration.json, and of no other file of a camera.
 const OF_CALIBRATION: [&str; 2] = ["\"pictures\"", "\"poecal-calibration-"];
 /// What begins the words of a camera whose lens is unknown.
 const UNKNOWN: &str = "unknown:";

@@ -7,7 +7,7 @@ use super::lens_checks::OTHERWISE;
 use poecal_model::camera::{Camera, Distortion, Lens, size_of_pictures};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// What such files have, and no others.
+/// A word of such files, and of no others.
 const MARK: &str = "ParGroup:";
 /// Parameters that are read.
 const READ: [&str; 8] = ["Focus", "Kappa", "Sx", "Sy", "Cx", "Cy", "ImageWidth", "ImageHeight"];

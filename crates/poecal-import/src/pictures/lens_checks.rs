@@ -9,7 +9,7 @@ use poecal_storage::numbers::LARGEST_NUMBER;
 /// What a file of cameras is expected to be.
 pub(crate) const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order, YAML, JSON or XML with a `camera_matrix`, or with fx, fy, \
                         cx, cy (OpenCV, ROS, RealSense, OAK), Kalibr's camchain, or a camera of ViSP, HALCON (.dat) or mrcal";
-/// What to do about a lens of another model.
+/// Advice for a lens of another model.
 pub(crate) const OTHERWISE: &str = "or find the lens by the pictures: --camera unknown:WIDTHxHEIGHT";
 
 /// Refuses numbers that are no lens's.

@@ -7,7 +7,7 @@ use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::xml::parsed;
 use poecal_storage::yaml::Leaf;
 
-/// Whether keys are numbers of places in lists.
+/// True if keys are numbers of places in lists.
 pub(crate) fn are_places(keys: &[String]) -> bool {
     keys.iter().all(|key| !key.is_empty() && key.bytes().all(|it| it.is_ascii_digit()))
 }

@@ -38,7 +38,7 @@ struct Part {
 }
 
 const PLACE: [&str; 3] = ["x", "y", "z"];
-/// What to do with places of a target that has no orientation.
+/// Advice for places of a target that has no orientation.
 const PLACES_ALONE: &str = "; places alone, as of a ball or a depth camera, locate the camera by the joint readings beside them: \
                             `poecal calibrate MODEL FILE --fix joints`, for a camera in the hand with --instrument NAME=LINK and --target NAME=LINK";
 /// The place in the last column of a matrix.

@@ -35,7 +35,7 @@ struct Sample {
     whose: Option<Whose>,
     columns: &'static [&'static str],
     numbers: Vec<f64>,
-    /// Whether lengths are millimetres.
+    /// True if lengths are millimetres.
     in_mm: bool,
     line: usize,
     /// The number of its file.

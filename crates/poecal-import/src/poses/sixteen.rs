@@ -42,7 +42,7 @@ pub(crate) fn matrices(header: &Header<'_>) -> Vec<InMatrix> {
     found
 }
 
-/// Whether the first row has a place in the last four of its numbers, and not the last row of a matrix.
+/// True if the first row has a place in the last four of its numbers, and not the last row of a matrix.
 fn ends_with_place(header: &Header<'_>, columns: &[usize]) -> bool {
     let Some(line) = header.first_row() else { return false };
     let mut cells = Vec::new();

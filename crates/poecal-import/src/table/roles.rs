@@ -36,6 +36,10 @@ pub(crate) enum Role {
     OfArm,
     /// Before a part of a pose: what the camera saw.
     OfTarget,
+    /// In a key, or in the name of a file or a matrix: the arm's poses.
+    KeyOfArm,
+    /// The same of the target's, unless a word before it is the arm's.
+    KeyOfTarget,
     /// Before an axis, by its letter or its number: a part of a pose, whose name in a convention begins so.
     Part(&'static str),
     /// Before an axis by its letter alone: the place of a pose.
@@ -86,6 +90,8 @@ const ROLES: &[(Role, &str)] = &[
     (Role::OnBoard, "obj object"),
     (Role::OfArm, "flange robot tcp base ee tool0 tool gripper arm hand endeffector"),
     (Role::OfTarget, "target board marker camera cam tag pattern object chessboard c"),
+    (Role::KeyOfArm, "effector robot flange tcp gripper hand ee arm base fpe fme rpe"),
+    (Role::KeyOfTarget, "object tracking target board marker camera cam pattern cpo cmo"),
     (Role::Part(""), "position pos tvec translation trans"),
     (Role::Part("rvec"), "rvec rotvec"),
     (Role::Part("intrinsic"), "intrinsic"),

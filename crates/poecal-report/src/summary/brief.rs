@@ -36,9 +36,9 @@ struct Block {
 pub struct Short {
     /// The lines.
     pub table: String,
-    /// What it leaves out, on one line.
+    /// The parts that it leaves out, on one line.
     pub left: String,
-    /// What to do next, by the verdict.
+    /// The next step, by the verdict.
     pub next: Option<&'static str>,
 }
 
@@ -68,7 +68,7 @@ pub(super) fn brief(file: &CalibrationFile, said: usize) -> Short {
     Short { table: out, left: left[..named].join(", ") + &more, next: next(file) }
 }
 
-/// What to do next.
+/// The next step.
 fn next(file: &CalibrationFile) -> Option<&'static str> {
     match file.acceptance.as_ref().map(|it| it.decision) {
         Some(Decision::Fail) => return Some("the limits of --accept are not met: see acceptance"),

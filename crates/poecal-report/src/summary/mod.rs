@@ -28,7 +28,7 @@ const UPRIGHT: f64 = 1e-4;
 /// How much a table tells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// What everyone needs, in eleven lines: more only where limits are accepted.
+    /// The answer in eleven lines: more only where limits are accepted.
     #[default]
     Short,
     /// Everything, and lists as long as they are.
@@ -84,7 +84,7 @@ fn top(out: &mut String, file: &CalibrationFile) {
     }
 }
 
-/// What the rows determine, and what was found of targets, joints and clocks.
+/// The unknowns that the rows determine, and the findings on targets, joints and clocks.
 fn rest(out: &mut String, file: &CalibrationFile) {
     known(out, file);
     file.clocks.iter().for_each(|clock| line(out, "clock", &clock_words(clock)));

@@ -39,7 +39,7 @@ pub trait Records {
     fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str);
     /// A message of a topic, with its time in the log, nanoseconds.
     fn message(&mut self, channel: u16, log_ns: u64, data: &[u8]);
-    /// Whether no more is taken.
+    /// True if no more is taken.
     fn is_full(&self) -> bool;
 }
 

@@ -5,17 +5,20 @@ use std::io::{self, Read};
 use lz4_flex::frame::FrameDecoder as Lz4;
 use ruzstd::decoding::StreamingDecoder as Zstd;
 
-/// How a frame of zstd begins; no message does.
+/// The beginning of a frame of zstd; no message has it.
 pub const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 
-/// The bytes of a file that is compressed as a whole, up to so many.
+/// The bytes of a file; up to so many of one that is compressed as a whole.
 ///
 /// # Errors
-/// A file that is no zstd.
-pub fn stream<'r>(packed: impl Read + 'r, most: u64) -> io::Result<impl Read + 'r> {
-    Ok(Zstd::new(packed)
-        .map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?
-        .take(most))
+/// A compressed file that is no zstd.
+pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Result<Box<dyn Read + 'r>> {
+    if !is_packed {
+        return Ok(Box::new(file));
+    }
+    let unpacked = Zstd::new(file);
+    let unpacked = unpacked.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?;
+    Ok(Box::new(unpacked.take(most)))
 }
 
 /// Puts the bytes of a message that is compressed by itself into `into`, up to so many.

@@ -46,11 +46,8 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
             false => source::open_any(part, EXPECTED, Limit::Bag)?,
         };
         let (is_packed, most) = (head.starts_with(unpack::ZSTD), Limit::Bag.most() + 1);
-        let stated = match is_packed {
-            true => mcap::stated_size(&mut unpack::stream(&mut input, most).map_err(unreadable)?),
-            false => mcap::stated_size(&mut input),
-        };
-        let stated = stated.map_err(unreadable)?;
+        let mut whole = unpack::stream(&mut input, is_packed, most).map_err(unreadable)?;
+        let stated = mcap::stated_size(&mut whole).map_err(unreadable)?;
         unpacked = unpacked.saturating_add(stated);
         refuse_large(unpacked, path)?;
         let (input, head) = source::open_streamed(part, EXPECTED, Limit::Bag)?;
@@ -61,10 +58,8 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
         }
         hashing = hashing.over(Box::new(input));
         let name = part.file_name().map(Path::new).filter(|_| parts.len() > 1);
-        warned.extend(match is_packed {
-            true => take(unpack::stream(&mut hashing, most).map_err(unreadable)?, &mut topics, part, name)?,
-            false => take(&mut hashing, &mut topics, part, name)?,
-        });
+        let whole = unpack::stream(&mut hashing, is_packed, most).map_err(unreadable)?;
+        warned.extend(take(whole, &mut topics, part, name)?);
         // The checksum is of all bytes.
         io::copy(&mut hashing, &mut io::sink()).map_err(unreadable)?;
     }

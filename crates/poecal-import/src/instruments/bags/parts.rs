@@ -15,7 +15,7 @@ use poecal_storage::source;
 /// Endings of the names of files: as they are, and compressed as a whole.
 const ENDINGS: [&str; 2] = [".mcap", ".mcap.zstd"];
 
-/// Whether the name of a file is that of a part of a bag.
+/// True of the name of a part of a bag.
 fn is_part(name: &str) -> bool {
     let small = name.to_ascii_lowercase();
     ENDINGS.iter().any(|it| small.ends_with(it))

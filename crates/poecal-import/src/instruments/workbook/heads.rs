@@ -22,7 +22,7 @@ pub(super) struct Head {
     pub(super) units: Option<usize>,
     /// The first row of numbers.
     pub(super) begin: usize,
-    /// Whether groups stand above the names.
+    /// True if groups stand above the names.
     pub(super) is_two: bool,
 }
 
@@ -118,7 +118,7 @@ fn joined(group: &str, name: &str, with_words: bool) -> String {
     unit.or(of_group).map_or(both.trim().to_owned(), |unit| format!("{} [{unit}]", both.trim()))
 }
 
-/// Whether a row sums up those above it: its name is such a word as a whole, beside a unit in brackets.
+/// True of a row that sums up those above it: its name is such a word as a whole, beside a unit in brackets.
 pub(super) fn is_sum(row: &[Data]) -> bool {
     let first = row.iter().find(|it| !is_empty(it)).filter(is_text);
     first.is_some_and(|it| {

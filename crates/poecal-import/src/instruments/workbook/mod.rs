@@ -121,7 +121,7 @@ struct Found {
     names: Vec<String>,
     units: Option<usize>,
     rows: Vec<usize>,
-    /// Whether groups stand above the names; lines at the end that sum up the rows.
+    /// True if groups stand above the names; lines at the end that sum up the rows.
     is_two: bool,
     sums: Vec<usize>,
 }
