@@ -96,10 +96,7 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
         }
         sum = sum.saturating_add(unpacked);
         // Such a file is refused: the rest may take minutes to unpack.
-        if sum > Limit::Bag.most() {
-            break;
-        }
-        if io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
+        if sum > Limit::Bag.most() || io::copy(&mut input.by_ref().take(rest), &mut io::sink())? < rest {
             break;
         }
     }

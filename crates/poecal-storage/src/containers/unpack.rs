@@ -16,9 +16,8 @@ pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Resul
     if !is_packed {
         return Ok(Box::new(file));
     }
-    let unpacked = Zstd::new(file);
-    let unpacked = unpacked.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?;
-    Ok(Box::new(unpacked.take(most)))
+    let unpacked = Zstd::new(file).map(|it| Box::new(it.take(most)) as Box<dyn Read + 'r>);
+    unpacked.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))
 }
 
 /// Puts the bytes of a message that is compressed by itself into `into`, up to so many.
@@ -27,7 +26,7 @@ pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Resul
 /// The damage that was found.
 pub fn message(packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
     into.clear();
-    frames(packed, most, into).map(|_| ())
+    frames(packed, most, into)
 }
 
 /// Puts the bytes of a chunk that is packed in this way into `into`, up to one beyond the size that it states; an error says what was found.
@@ -35,25 +34,25 @@ pub(super) fn unpack(packed: &[u8], how: &str, stated: u64, into: &mut Vec<u8>) 
     into.clear();
     let most = stated.saturating_add(1);
     let read = match how {
-        "lz4" => Lz4::new(packed).take(most).read_to_end(into).map_err(|error| error.to_string()),
+        "lz4" => Lz4::new(packed).take(most).read_to_end(into).map(drop).map_err(|it| it.to_string()),
         "zstd" => frames(packed, most, into),
         other => Err(format!("the compression `{other}`, expected zstd, lz4 or none")),
     };
     if into.len() as u64 > stated {
         return Err(format!("more than {stated} bytes, expected as many"));
     }
-    read.map(|_| ())
+    read
 }
 
 /// All frames of zstd.
-fn frames(mut packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<usize, String> {
+fn frames(mut packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
     while !packed.is_empty() && (into.len() as u64) < most {
         let mut frame = Zstd::new(packed).map_err(|error| error.to_string())?;
-        let rest = most - into.len() as u64;
-        frame.by_ref().take(rest).read_to_end(into).map_err(|error| error.to_string())?;
+        let read = frame.by_ref().take(most - into.len() as u64).read_to_end(into);
+        read.map_err(|error| error.to_string())?;
         packed = frame.into_inner();
     }
-    Ok(into.len())
+    Ok(())
 }
 
 #[cfg(test)]
