@@ -5,7 +5,7 @@ import { kindWords, wordOf } from "./places.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
 
-/** Fills `place` with the picture and its controls. */
+/** Fills `place` with the picture and its controls; gives what takes the arm to a row, if it is drawn. */
 export function showArm(place, data) {
   let scene;
   try {
@@ -39,6 +39,7 @@ export function showArm(place, data) {
     place.dataset.drawn = "true";
     still?.setAttribute("hidden", "");
   };
+  return (row) => choose(view, row);
 }
 
 function element(name, className, text) {
@@ -108,7 +109,7 @@ function measurementControls(view) {
 }
 
 function describe({ rows, targets, instruments, draws_instruments }, row) {
-  const set = rows.held_out[row] ? "held out" : "fitted";
+  const set = rows.sets[row] & 1 ? "held out" : "fitted";
   const target = targets[rows.target[row]].name;
   const instrument = instruments[rows.instrument[row]];
   const kind = wordOf(instrument);

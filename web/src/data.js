@@ -1,9 +1,37 @@
 // The page's data, with what follows from them: where each row's target was predicted, and how its residual lies in the base frame.
-import { CALIBRATED, act, configure, invert, motions, poseOf, rotate, scale, subtract } from "./kinematics.js";
+import { CALIBRATED, act, configure, invert, poseOf, rotate, scale, subtract } from "./kinematics.js";
 import { patchOf } from "./places.js";
 
 export function readData() {
   return complete(JSON.parse(document.getElementById("report-data").textContent));
+}
+
+/** Numbers of three bytes each, in steps from the least of them, or null. */
+function unpacked({ low, step, bytes }) {
+  const text = atob(bytes);
+  return Array.from({ length: text.length / 3 }, (_, k) => {
+    const whole = [0, 1, 2].reduce((sum, at) => 256 * sum + text.charCodeAt(3 * k + at), 0);
+    return whole === 0xffffff ? null : low + step * whole;
+  });
+}
+
+/** The columns of the rows as numbers. */
+function readRows(rows) {
+  const lines = unpacked(rows.line);
+  rows.count = lines.length;
+  rows.number = rows.number ? unpacked(rows.number) : lines.map((_, row) => row + 1);
+  rows.place = lines.map((line, row) => `${rows.files[rows.file?.[row] ?? 0]}${line}`);
+  rows.sets = [...rows.sets].map(Number);
+  rows.target ??= lines.map(() => 0);
+  rows.instrument ??= lines.map(() => 0);
+  rows.error_mm = unpacked(rows.error_mm);
+  rows.values = rows.values.map(unpacked);
+  rows.columns = {};
+  rows.residuals.forEach(({ components }, at) =>
+    components.forEach((component, k) => {
+      rows.columns[`${at}.${k}`] = component.values = unpacked(component.values);
+    }),
+  );
 }
 
 /** Adds to each row its place and its residual in the base frame, and to the robot the frames where its arms end. */
@@ -20,13 +48,11 @@ export function complete(data) {
   const atTip = ({ on, pose }) => on === tip.on && Math.hypot(...subtract(pose.t, tip.pose.t)) < 1e-6;
   data.ends = ends.length && (tip.on === null || ends.some(atTip)) ? ends : [tip, ...ends];
   const reaching = new Map();
-  rows.count = rows.number.length;
-  rows.instrument ??= rows.number.map(() => 0);
+  readRows(rows);
   rows.predicted = [];
   rows.reached = [];
   rows.residual = [];
   const touched = instruments.map(() => []);
-  rows.motion = data.readings.map(() => []);
   for (let row = 0; row < rows.count; row++) {
     const found = configure(data, readingsOf(data, row), CALIBRATED);
     const [target, instrument] = [targets[rows.target[row]], instruments[rows.instrument[row]]];
@@ -43,9 +69,6 @@ export function complete(data) {
     if (!reaching.has(moving.on)) reaching.set(moving.on, moving);
     rows.reached.push(found.at(moving).t);
     rows.residual.push(residual ?? null);
-    // Of one number along a line, the part along another says nothing.
-    const vector = isVector(rows, row) ? residual : undefined;
-    motions(data, found, place, target, instrument).forEach((motion, reading) => rows.motion[reading].push(along(vector, motion)));
   }
   for (const [k, it] of instruments.entries()) if (it.kind === "plane") it.patch = patchOf(touched[k]);
   data.reaching = [...reaching.values()];
@@ -77,11 +100,6 @@ function shiftOf(rows, row, seen) {
   return distance === undefined || far === 0 ? undefined : scale(seen, distance / far);
 }
 
-function isVector(rows, row) {
-  const isWhole = (quantity) => componentsOf(rows, row, quantity).filter((value) => value !== null).length === 3;
-  return isWhole("position") || isWhole("contact");
-}
-
 /** By how much each quantity of a row is off, in words. */
 export function offBy(rows, row) {
   const parts = rows.residuals.flatMap(({ name, unit }) => {
@@ -96,12 +114,6 @@ export function offBy(rows, row) {
 /** The readings of a row, radians or metres. */
 export function readingsOf(data, row) {
   return data.rows.values.map((column, reading) => column[row] * data.factors[reading]);
-}
-
-/** The part of a residual along a direction; none where that is no direction, or there is no residual. */
-function along(residual, motion) {
-  const length = Math.hypot(...motion);
-  return residual && length > 1e-3 ? residual.reduce((sum, part, k) => sum + part * motion[k], 0) / length : null;
 }
 
 /** A number with a few digits that matter. */

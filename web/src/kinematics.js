@@ -95,22 +95,3 @@ export function configure(data, readings, model) {
   });
   return { axes, at: (frame) => compose(motionOf(frame.on), frame[model.pose]) };
 }
-
-/** Whether a joint moves a frame. */
-function moves(data, joint, frame) {
-  let on = frame.on;
-  while (on !== null && on > joint) on = data.joints[on].on;
-  return on === joint;
-}
-
-/** How a place on the target's body moves against the instrument with each reading: joints that move both do not count. */
-export function motions(data, { axes }, place, target, instrument) {
-  const motion = data.readings.map(() => [0, 0, 0]);
-  data.joints.forEach((joint, k) => {
-    const turn = joint.multiplier * (moves(data, k, target) - moves(data, k, instrument));
-    const { direction, point } = axes[k];
-    const velocity = joint.kind === "revolute" ? cross(direction, subtract(place, point)) : direction;
-    if (turn) motion[joint.reading] = add(motion[joint.reading], scale(velocity, turn));
-  });
-  return motion;
-}

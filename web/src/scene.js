@@ -13,7 +13,6 @@ import { dot, faceted, flat, solid, veil } from "./materials.js";
 import { extent, hasPlace } from "./places.js";
 import { REACH_POINTS, unsampled } from "./reach.js";
 import { Figure, Looks, farther } from "./shapes.js";
-import { quantile } from "./statistics.js";
 import { colour } from "./theme.js";
 import { DIRECTIONS, framed, middlePlaces } from "./view.js";
 
@@ -76,7 +75,7 @@ export class Scene {
     this.near = middlePlaces(rows.predicted);
     this.all = ends;
     if (this.data.draws_instruments) this.near = this.all = [...ends, ...nearInstruments(this.data, this.centre, this.size)];
-    this.legend = { least: 0, most: quantile(errors, 0.95) || 1e-9, square: 0 };
+    this.legend = { least: 0, most: errors[Math.round(0.95 * (errors.length - 1))] || 1e-9, square: 0 };
     this.legend.square = 1e3 * [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].find((it) => it <= this.size / 3 || it === 0.01);
     this.room = roomOf(this.data, this.size);
     this.arrowScale = round(this.room / (this.legend.most * 1e-3));

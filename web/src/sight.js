@@ -1,52 +1,16 @@
-// What of the page is in sight.
+// What is drawn when, and which section is read.
 
-/** Distance (px) below and above the window from which on something is drawn. */
-const NEAR = 500;
-
-const waiting = new Map();
-
-/** Calls `draw(element)` once the element is near the window, or the page is printed. */
-export function whenNear(element, draw) {
-  waiting.set(element, draw);
-  watcher.observe(element);
+/** Calls `draw()` once the page has nothing else to do, or is printed. */
+export function whenIdle(draw) {
+  let isDrawn = false;
+  const show = () => {
+    if (!isDrawn) draw();
+    isDrawn = true;
+  };
+  addEventListener("beforeprint", show);
+  if (window.requestIdleCallback) requestIdleCallback(show, { timeout: 500 });
+  else setTimeout(show, 200);
 }
-
-const watcher = new IntersectionObserver(
-  (entries) => {
-    for (const { target, isIntersecting } of entries) if (isIntersecting) show(target);
-  },
-  { rootMargin: `${NEAR}px 0px` },
-);
-
-function show(element) {
-  const draw = waiting.get(element);
-  waiting.delete(element);
-  watcher.unobserve(element);
-  draw?.(element);
-}
-
-/** What waits outside of folded parts, which are neither seen nor printed. */
-function unfolded() {
-  return [...waiting.keys()].filter((element) => !element.closest("details:not([open])"));
-}
-
-// Before any other listener: what is drawn now must be drawn in the colours of paper.
-addEventListener("beforeprint", () => unfolded().forEach(show));
-
-const whenIdle = window.requestIdleCallback ?? ((action) => setTimeout(action, 200));
-
-/** Draws what is far below while there is nothing else to do, so that it is there when it is come to. */
-export function drawAhead() {
-  whenIdle(() => {
-    const [next] = unfolded();
-    if (!next) return;
-    show(next);
-    drawAhead();
-  });
-}
-
-// What is in a folded part waits until it is opened.
-addEventListener("toggle", drawAhead, true);
 
 /** Marks in a list of contents the section that is read: the last one that begins above the middle of the window. */
 export function followSections(nav) {

@@ -42,13 +42,10 @@ export async function open(browser, path, { width = 1300, colours = "light", who
   };
   await page.goto(address);
   await page.waitForSelector(":root[data-ready]", { state: "attached" });
-  // Below the first screen things are drawn later, and folded ones when they are opened.
+  // The arm is drawn after the text.
   if (whole) {
     await page.$$eval("#metrologist", (all) => all.forEach((it) => (it.open = true)));
-    for (const place of await page.$$("#arm, [data-chart]")) {
-      await place.scrollIntoViewIfNeeded();
-      await place.waitForSelector("canvas, .note, svg", { state: "attached" });
-    }
+    await page.waitForSelector("#arm > *", { state: "attached" });
     await page.evaluate(() => scrollTo(0, 0));
   }
   if (whole) await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });

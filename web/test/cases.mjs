@@ -37,7 +37,7 @@ export function calibrate(name, ...words) {
 
 /** What the terminal says of the example. */
 export function printed() {
-  return poecal("calibrate", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"), "--out", join(folder, "printed"), "--force");
+  return poecal("calibrate", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"), "--out", join(folder, "printed"), "--force", "--verbose");
 }
 
 /** The example's points with joint 4 counted the other way. */

@@ -6,10 +6,10 @@ import { createRequire } from "node:module";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { launch, open, skip } from "./browser.mjs";
-import { CASES, TREES, checked, folder, long, predicted, printed } from "./cases.mjs";
+import { CASES, TREES, checked, dataOf, folder, long, predicted, printed } from "./cases.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-/** Share of a canvas' pixels that must differ from its background: axes alone are less. */
+/** Share of a picture's pixels that must differ from its background: axes alone are less. */
 const DRAWN = 0.002;
 /** The browser and the program round differently. */
 const TIP_M = 1e-9;
@@ -20,17 +20,39 @@ before(async () => {
 });
 after(() => browser?.close());
 
-/** The share of each canvas' pixels that differ from its corner. */
-function drawnShares() {
-  return [...document.querySelectorAll("canvas:not(.paper)")].map((canvas) => {
+/** The share of a picture's pixels that differ from its corner. */
+async function drawnShare(page, place) {
+  const png = (await place.screenshot()).toString("base64");
+  return page.evaluate(async (png) => {
+    const bytes = Uint8Array.from(atob(png), (letter) => letter.charCodeAt(0));
+    const picture = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const copy = document.createElement("canvas");
-    [copy.width, copy.height] = [canvas.width, canvas.height];
+    [copy.width, copy.height] = [picture.width, picture.height];
     const context = copy.getContext("2d");
-    context.drawImage(canvas, 0, 0);
+    context.drawImage(picture, 0, 0);
     const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
-    const name = canvas.closest("[data-chart]")?.dataset.chart ?? "arm";
-    return { name, share: pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length };
-  });
+    return pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length;
+  }, png);
+}
+
+/** Of each chart, and of the arm, the least share that is drawn of what it is made of. */
+async function drawnShares(page) {
+  const places = [["arm", page.locator(".scene")]];
+  for (const chart of await page.locator("[data-chart]").all()) {
+    const graph = chart.locator(".graph:visible > svg, .cell > .note").first();
+    places.push([await chart.getAttribute("data-chart"), graph]);
+  }
+  const shares = [];
+  for (const [name, place] of places) shares.push({ name, share: await drawnShare(page, place) });
+  return shares;
+}
+
+/** Charts that lack dots, or for histograms bars, and the number of those that do not. */
+function emptyCharts() {
+  const graphs = [...document.querySelectorAll(".graph")].filter((it) => it.checkVisibility());
+  const marks = (it) => [...it.querySelectorAll(".dots, .bars, .line")].filter((path) => !path.closest("[hidden]")).reduce((sum, path) => sum + (path.getAttribute("d").match(/h0|l/g) ?? []).length, 0);
+  const empty = graphs.filter((it) => marks(it) < 2 || it.clientWidth < 100 || !it.getAttribute("aria-label"));
+  return { empty: empty.map((it) => it.getAttribute("aria-label")), count: graphs.length };
 }
 
 function valueOf(file, key) {
@@ -83,7 +105,7 @@ async function moveArm(page) {
 
 /** What is wider than its box, but for boxes that scroll, names in the picture, and drawings. */
 function cutOff() {
-  const scrolls = ".scroll, pre, select, .names, svg, .uplot";
+  const scrolls = ".scroll, pre, select, .names, svg";
   const all = [...document.querySelectorAll("main *")].filter((it) => it.checkVisibility() && !it.matches(scrolls) && !it.parentElement.closest(scrolls));
   const cut = all.filter((it) => it.clientWidth > 0 && it.scrollWidth > it.clientWidth + 1);
   return cut.map((it) => `${it.tagName}.${it.className} ${it.scrollWidth} in ${it.clientWidth}: ${it.textContent.slice(0, 60)}`);
@@ -114,15 +136,17 @@ for (const [k, [name, make]] of [...CASES, ...Object.entries(TREES)].entries()) 
         all.map((it) => ({ key: it.dataset.key, factor: Number(it.dataset.factor ?? 1), text: it.textContent })),
       );
       const count = checkText(figures, file);
-      const shares = await page.evaluate(drawnShares);
+      const shares = await drawnShares(page);
       const charts = new Set(shares.map((it) => it.name));
       assert.deepEqual([...charts].sort(), ["arm", "components", "histogram", "joints", "leverage", "normal", "rows"]);
       for (const { name, share } of shares) assert.ok(share > DRAWN, `${name}: ${share} of the pixels are drawn`);
+      const { empty, count: graphs } = await page.evaluate(emptyCharts);
+      assert.deepEqual(empty, []);
       // The still is for paper, and for browsers that do not draw the arm.
       const plots = await page.$$eval("svg.plot", (all) => all.filter((it) => it.checkVisibility()).map((it) => [it.querySelectorAll("circle, rect, polyline").length, it.clientWidth]));
       for (const [marks, width] of plots) assert.ok(marks > 1 && width > 100, `a plot has ${marks} marks, ${width} px wide`);
       assert.deepEqual(page.complaints, []);
-      console.log(`${name}: ${count} figures, ${shares.length} canvases, ${plots.length} plots, ${readFileSync(report).length} bytes`);
+      console.log(`${name}: ${count} figures, ${graphs} charts, ${plots.length} plots, ${readFileSync(report).length} bytes`);
     });
 
     test("says each joint's correction in words, and which unknowns are correlated", async () => {
@@ -178,8 +202,6 @@ for (const [k, [name, make]] of [...CASES, ...Object.entries(TREES)].entries()) 
           await looked.emulateMedia({ colorScheme: colours });
           const cut = await looked.evaluate(() => document.documentElement.scrollWidth - innerWidth);
           assert.ok(cut <= 0, `the page is ${cut} px too wide at ${width} px`);
-          // Charts follow the width of the page after it.
-          await looked.waitForFunction(`(${cutOff})().length === 0`, null, { timeout: 3000 }).catch(() => {});
           assert.deepEqual(await looked.evaluate(cutOff), [], `at ${width} px`);
           if (width === 400) assert.deepEqual(await looked.evaluate(cutCells), [], `cells at ${width} px`);
         }
@@ -240,7 +262,7 @@ describe("the page", { skip }, () => {
     const page = await open(browser, report, { colours: "dark" });
     await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
     await page.emulateMedia({ media: "print" });
-    const places = await page.$$eval("main svg.plot, main .uplot canvas, main table", (all) =>
+    const places = await page.$$eval("main svg.plot, main svg.graph, main table", (all) =>
       all.filter((it) => it.checkVisibility()).map((it) => [it.tagName, it.getBoundingClientRect().right - document.querySelector("main").getBoundingClientRect().left]));
     const wide = places.filter(([, right]) => right > PAPER_PX + 1);
     assert.ok(places.length > 10);
@@ -254,6 +276,8 @@ describe("the page", { skip }, () => {
     await page.goto(`file://${report}`);
     assert.ok((await page.locator("table").count()) > 8);
     assert.ok(await page.locator(".first svg.plot").isVisible());
+    await page.locator("#metrologist > summary").click();
+    for (const name of ["rows", "components", "joints", "histogram", "normal", "leverage"]) assert.ok(await page.locator(`[data-chart=${name}] .graph`).first().isVisible(), name);
     await context.close();
   });
 
@@ -295,17 +319,16 @@ describe("the page", { skip }, () => {
     await narrow.close();
   });
 
-  test("draws what is below before it is come to, and what is folded when it is opened", async () => {
+  test("has its charts from the beginning, and in a part that is opened by its link", async () => {
     const page = await open(browser, report, { whole: false });
-    const drawn = () => page.$$eval("[data-chart]", (all) => all.filter((it) => it.querySelector("canvas")).map((it) => it.dataset.chart));
+    const drawn = () => page.$$eval("[data-chart]", (all) => all.filter((it) => it.querySelector(".graph").checkVisibility()).map((it) => it.dataset.chart));
     const seen = ["components", "histogram", "joints", "rows"];
-    await page.waitForFunction((count) => document.querySelectorAll("[data-chart] canvas").length >= count, seen.length);
-    await page.waitForFunction((all) => all.every((name) => document.querySelector(`[data-chart=${name}] canvas`)), seen);
-    assert.equal(await page.evaluate(() => scrollY), 0);
     assert.deepEqual((await drawn()).sort(), seen);
+    assert.equal(await page.evaluate(() => scrollY), 0);
+    await page.waitForSelector(".scene canvas[data-drawn]", { state: "attached" });
     await page.locator("nav a[href='#metrologist']").click();
-    await page.waitForSelector("[data-chart=leverage] canvas");
-    await page.waitForSelector("[data-chart=normal] canvas");
+    await page.waitForSelector("[data-chart=leverage] .graph");
+    await page.waitForSelector("[data-chart=normal] .graph");
     assert.deepEqual(page.complaints, []);
     await page.close();
   });
@@ -343,25 +366,66 @@ describe("the page", { skip }, () => {
     await page.close();
   });
 
-  test("the cursor tells of the dot nearest to it, not of the row", async () => {
+  test("the cursor tells of the dot nearest to it, not of the row, and a click takes the arm there", async () => {
     const page = await open(browser, report);
     const chart = page.locator("[data-chart=rows]");
     await chart.scrollIntoViewIfNeeded();
-    const { rows } = await page.evaluate(() => JSON.parse(document.getElementById("report-data").textContent));
+    const { rows } = dataOf(join(folder, "elbow"));
     const worst = rows.error_mm.indexOf(Math.max(...rows.error_mm));
-    const box = await chart.locator(".u-over").boundingBox();
-    const [first, last] = [rows.number[0], rows.number[rows.number.length - 1]];
-    const room = 0.02 * (last - first);
-    const x = box.x + (box.width * (rows.number[worst] - first + room)) / (last - first + 2 * room);
-    const y = box.y + box.height * (1 - 1 / 1.05);
+    const box = await chart.locator(".graph > svg").boundingBox();
+    // The axes of the dots, by the labels of their ticks.
+    const place = (axis, share, value) =>
+      chart.locator(`.graph ${axis} text:not(.title)`).evaluateAll(
+        (all, [share, value]) => {
+          const ticks = all.map((it) => [Number(it.textContent), parseFloat(it.getAttribute(share)) / 100]);
+          const [[a, from], [b, to]] = [ticks[0], ticks.at(-1)];
+          return from + ((to - from) * (value - a)) / (b - a);
+        },
+        [share, value],
+      );
+    const x = box.x + box.width * (await place(".x", "x", rows.number[worst]));
+    const y = box.y + box.height * (await place(".y", "y", rows.error_mm[worst]));
     // A dozen pixels aside, other rows are nearer by their number.
     await page.mouse.move(x + 12, y + 5);
     const told = await chart.locator(".readout").textContent();
     assert.ok(told.startsWith(`${rows.place[worst]}, `), `told of ${told}, expected ${rows.place[worst]}`);
-    assert.ok(await chart.locator(".meant").isVisible());
+    const mark = await chart.locator(".meant").boundingBox();
+    assert.ok(Math.hypot(mark.x + mark.width / 2 - x, mark.y + mark.height / 2 - y) < 2, `marked at ${mark.x}, ${mark.y}`);
+    await page.mouse.click(x, y);
+    assert.ok((await page.locator(".panel .state").first().textContent()).startsWith(`${rows.place[worst]}, `));
     await page.mouse.move(x, box.y + box.height / 4);
     const away = await chart.locator(".readout").textContent();
+    assert.equal(away, "");
     console.log(`near the worst: ${told}; between the dots: "${away}"`);
+    await page.close();
+  });
+
+  test("the residual that is chosen is drawn over the joints, with its axis and its curve", async () => {
+    const page = await open(browser, report);
+    const chart = page.locator("[data-chart=joints]");
+    const { rows, joints } = dataOf(join(folder, "elbow"));
+    const cell = chart.locator(".cell").nth(2);
+    const dots = () => cell.locator(".dots").evaluateAll((all) => all.map((it) => it.getAttribute("d")).join());
+    const spoken = () => cell.locator(".graph").getAttribute("aria-label");
+    const before = [await dots(), await spoken()];
+    await chart.getByLabel("Residual").selectOption("position x");
+    assert.match(await spoken(), /^Residual position x over joint3; the smoothed curve swings by [\d.]+ mm, with a standard deviation of [\d.]+ mm\.$/);
+    assert.equal(await cell.locator(".graph .y:not([hidden])").count(), 1);
+    const drawn = (await dots()).match(/M\d+ \d+h0/g).length;
+    const believed = rows.sets.filter((it) => !(it & 2)).length;
+    assert.ok(drawn > 0.95 * believed && drawn <= believed, `${drawn} dots of ${believed} rows`);
+    // Along the vertical axis a dot lies where its residual is.
+    const { low, high } = await cell.locator(".y:not([hidden])").evaluate((it) => ({ ...it.dataset }));
+    const first = rows.sets.findIndex((it) => it === 4);
+    const [, across, down] = (await cell.locator(".dots.s0").getAttribute("d")).match(/M(\d+) (\d+)h0/).map(Number);
+    const view = await cell.locator(".graph > svg").evaluate((it) => [it.viewBox.baseVal.width, it.viewBox.baseVal.height]);
+    assert.ok(Math.abs(down / view[1] - (high - rows.columns["0.0"][first]) / (high - low)) < 0.01);
+    const reading = await cell.locator(".x").evaluate((it) => ({ ...it.dataset }));
+    assert.ok(Math.abs(across / view[0] - (rows.values[joints[2].reading][first] - reading.low) / (reading.high - reading.low)) < 0.01);
+    await chart.getByLabel("Residual").selectOption({ index: 0 });
+    assert.equal(await spoken(), before[1]);
+    assert.equal((await dots()).match(/h0/g).length, before[0].match(/h0/g).length);
+    assert.deepEqual(page.complaints, []);
     await page.close();
   });
 

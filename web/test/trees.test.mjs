@@ -10,7 +10,7 @@ import { CASES, TREES, dataOf, folder, predicted } from "./cases.mjs";
 
 /** The browser and the program round differently. */
 const SAME_M = 1e-9;
-/** The page has six digits of each reading and residual. */
+/** The page has readings and residuals in steps. */
 const ROUNDED_MM = 0.05;
 
 let browser;
@@ -134,19 +134,6 @@ describe("a slider", { skip }, () => {
       for (const end of same) assert.deepEqual(later[end], earlier[end], `${joint} moves ${end}`);
     }
     await page.close();
-  });
-
-  test("of the other arm has no residual along its motion", () => {
-    const { rows, targets, readings } = dataOf(join(folder, "torso"));
-    const counted = (joint, target) => {
-      const motion = rows.motion[readings.findIndex((it) => it.name === joint)];
-      return motion.filter((value, row) => value !== null && targets[rows.target[row]].name === target).length;
-    };
-    const rowsOf = (target) => rows.target.filter((it) => targets[it].name === target).length;
-    assert.deepEqual([counted("right2", "left"), counted("left2", "right")], [0, 0]);
-    assert.deepEqual([counted("left2", "left"), counted("right2", "right")], [rowsOf("left"), rowsOf("right")]);
-    // It moves eyes, chest and hands alike.
-    assert.deepEqual([counted("torso2", "left"), counted("torso2", "right")], [0, 0]);
   });
 });
 

@@ -16,16 +16,19 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::text::visible;
 use poecal_results::calibration_file::{CalibrationFile, ScrewEntry};
 use poecal_results::residuals::{ResidualRow, Residuals};
-use poecal_results::shapes::Shapes;
+use poecal_results::shapes::{Shapes, base64};
 
-/// Rows that charts draw at most; how many of them are chosen for being suspected, and for being far off.
+/// Rows that charts draw at most, and small charts; which part of them is chosen for being suspected, and for being far off.
 pub(crate) const MOST_ROWS: usize = 4000;
-const SUSPECTED: usize = 400;
-const WORST: usize = 100;
+const FEW_ROWS: usize = 600;
+const SUSPECTED: usize = 10;
+const WORST: usize = 40;
 /// Digits of numbers that are drawn.
 const DIGITS: i32 = 6;
 /// The largest power of ten that is exact.
 const EXACT: i32 = 22;
+/// What stands for no number in three bytes.
+const NONE: u32 = 0xff_ffff;
 
 #[derive(Serialize)]
 struct Data<'a> {
@@ -80,34 +83,81 @@ struct ReadingData<'a> {
     unit: &'static str,
 }
 
+/// A row that charts draw.
+pub(crate) struct Drawn {
+    /// Its place among the drawn rows, and among all.
+    pub(crate) at: usize,
+    pub(crate) index: usize,
+    pub(crate) held_out: bool,
+    pub(crate) suspected: bool,
+    /// Whether it is one of the evenly chosen, which stand for all.
+    pub(crate) even: bool,
+    /// Whether it is drawn in small charts.
+    pub(crate) few: bool,
+}
+
+/// Numbers of three bytes each, in steps from the least of them, in base64; the largest is none.
+#[derive(Serialize)]
+struct Column {
+    low: f64,
+    step: f64,
+    bytes: String,
+}
+
+impl Column {
+    fn of_numbers(values: &[Option<f64>]) -> Self {
+        let values: Vec<Option<f64>> = values.iter().map(|it| it.map(rounded)).collect();
+        let finite = || values.iter().flatten().filter(|it| it.is_finite());
+        let low = finite().fold(f64::INFINITY, |a, b| a.min(*b));
+        let high = finite().fold(f64::NEG_INFINITY, |a, b| a.max(*b));
+        let step = (high - low) / f64::from(NONE - 1);
+        if step > 0.0 { Column::new(&values, low, step) } else { Column::new(&values, low, 1.0) }
+    }
+
+    fn of_counts(values: impl Iterator<Item = usize>) -> Self {
+        Column::new(&values.map(|it| Some(it as f64)).collect::<Vec<_>>(), 0.0, 1.0)
+    }
+
+    fn new(values: &[Option<f64>], low: f64, step: f64) -> Self {
+        let number = |value: &Option<f64>| {
+            let value = value.filter(|it| it.is_finite());
+            value.map_or(NONE, |it| (((it - low) / step).round() as u32).min(NONE - 1))
+        };
+        let bytes: Vec<u8> =
+            values.iter().flat_map(|it| number(it).to_be_bytes().into_iter().skip(1)).collect();
+        Column { low: if low.is_finite() { low } else { 0.0 }, step, bytes: base64(&bytes) }
+    }
+}
+
 /// The drawn rows, by column.
-#[derive(Default, Serialize)]
+#[derive(Serialize)]
 struct RowData {
-    /// Number in the order read, from 1.
-    number: Vec<usize>,
-    place: Vec<String>,
-    held_out: Vec<u8>,
-    /// Whether the row is one of the evenly chosen, which stand for all.
-    even: Vec<u8>,
-    suspected: Vec<u8>,
-    target: Vec<usize>,
+    /// Number in the order read, from 1; none if all are drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    number: Option<Column>,
+    /// What stands before the line of each file, and the lines; none of which file it is if there is only one.
+    files: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<Vec<usize>>,
+    line: Column,
+    /// A digit for each row: 1 if it was held out, 2 more if it is suspected, 4 more if it is drawn in small charts.
+    sets: String,
     /// None if there is only one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<Vec<usize>>,
+    /// Likewise.
     #[serde(skip_serializing_if = "Option::is_none")]
     instrument: Option<Vec<usize>>,
     /// The error that is told of each row, in the unit of `lead`: millimetres, unless no length was measured.
-    error_mm: Vec<Option<f64>>,
+    error_mm: Column,
     /// Residuals of the quantities that any row measured, in the axes of the row's instrument.
     residuals: Vec<ResidualData>,
-    leverage: Vec<Option<f64>>,
-    studentized: Vec<Option<f64>>,
-    values: Vec<Vec<f64>>,
+    values: Vec<Column>,
 }
 
 /// Residuals of a quantity, by component; of vectors in the axes of the row's instrument.
 #[derive(Serialize)]
 struct ResidualData {
-    #[serde(skip)]
-    quantity: Quantity,
     name: &'static str,
     unit: &'static str,
     components: Vec<ComponentData>,
@@ -116,11 +166,16 @@ struct ResidualData {
 #[derive(Serialize)]
 struct ComponentData {
     name: String,
-    values: Vec<Option<f64>>,
+    values: Column,
 }
 
 /// The data, safe within a script element.
-pub(crate) fn json(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<String> {
+pub(crate) fn json(
+    file: &CalibrationFile,
+    residuals: &Residuals,
+    shapes: &Shapes,
+    drawn: &[Drawn],
+) -> Result<String> {
     let robot = file.robot()?;
     let joints = file.joints.iter().enumerate().map(|(k, joint)| {
         let sampled = file.coverage.iter().find(|found| found.joint == joint.name);
@@ -151,7 +206,7 @@ pub(crate) fn json(file: &CalibrationFile, residuals: &Residuals, shapes: &Shape
         draws_instruments: draws_instruments(file),
         readings: readings_of(residuals).map(reading).collect(),
         lead: LeadData { name: lead.name(), unit: lead.unit() },
-        rows: RowData::of(residuals, &lead),
+        rows: RowData::of(residuals, &lead, drawn),
         count: residuals.rows().len(),
         shapes: shapes.shapes.iter().map(ShapeData::of).collect(),
         meshes: shapes.meshes.iter().map(MeshData::of).collect(),
@@ -170,85 +225,93 @@ pub(crate) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut
     }
 }
 
-/// The rows that are drawn, in order, and whether each is one of the evenly chosen.
-pub(crate) fn drawn(residuals: &Residuals) -> Vec<(usize, bool)> {
-    let count = residuals.rows().len();
-    if count <= MOST_ROWS {
-        return (0..count).map(|row| (row, true)).collect();
+/// Of some rows those that are drawn, and whether each is one of the evenly chosen: all, or a tenth for being suspected, a fortieth for being
+/// far off, and the others at equal distances.
+fn thinned(residuals: &Residuals, rows: &[usize], most: usize) -> Vec<(usize, bool)> {
+    let count = rows.len();
+    if count <= most {
+        return rows.iter().map(|row| (*row, true)).collect();
     }
     let suspected = |row: usize| residuals.rows().get(row)?.judged.map(|judged| judged.suspected);
     let lead = Lead::of(residuals);
     let error = |row: usize| residuals.rows().get(row).and_then(|row| lead.error(row)).unwrap_or_default();
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
-        (0..count).partition(|&row| suspected(row) == Some(true));
-    for (rows, most) in [(&mut worst, SUSPECTED), (&mut others, WORST)] {
+        rows.iter().partition(|&&row| suspected(row) == Some(true));
+    let shares = [most / SUSPECTED, most / WORST];
+    for (rows, most) in [(&mut worst, shares[0]), (&mut others, shares[1])] {
         keep_first(rows, most, |&a, &b| error(b).total_cmp(&error(a)).then(a.cmp(&b)));
     }
     worst.extend(others);
-    let evenly = MOST_ROWS - SUSPECTED - WORST;
-    let mut rows: Vec<(usize, bool)> = (0..evenly).map(|k| (k * count / evenly, true)).collect();
-    rows.extend(worst.into_iter().map(|row| (row, false)));
+    let evenly = most - shares[0] - shares[1];
+    let mut chosen: Vec<(usize, bool)> =
+        (0..evenly).filter_map(|k| Some((*rows.get(k * count / evenly)?, true))).collect();
+    chosen.extend(worst.into_iter().map(|row| (row, false)));
     // A row that is both counts as evenly chosen.
-    rows.sort_unstable_by_key(|&(row, even)| (row, !even));
-    rows.dedup_by_key(|found| found.0);
-    rows
+    chosen.sort_unstable_by_key(|&(row, even)| (row, !even));
+    chosen.dedup_by_key(|found| found.0);
+    chosen
+}
+
+/// The rows that are drawn, in order.
+pub(crate) fn drawn(residuals: &Residuals) -> Vec<Drawn> {
+    let all: Vec<usize> = (0..residuals.rows().len()).collect();
+    let chosen = thinned(residuals, &all, MOST_ROWS);
+    let rows: Vec<usize> = chosen.iter().map(|it| it.0).collect();
+    let few = thinned(residuals, &rows, FEW_ROWS);
+    let drawn = |(at, &(index, even)): (usize, &(usize, bool))| {
+        let row = residuals.rows().get(index)?;
+        let suspected = row.judged.is_some_and(|judged| judged.suspected);
+        let few = few.binary_search_by_key(&index, |it| it.0).is_ok();
+        Some(Drawn { at, index, held_out: row.held_out, suspected, even, few })
+    };
+    chosen.iter().enumerate().filter_map(drawn).collect()
 }
 
 impl RowData {
-    fn of(residuals: &Residuals, lead: &Lead) -> Self {
-        let mut rows = RowData {
-            residuals: residuals.measured().into_iter().map(ResidualData::new).collect(),
-            instrument: (!residuals.stations.is_empty()).then(Vec::new),
-            ..RowData::default()
+    fn of(residuals: &Residuals, lead: &Lead, drawn: &[Drawn]) -> Self {
+        let rows: Vec<(usize, &ResidualRow)> =
+            drawn.iter().filter_map(|it| Some((it.index, residuals.rows().get(it.index)?))).collect();
+        let column = |value: &dyn Fn(&ResidualRow) -> Option<f64>| {
+            Column::of_numbers(&rows.iter().map(|(_, row)| value(row)).collect::<Vec<_>>())
         };
-        rows.values = vec![Vec::new(); residuals.readings.len()];
-        for (index, even) in drawn(residuals) {
-            if let Some(row) = residuals.rows().get(index) {
-                rows.push(residuals, (index, row, even), lead.error(row));
-            }
-        }
-        rows
-    }
-
-    fn push(
-        &mut self,
-        residuals: &Residuals,
-        (index, row, even): (usize, &ResidualRow, bool),
-        error: Option<f64>,
-    ) {
-        self.number.push(index + 1);
-        self.place.push(visible(&place(residuals, index)).into_owned());
-        self.held_out.push(u8::from(row.held_out));
-        self.even.push(u8::from(even));
-        self.suspected.push(u8::from(row.judged.is_some_and(|judged| judged.suspected)));
-        self.target.push(row.target);
-        if let Some(instrument) = &mut self.instrument {
-            instrument.push(row.station);
-        }
-        self.error_mm.push(error.map(rounded));
-        self.residuals.iter_mut().for_each(|residual| residual.push(row));
-        self.leverage.push(row.judged.map(|judged| rounded(judged.leverage)).filter(|it| it.is_finite()));
-        self.studentized
-            .push(row.judged.map(|judged| rounded(judged.studentized)).filter(|it| it.is_finite()));
-        for (column, &value) in self.values.iter_mut().zip(residuals.values(index)) {
-            column.push(rounded(value));
-        }
-    }
-}
-
-impl ResidualData {
-    fn new(quantity: Quantity) -> Self {
-        let components = (0..quantity.components())
-            .map(|k| ComponentData { name: component_words(quantity, k), values: Vec::new() });
-        let (name, unit) = (quantity.name(), sign(quantity.unit()));
-        ResidualData { quantity, name, unit, components: components.collect() }
-    }
-
-    fn push(&mut self, row: &ResidualRow) {
-        let errors = row.errors.get(self.quantity);
-        for (k, component) in self.components.iter_mut().enumerate() {
-            let value = errors.as_ref().and_then(|errors| errors.residual().get(k)).copied();
-            component.values.push(value.filter(|value| !value.is_nan()).map(rounded));
+        let indices = |several: bool, index: fn(&ResidualRow) -> usize| {
+            several.then(|| rows.iter().map(|(_, row)| index(row)).collect())
+        };
+        let residual = |quantity: Quantity| {
+            let component = |k: usize| ComponentData {
+                name: component_words(quantity, k),
+                values: column(&|row| row.errors.get(quantity)?.residual().get(k).copied()),
+            };
+            let components = (0..quantity.components()).map(component).collect();
+            ResidualData { name: quantity.name(), unit: sign(quantity.unit()), components }
+        };
+        let value = |k: usize| {
+            let values: Vec<Option<f64>> =
+                rows.iter().map(|(index, _)| residuals.values(*index).get(k).copied()).collect();
+            Column::of_numbers(&values)
+        };
+        let digit = |it: &Drawn| {
+            let digit = u8::from(it.held_out) + 2 * u8::from(it.suspected) + 4 * u8::from(it.few);
+            char::from(b'0' + digit)
+        };
+        // Rows that came from no file are those of a nameless one.
+        let files: Vec<String> =
+            residuals.files.iter().map(|file| visible(&before_line(residuals, file)).into_owned()).collect();
+        let is_part = drawn.len() < residuals.rows().len();
+        let line = |(index, row): &(usize, &ResidualRow)| {
+            if residuals.file(row).is_empty() { index + 1 } else { row.line as usize }
+        };
+        RowData {
+            number: is_part.then(|| Column::of_counts(rows.iter().map(|it| it.0 + 1))),
+            files: if files.is_empty() { vec![before_line(residuals, "")] } else { files },
+            file: indices(residuals.files.len() > 1, |row| row.file),
+            line: Column::of_counts(rows.iter().map(line)),
+            sets: drawn.iter().map(digit).collect(),
+            target: indices(residuals.targets.len() > 1, |row| row.target),
+            instrument: indices(!residuals.stations.is_empty(), |row| row.station),
+            error_mm: column(&|row| lead.error(row)),
+            residuals: residuals.measured().into_iter().map(residual).collect(),
+            values: (0..residuals.readings.len()).map(value).collect(),
         }
     }
 }
@@ -261,9 +324,9 @@ fn straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
     (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }
 
-/// As many digits as a picture can show. A whole number of that many digits over a power of ten that is exact rounds as text does, in
-/// 25 ns instead of 450: 1,500 rows of 15 columns take 0.6 ms instead of 10, where all else of the page takes 1.
-fn rounded(value: f64) -> f64 {
+/// As many digits as a picture can show, which a page from files has too. A whole number of that many digits over a power of ten that is
+/// exact rounds as text does, in 25 ns instead of 450: 1,500 rows of 15 columns take 0.6 ms instead of 10, where all else of the page takes 1.
+pub(crate) fn rounded(value: f64) -> f64 {
     let places = (DIGITS - 1).saturating_sub(value.abs().log10().floor() as i32);
     if !(0..=EXACT).contains(&places) {
         return format!("{value:.*e}", DIGITS as usize - 1).parse().unwrap_or(value);
@@ -272,11 +335,15 @@ fn rounded(value: f64) -> f64 {
     (value * scale).round_ties_even() / scale
 }
 
+/// What stands before the line of a row, or before its number if it is from no file.
+fn before_line(residuals: &Residuals, file: &str) -> String {
+    if file.is_empty() { "row ".to_owned() } else { format!("{}:", short(&residuals.files, file)) }
+}
+
 /// The place of a row: its file and line, or its number.
 pub(crate) fn place(residuals: &Residuals, index: usize) -> String {
     let Some(row) = residuals.rows().get(index) else { return String::new() };
-    match residuals.file(row) {
-        "" => format!("row {}", index + 1),
-        file => format!("{}:{}", short(&residuals.files, file), row.line),
-    }
+    let file = residuals.file(row);
+    let line = if file.is_empty() { index + 1 } else { row.line as usize };
+    format!("{}{line}", before_line(residuals, file))
 }

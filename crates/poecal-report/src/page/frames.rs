@@ -20,14 +20,14 @@ pub(crate) struct FrameData<'a> {
     /// Its name as it is shown.
     name: Cow<'a, str>,
     /// The joint that moves its body; none for the base.
-    on: Option<usize>,
+    pub(crate) on: Option<usize>,
     /// Its pose in the base at zero joint values.
-    pose: PoseEntry,
+    pub(crate) pose: PoseEntry,
     /// The same in the nominal model; none of a target in the tip frame.
     nominal_pose: Option<PoseEntry>,
     /// What an instrument is, if it has no frame of its own: anchor, socket, plane, sphere, direction, pair.
     #[serde(skip_serializing_if = "Option::is_none")]
-    kind: Option<&'static str>,
+    pub(crate) kind: Option<&'static str>,
     /// Radius of a sphere, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     radius_m: Option<f64>,

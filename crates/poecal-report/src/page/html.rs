@@ -150,8 +150,3 @@ pub(crate) fn folded(summary: &str, table: &HtmlTable) -> Markup {
 pub(crate) fn plots(plots: &[Markup], caption: impl Render) -> Markup {
     html! { @if !plots.is_empty() { figure { div.plots { @for plot in plots { (plot) } } figcaption { (caption) } } } }
 }
-
-/// A place that the script fills with a chart.
-pub(crate) fn chart(name: &str, title: &str, caption: &str) -> Markup {
-    html! { figure.chart data-chart=(name) { h3 { (title) } div.drawing {} figcaption { (caption) } } }
-}

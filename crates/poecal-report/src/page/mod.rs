@@ -6,7 +6,9 @@
 
 mod advice;
 mod answer;
+mod by_joint;
 mod certificate;
+mod charts;
 mod compensation;
 mod corners;
 mod corrected;
@@ -21,6 +23,7 @@ mod joins;
 mod joints;
 mod lead;
 mod method;
+mod motion;
 mod paper;
 mod pictures;
 mod plan;
@@ -37,6 +40,7 @@ pub use paper::{Attest, certificate_page, visit_page};
 pub use plan::plan_page;
 pub use validation::validation_page;
 
+use self::charts::Charts;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use poecal_calibrate::Statistic;
@@ -59,7 +63,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 
 /// The report of a calibration as an HTML page that is complete in itself, without opening any file: of the shapes in a URDF it has boxes,
 /// cylinders and spheres. All of it can be read without its script, which adds the
-/// robot in three dimensions and charts of the rows. In pieces, since most of it is the same for every calibration.
+/// robot in three dimensions and says what the cursor is on in charts. In pieces, since most of it is the same for every calibration.
 ///
 /// ```
 /// # mod poecal {
@@ -92,7 +96,9 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
 /// As [`calibration_page`].
 pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shapes: &Shapes) -> Result<Page> {
     check(file, residuals)?;
-    let data = data::json(file, residuals, shapes)?;
+    let drawn = data::drawn(residuals);
+    let data = data::json(file, residuals, shapes, &drawn)?;
+    let charts = Charts::new(residuals, &drawn);
     let title = format!("Calibration of {}", file.robot.name);
     let head = head(&title, &file.record, &file.poecal_version);
     let body = html! {
@@ -106,10 +112,10 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
             (corrected::sections(file))
             (compensation::sections(file))
             (pictures::sections(file, residuals))
-            (rows::sections(file, residuals))
+            (rows::sections(file, &charts)?)
             (trust::sections(file))
             (method::sections(file))
-            (for_the_metrologist(file, residuals))
+            (for_the_metrologist(file, &charts))
         }
     };
     Ok(vec![
@@ -124,7 +130,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
 }
 
 /// What only few readers need, folded.
-fn for_the_metrologist(file: &CalibrationFile, residuals: &Residuals) -> Markup {
+fn for_the_metrologist(file: &CalibrationFile, charts: &Charts<'_>) -> Markup {
     html! {
         section aria-labelledby="metrologist-title" {
             details #metrologist {
@@ -132,7 +138,7 @@ fn for_the_metrologist(file: &CalibrationFile, residuals: &Residuals) -> Markup 
                 (corrected::tried(file))
                 (trust::for_the_metrologist(file))
                 h3 { "Distribution and weight of the rows" }
-                (rows::for_the_metrologist(residuals))
+                (rows::for_the_metrologist(charts))
                 (method::for_the_metrologist(file))
             }
         }

@@ -2,16 +2,19 @@
 
 use maud::{Markup, Render, html};
 
-use super::data::{MOST_ROWS, drawn, keep_first, place};
+use super::by_joint::by_joint;
+use super::charts::{Charts, chart};
+use super::data::{MOST_ROWS, keep_first, place};
 use super::devices::devices;
 use super::errors::{error_table, error_words};
-use super::html::{HtmlTable, capital, chart, count, decimal, figure, figure_or, folded, section};
+use super::html::{HtmlTable, capital, count, decimal, figure, figure_or, folded, section};
 use super::lead::{Lead, component_words, sign, spaced};
 use super::{figures, readings_of, short};
 use crate::summary::delivered;
 use crate::table::{further_words, number};
 use poecal_calibrate::Statistic;
 use poecal_model::measurement::{Device, Quantity};
+use poecal_numerics::error::Result;
 use poecal_numerics::threads;
 use poecal_results::calibration_file::{CalibrationFile, OutlierSet, RepeatabilityEntry};
 use poecal_results::residuals::{ResidualRow, Residuals, RowDiagnostics};
@@ -22,13 +25,17 @@ const LEVERAGES: usize = 10;
 /// Parts of a joint's values by which errors are stated.
 const PARTS: usize = 6;
 
-pub(crate) fn sections(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    html! { (errors(file, residuals)) (suspects(file, residuals)) (repeatability(file, residuals)) }
+pub(crate) fn sections(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
+    let residuals = charts.residuals;
+    Ok(html! { (errors(file, charts)?) (suspects(file, residuals)) (repeatability(file, residuals)) })
 }
 
-fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let (shown, all) = (drawn(residuals).len(), residuals.rows().len());
-    let lead = Lead::of(residuals).name();
+fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
+    let residuals = charts.residuals;
+    let (shown, all) = (charts.rows.len(), residuals.rows().len());
+    let few = charts.rows.iter().filter(|row| row.few).count();
+    let lead = charts.lead.name();
+    let by_joint = by_joint(charts, file)?;
     let content = html! {
         p { "Residual of each measurement: measured minus predicted by the " (delivered(file)) " model" (axes_words(file, residuals)) "." }
         @if shown < all {
@@ -37,18 +44,30 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
                 (MOST_ROWS) " at most. Histogram, normal plot and smoothed curves are of the evenly chosen ones alone. Tables count every row."
             }
         }
-        (chart("rows", "By row", "A dot for each row in the order read. A drift or a step shows a change during the session: a tool knocked, a device moved."))
-        (chart("components", "By component", &component_note(residuals)))
+        @if few < shown { p.note { "The small charts, by component and by joint, draw " (few) " of these rows, chosen likewise." } }
+        (chart(
+            "rows",
+            "By row",
+            "A dot for each row in the order read. A drift or a step shows a change during the session: a tool knocked, a device moved.",
+            &charts.by_row(),
+        ))
+        (chart("components", "By component", &component_note(residuals), &charts.by_component()))
         (folded("The components as numbers", &component_table(residuals)))
         (chart(
             "joints",
             "By joint",
             "Residuals over each joint's value, with a smoothed curve and one standard deviation to each side of it. A periodic curve (once or twice a turn, or with the period of a gear) is an error of a \
              gear or an encoder that is not modelled; a curve that follows the load is a flexible link.",
+            &by_joint,
         ))
         (folded("Errors by parts of each joint's values", &joint_table(file, residuals)))
         div.pair {
-            (chart("histogram", "How the errors are spread", &format!("Errors of {lead} in fitted and held-out rows, each as shares of its own rows.")))
+            (chart(
+                "histogram",
+                "How the errors are spread",
+                &format!("Errors of {lead} in fitted and held-out rows, each as shares of its own rows."),
+                &charts.histogram(),
+            ))
             figure {
                 h3 { "Fitted against held-out rows" }
                 div.plots { (figures::sets(file, residuals)) }
@@ -57,12 +76,12 @@ fn errors(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         }
         details { summary { "The errors of both sets as numbers" } (set_tables(file)) }
     };
-    section("errors", "Errors of the rows", &content)
+    Ok(section("errors", "Errors of the rows", &content))
 }
 
 /// What only few readers need: whether the errors are noise, and which rows decide much of the result.
-pub(crate) fn for_the_metrologist(residuals: &Residuals) -> Markup {
-    let lead = Lead::of(residuals).name();
+pub(crate) fn for_the_metrologist(charts: &Charts<'_>) -> Markup {
+    let lead = charts.lead.name();
     html! {
         div.pair {
             (chart(
@@ -72,15 +91,17 @@ pub(crate) fn for_the_metrologist(residuals: &Residuals) -> Markup {
                     "Components of {lead}, ordered, against where those of a normal distribution would be. On the line they are noise; ends \
                      that bend away are gross errors or errors that the model does not describe."
                 ),
+                &charts.normal(),
             ))
             (chart(
                 "leverage",
                 "Leverage",
                 "Fitted rows, in the fit of the joint axes. To the right: rows of high leverage. Above: rows of large residuals, in units of their own standard deviation. \
                  A row with both decides much of the result, unless it is suspected and has almost no weight.",
+                &charts.leverage(),
             ))
         }
-        @if let Some(table) = leverage_table(residuals) { (folded("The fitted rows of largest leverage", &table)) }
+        @if let Some(table) = leverage_table(charts.residuals) { (folded("The fitted rows of largest leverage", &table)) }
     }
 }
 

@@ -4,6 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     Linear,
+    /// The same from the least value to the largest, and not from tick to tick.
+    Close,
     /// Powers of ten.
     Log,
     /// Whole numbers from 0.
@@ -33,7 +35,8 @@ impl Axis {
     pub(crate) fn ruler(&self, values: impl Iterator<Item = f64>) -> Ruler {
         let values: Vec<f64> = values.chain(self.includes.iter().copied()).collect();
         match self.scale {
-            Scale::Linear => Ruler::linear(&values),
+            Scale::Linear => Ruler::linear(&values, true),
+            Scale::Close => Ruler::linear(&values, false),
             Scale::Log => Ruler::log(&values),
             Scale::Count => Ruler::count(&values),
         }
@@ -83,6 +86,11 @@ impl Ruler {
         Some(Place { share: self.share(along.clamp(self.low, self.high)), inside })
     }
 
+    /// Its ends; of a logarithmic axis powers of ten.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
     fn share(&self, along: f64) -> f64 {
         (along - self.low) / (self.high - self.low)
     }
@@ -111,7 +119,7 @@ impl Ruler {
         ruler
     }
 
-    fn linear(values: &[f64]) -> Self {
+    fn linear(values: &[f64], to_ticks: bool) -> Self {
         let (mut low, mut high) = range(values).unwrap_or((0.0, 1.0));
         // Values that differ by rounding are one value, with room around it.
         if high - low <= 1e-9 * low.abs().max(high.abs()) {
@@ -120,8 +128,17 @@ impl Ruler {
         }
         let step = step(high - low);
         // Values that differ from a tick by rounding lie on it.
-        let (low, high) = ((low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step);
-        Ruler::stepped(low, high, step).padded()
+        let [first, last] = [(low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step];
+        if to_ticks {
+            return Ruler::stepped(first, last, step).padded();
+        }
+        let mut ruler = Ruler::stepped(first, last, step);
+        let along = |share: f64| first + share * (last - first);
+        let span = high - low;
+        ruler.ticks.iter_mut().for_each(|it| it.0 = (along(it.0) - low) / span);
+        ruler.ticks.retain(|it| (-1e-9..=1.0 + 1e-9).contains(&it.0));
+        (ruler.low, ruler.high) = (low, high);
+        ruler.padded()
     }
 
     fn count(values: &[f64]) -> Self {
@@ -222,6 +239,8 @@ mod tests {
     fn ticks_are_round_numbers() {
         assert_eq!(labels(Scale::Linear, &[-1.2, 3.9]), ["−2", "0", "2", "4"]);
         assert_eq!(labels(Scale::Linear, &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(labels(Scale::Close, &[-1.2, 3.9]), ["0", "2"]);
+        assert_eq!(labels(Scale::Close, &[0.0, 1.0]), labels(Scale::Linear, &[0.0, 1.0]));
         assert_eq!(labels(Scale::Count, &[0.0, 7.0]), ["0", "2", "4", "6"]);
         assert_eq!(labels(Scale::Log, &[0.02, 30.0]), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(labels(Scale::Log, &[0.03, 0.04]), ["0.01", "0.02", "0.05", "0.1"]);
@@ -256,7 +275,7 @@ mod tests {
         let odd = [0.0, -0.0, 1.0, -1.0, 5e-324, -1e-300, 1e-18, 1e300, f64::MAX, f64::MIN, f64::INFINITY];
         let odd = odd.into_iter().chain([f64::NEG_INFINITY, f64::NAN, 1.0 + f64::EPSILON, 1e17]);
         let odd: Vec<f64> = odd.collect();
-        for scale in [Scale::Linear, Scale::Log, Scale::Count] {
+        for scale in [Scale::Linear, Scale::Close, Scale::Log, Scale::Count] {
             let sets = odd.iter().flat_map(|a| odd.iter().map(move |b| vec![*a, *b]));
             for values in sets.chain([vec![], odd.clone()]) {
                 let ruler = ruler(scale, &values);

@@ -11,20 +11,24 @@ mod arms;
 mod axis;
 mod dots;
 mod frame;
+mod graph;
 mod heat;
 mod joined;
 mod line;
 mod ranges;
+mod smooth;
 mod strips;
 mod svg;
 
 pub use arms::{ArmPlot, Arms};
 pub use axis::{Axis, Scale};
 pub use dots::{DotPlot, Dots};
+pub use graph::{Graph, Shape, Side, Spots};
 pub use heat::{HeatCell, HeatMap};
 pub use joined::{Entry, JoinPlot, List};
 pub use line::{Band, Line, LinePlot};
 pub use ranges::{RangePlot, RangeRow};
+pub use smooth::{Curve, normal_quantile, quantile};
 pub use strips::{CELLS, Strip, StripPlot};
 
 /// A plot and the name of its file, without the extension.

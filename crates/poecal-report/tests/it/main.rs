@@ -5,5 +5,6 @@
 mod compared;
 mod compensation_map;
 mod quantities;
+mod report_charts;
 mod report_page;
 mod report_places;

@@ -17,6 +17,7 @@ use self::collector::{MOST_TRIANGLES, Triangles};
 use self::find::Folders;
 
 pub use self::capsules::capsules_of;
+pub use self::simplify::base64;
 use self::simplify::fitted;
 pub use self::written::Mesh;
 use super::calibration_file::CalibrationFile;

@@ -134,7 +134,8 @@ fn written(mesh: &Indexed, (least, step): ([f32; 3], f32)) -> Mesh {
 }
 
 /// Bytes as text (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
+#[must_use]
+pub fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {
