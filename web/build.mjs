@@ -7,16 +7,18 @@ import { readFile, writeFile } from "node:fs/promises";
 
 const ASSETS = new URL("../crates/poecal-report/src/page/assets/", import.meta.url);
 const BUNDLED = ["three"];
-/** Pieces of shaders that three.js adds to every program; those of its own materials are never compiled, since ours have shaders of their own. */
-const ADDED = ["colorspace_pars_fragment", "tonemapping_pars_fragment"];
+/** The one piece of a shader that three.js adds to every program. Those of its own materials are never compiled: ours have shaders of their own. */
+const ADDED = "colorspace_pars_fragment";
 
-/** three.js without the shaders of its own materials, a fifth of the script. */
-const withoutShaders = {
-  name: "without shaders",
+/** three.js without what its own materials alone need, shaders and a table: a fifth of the script. */
+const withoutMaterials = {
+  name: "without materials",
   setup(builder) {
     builder.onLoad({ filter: /three\.module\.js$/ }, async ({ path }) => {
       const text = await readFile(path, "utf8");
-      return { contents: text.replace(/^(?:var|const) ([\w$]+) = "(?:[^"\\]|\\.)*";$/gm, (whole, name) => (/\\n/.test(whole) && !ADDED.includes(name) ? `const ${name} = "";` : whole)) };
+      const shaders = /^(?:var|const) ([\w$]+) = "(?:[^"\\]|\\.)*";$/gm;
+      const emptied = text.replace(shaders, (whole, name) => (whole.includes("\\n") && name !== ADDED ? `const ${name} = "";` : whole));
+      return { contents: emptied.replace(/^(const DATA = new Uint16Array\( \[)[^\]]*/m, "$1") };
     });
   },
 };
@@ -40,7 +42,7 @@ async function bundle(entry, options) {
     write: false,
     legalComments: "none",
     charset: "utf8",
-    plugins: [withoutShaders],
+    plugins: [withoutMaterials],
     ...options,
   });
   return outputFiles[0].text;

@@ -43,11 +43,12 @@ function rowsOf({ sets }, path) {
 function dotsOf(path, rows) {
   if (path.dots) return path.dots;
   let [x, y] = [0, 0];
-  const steps = path.getAttribute("d").matchAll(/m(-?\d+) ?(-?\d+)(h0)?/g);
+  const steps = path.getAttribute("d").matchAll(/m(-?\d+) ?(-?\d+)(?:h(\d))?/g);
   const own = rowsOf(rows, path);
-  path.dots = [...steps].map(([, across, down, drawn], k) => {
-    [x, y] = [x + Number(across), y + Number(down)];
-    return { row: own[k], x, y, drawn };
+  path.dots = [...steps].map(([, across, down, length], k) => {
+    const dot = { row: own[k], x: x + Number(across), y: y + Number(down), drawn: length !== undefined };
+    [x, y] = [dot.x + Number(length ?? 0), dot.y];
+    return dot;
   });
   return path.dots;
 }
@@ -55,11 +56,14 @@ function dotsOf(path, rows) {
 /** The dot nearest to the cursor, if one is near. */
 function nearest(graph, { rows }, { clientX, clientY }) {
   const { width, height } = graph.querySelector("svg").viewBox.baseVal;
-  const box = graph.querySelector("svg").getBoundingClientRect();
+  const [box, style] = [graph.getBoundingClientRect(), getComputedStyle(graph)];
+  // Text stands in the padding.
+  const [top, right, bottom, left] = ["Top", "Right", "Bottom", "Left"].map((side) => parseFloat(style[`padding${side}`]));
+  const [across, down] = [(box.width - left - right) / width, (box.height - top - bottom) / height];
   let [least, found] = [NEAR, undefined];
   for (const path of graph.querySelectorAll(".dots")) {
     for (const dot of dotsOf(path, rows)) {
-      const far = Math.hypot(box.left + (dot.x / width) * box.width - clientX, box.top + (dot.y / height) * box.height - clientY);
+      const far = Math.hypot(box.left + left + dot.x * across - clientX, box.top + top + dot.y * down - clientY);
       if (dot.drawn && far < least) [least, found] = [far, { ...dot, width, height }];
     }
   }
@@ -91,6 +95,7 @@ function showSide(graph, { rows }, { selectedIndex, selectedOptions: [{ dataset 
       const drawn = value !== null && y >= 0 && y <= 1 && !(rows.sets[first.row] & 2);
       return { row: first.row, x: Math.round(width * along(across, rows.values[cell.dataset.reading][first.row])), y: Math.round(height * y), drawn };
     });
-    path.setAttribute("d", path.dots.map(({ x, y, drawn }) => (drawn ? `M${x} ${y}h0` : "")).join(""));
+    const length = Number(path.getAttribute("stroke-linecap") === "square");
+    path.setAttribute("d", path.dots.map(({ x, y, drawn }) => (drawn ? `M${x} ${y}h${length}` : "")).join(""));
   }
 }

@@ -53,15 +53,17 @@ impl Residual {
             let lower = piece.iter().rev().map(|[x, value, off]| [*x, value - off]);
             bands.push(upper.chain(lower).collect());
         }
-        let told = |of: fn(&Curve) -> f64| with_unit(curve.as_ref().map_or(f64::NAN, of), self.unit);
+        let told = curve.as_ref().map_or_else(
+            || "too few rows for a smoothed curve".to_owned(),
+            |curve| {
+                let [swing, deviation] =
+                    [curve.swing(), curve.deviation()].map(|it| with_unit(it, self.unit));
+                format!("the smoothed curve swings by {swing}, with a standard deviation of {deviation}")
+            },
+        );
         Side {
             y: Axis::new(&format!("residual, {}", self.unit), Scale::Close).including(&range),
-            spoken: format!(
-                "Residual {} over {name}; the smoothed curve swings by {}, with a standard deviation of {}.",
-                self.name,
-                told(Curve::swing),
-                told(Curve::deviation)
-            ),
+            spoken: format!("Residual {} over {name}; {told}.", self.name),
             shapes: vec![Shape { class: "band", pieces: bands }, Shape { class: "ink line", pieces: lines }],
         }
     }

@@ -125,7 +125,7 @@ impl<'a> Charts<'a> {
         let spoken =
             format!("Error of {name} in {} rows in the order read; the largest is {largest}.", rows.len());
         let y = axis(&format!("{name} error, {unit}"), rows.iter().filter_map(|row| self.error(row)), true);
-        let x = axis("row, in the order read", rows.iter().map(|row| number(row)), false);
+        let x = axis("row, in the order read", rows.iter().map(|row| number(row)), false).in_steps(12.0);
         let graph = Graph { x, size: WIDE, dots, sides: vec![Side { y, spoken, shapes: Vec::new() }] };
         html! { (keys(&found)) (graph.svg()) (readout()) }
     }

@@ -19,11 +19,13 @@ pub struct Axis {
     pub scale: Scale,
     /// Values that are shown whatever the data are.
     pub includes: Vec<f64>,
+    /// Steps between ticks that a linear axis aims at.
+    pub steps: f64,
 }
 
 impl Axis {
     pub fn new(title: &str, scale: Scale) -> Self {
-        Axis { title: title.to_owned(), scale, includes: Vec::new() }
+        Axis { title: title.to_owned(), scale, includes: Vec::new(), steps: TICKS }
     }
 
     pub fn including(mut self, values: &[f64]) -> Self {
@@ -31,12 +33,17 @@ impl Axis {
         self
     }
 
+    /// The same with so many steps between its ticks, or somewhat fewer.
+    pub fn in_steps(self, steps: f64) -> Self {
+        Axis { steps, ..self }
+    }
+
     /// The range and ticks for these values.
     pub(crate) fn ruler(&self, values: impl Iterator<Item = f64>) -> Ruler {
         let values: Vec<f64> = values.chain(self.includes.iter().copied()).collect();
         match self.scale {
-            Scale::Linear => Ruler::linear(&values, true),
-            Scale::Close => Ruler::linear(&values, false),
+            Scale::Linear => Ruler::linear(&values, self.steps, true),
+            Scale::Close => Ruler::linear(&values, self.steps, false),
             Scale::Log => Ruler::log(&values),
             Scale::Count => Ruler::count(&values),
         }
@@ -119,14 +126,14 @@ impl Ruler {
         ruler
     }
 
-    fn linear(values: &[f64], to_ticks: bool) -> Self {
+    fn linear(values: &[f64], steps: f64, to_ticks: bool) -> Self {
         let (mut low, mut high) = range(values).unwrap_or((0.0, 1.0));
         // Values that differ by rounding are one value, with room around it.
         if high - low <= 1e-9 * low.abs().max(high.abs()) {
             let room = if high == 0.0 { 1.0 } else { 0.1 * high.abs() };
             (low, high) = (low - room, high + room);
         }
-        let step = step(high - low);
+        let step = step(high - low, steps);
         // Values that differ from a tick by rounding lie on it.
         let [first, last] = [(low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step];
         if to_ticks {
@@ -144,7 +151,7 @@ impl Ruler {
     fn count(values: &[f64]) -> Self {
         let (_, high) = range(values).unwrap_or((0.0, 1.0));
         let high = high.max(1.0).ceil();
-        Ruler::stepped(0.0, high, step(high).max(1.0))
+        Ruler::stepped(0.0, high, step(high, TICKS).max(1.0))
     }
 
     /// The same with room at both ends, so that a marker at an end lies whole on the plot.
@@ -181,9 +188,9 @@ fn range(values: &[f64]) -> Option<(f64, f64)> {
     })
 }
 
-/// 1, 2 or 5 times a power of ten that divides the span into about [`TICKS`] steps.
-fn step(span: f64) -> f64 {
-    let raw = span / TICKS;
+/// 1, 2 or 5 times a power of ten that divides the span into about so many steps.
+fn step(span: f64, steps: f64) -> f64 {
+    let raw = span / steps;
     let power = 10_f64.powf(raw.log10().floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= raw * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power

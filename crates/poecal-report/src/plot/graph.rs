@@ -1,7 +1,7 @@
 //! Charts of many rows: dots, lines and areas as wide as their place, with text of one size at any width.
 //!
 //! What is drawn lies in a view of whole numbers, two to the px, which is stretched to its place; strokes and text are not. A series of dots is
-//! one path of lines without length, whose round or square ends are seen: `m12 -7h0` is a dot, from the one before, and `m0 0` a row without one, so that
+//! one path of lines without length, whose round ends are seen (of square ones half a px, since paper shows none without length): `m12 -7h0` is a dot, from the one before, and `m0 0` a row without one, so that
 //! a script finds the row of each dot by counting.
 
 use std::fmt::Write as _;
@@ -21,6 +21,13 @@ pub struct Spots {
     pub size: u8,
     /// A place for each row, if it has one.
     pub points: Vec<Option<[f64; 2]>>,
+}
+
+impl Spots {
+    /// Whether its dots are squares: beside its colour a series has a shape.
+    fn is_square(&self) -> bool {
+        self.class == "s1"
+    }
 }
 
 /// Lines or areas of one class.
@@ -70,15 +77,16 @@ impl View {
         [(across * self.width).round() as i32, ((1.0 - up) * self.height).round() as i32]
     }
 
-    fn dots(&self, y: &Ruler, points: &[Option<[f64; 2]>]) -> String {
-        let mut path = String::with_capacity(9 * points.len());
+    fn dots(&self, y: &Ruler, dots: &Spots) -> String {
+        let mut path = String::with_capacity(9 * dots.points.len());
         let mut last = [0, 0];
-        for point in points {
+        let length = i32::from(dots.is_square());
+        for point in &dots.points {
             match point.and_then(|point| self.place(y, point)) {
                 Some(at) => {
                     step(&mut path, 'm', last, at);
-                    path.push_str("h0");
-                    last = at;
+                    path.push_str(if length == 0 { "h0" } else { "h1" });
+                    last = [at[0] + length, at[1]];
                 }
                 None => path.push_str("m0 0"),
             }
@@ -161,7 +169,7 @@ impl Graph {
                     path.grid d=(view.upright()) {}
                     @for (k, y) in rulers.iter().enumerate() { path.grid data-side=[mark(k)] hidden[k > 0] d=(view.level(y)) {} }
                     @for dots in &self.dots {
-                        path.dots.(dots.class) stroke-linecap=(if dots.class == "s1" { "square" } else { "round" }) stroke-width=(dots.size) d=(rulers.first().map(|y| view.dots(y, &dots.points)).unwrap_or_default()) {}
+                        path.dots.(dots.class) stroke-linecap=(if dots.is_square() { "square" } else { "round" }) stroke-width=(dots.size) d=(rulers.first().map(|y| view.dots(y, dots)).unwrap_or_default()) {}
                     }
                     @for (k, (side, y)) in self.sides.iter().zip(&rulers).enumerate() {
                         g data-side=[mark(k)] hidden[k > 0] {
