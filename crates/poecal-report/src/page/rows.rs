@@ -44,7 +44,12 @@ fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
                 (MOST_ROWS) " at most. Histogram, normal plot and smoothed curves are of the evenly chosen ones alone. Tables count every row."
             }
         }
-        @if few < shown { p.note { "The small charts, by component and by joint, draw " (few) " of these rows, chosen likewise." } }
+        @if few < shown {
+            p.note {
+                "The small charts, by component and by joint, draw " (few) " of the " (all) " rows: suspected ones, those of the largest errors, and \
+                 others at equal distances."
+            }
+        }
         (chart(
             "rows",
             "By row",
