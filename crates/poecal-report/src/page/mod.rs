@@ -6,7 +6,6 @@
 
 mod advice;
 mod answer;
-mod by_joint;
 mod certificate;
 mod charts;
 mod compensation;
@@ -23,7 +22,6 @@ mod joins;
 mod joints;
 mod lead;
 mod method;
-mod motion;
 mod paper;
 mod pictures;
 mod plan;
@@ -40,7 +38,6 @@ pub use paper::{Attest, certificate_page, visit_page};
 pub use plan::plan_page;
 pub use validation::validation_page;
 
-use self::charts::Charts;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use poecal_calibrate::Statistic;
@@ -98,7 +95,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
     check(file, residuals)?;
     let drawn = data::drawn(residuals);
     let data = data::json(file, residuals, shapes, &drawn)?;
-    let charts = Charts::new(residuals, &drawn);
+    let charts = charts::Charts::new(residuals, &drawn);
     let title = format!("Calibration of {}", file.robot.name);
     let head = head(&title, &file.record, &file.poecal_version);
     let body = html! {
@@ -130,7 +127,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
 }
 
 /// What only few readers need, folded.
-fn for_the_metrologist(file: &CalibrationFile, charts: &Charts<'_>) -> Markup {
+fn for_the_metrologist(file: &CalibrationFile, charts: &charts::Charts<'_>) -> Markup {
     html! {
         section aria-labelledby="metrologist-title" {
             details #metrologist {

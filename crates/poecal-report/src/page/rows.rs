@@ -2,8 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::by_joint::by_joint;
-use super::charts::{Charts, chart};
+use super::charts::{Charts, by_joint, chart};
 use super::data::{MOST_ROWS, keep_first, place};
 use super::devices::devices;
 use super::errors::{error_table, error_words};

@@ -148,7 +148,7 @@ fn a_joint_of_the_other_arm_has_no_residual_along_its_motion() {
         }
         found
     };
-    let rows = [0, 1].map(|target| targets.iter().filter(|it| **it == Value::from(target)).count());
+    let rows = [0, 1].map(|target| targets.iter().filter(|it| it.as_u64() == Some(target)).count());
     let [left, right] = [counted("left2"), counted("right2")];
     println!("{rows:?} rows, left {left:?}, right {right:?}");
     assert_eq!((left[1], right[0]), (0, 0));

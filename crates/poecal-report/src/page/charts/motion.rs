@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::data::rounded;
-use super::frames::{FrameData, Frames};
-use super::{reading_index, unit};
+use crate::page::data::rounded;
+use crate::page::frames::{FrameData, Frames};
+use crate::page::{reading_index, unit};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Device, Quantity};
 use poecal_model::robot::{Body, Joint, Robot};

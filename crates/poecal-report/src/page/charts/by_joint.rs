@@ -2,10 +2,10 @@
 
 use maud::{Markup, html};
 
-use super::charts::{CELL, Charts, keys, readout, with_unit};
-use super::data::{Drawn, rounded};
 use super::motion::Motions;
-use super::readings_of;
+use super::{CELL, Charts, Component, keys, readout, with_unit};
+use crate::page::data::{Drawn, rounded};
+use crate::page::readings_of;
 use crate::plot::{Axis, Curve, Graph, Scale, Shape, Side, quantile};
 use poecal_numerics::error::Result;
 use poecal_results::calibration_file::CalibrationFile;
@@ -83,7 +83,7 @@ fn residuals(charts: &Charts<'_>, file: &CalibrationFile) -> Result<Vec<Residual
         column: Some("error".to_owned()),
         values: vec![charts.rows.iter().map(|row| charts.error(row)).collect()],
     };
-    let component = |it: super::charts::Component| Residual {
+    let component = |it: Component| Residual {
         name: it.name,
         unit: it.unit,
         column: Some(it.column),

@@ -1,15 +1,25 @@
 //! Charts of the rows: dots by row, component and leverage, how the errors are spread, and how they lie against noise.
 
+mod by_joint;
+mod motion;
+
+pub(crate) use self::by_joint::by_joint;
+
 use maud::{Markup, html};
 
-use super::data::{Drawn, place, rounded};
-use super::lead::{Lead, component_words, sign};
+use crate::page::data::{Drawn, place, rounded};
+use crate::page::lead::{Lead, component_words, sign};
 use crate::plot::{Axis, Graph, Scale, Shape, Side, Spots, normal_quantile, quantile};
 use crate::table::number;
 use poecal_results::residuals::{ResidualRow, Residuals};
 
 /// Rows from which on dots are small.
 const MANY: usize = 800;
+/// A class of what is drawn, and what it is.
+pub(crate) type Key = (&'static str, &'static str);
+/// Sets of rows, and by how much what is drawn behind suspected ones is wider than they are, px.
+const SETS: [Key; 3] = [("alarm", "suspected"), ("s0", "fitted"), ("s1", "held out")];
+const AROUND: u8 = 6;
 /// Points of a normal plot at most.
 const NORMAL_POINTS: usize = 800;
 /// Bars of a histogram.
@@ -31,7 +41,7 @@ pub(crate) fn chart(name: &str, title: &str, caption: &str, drawing: &Markup) ->
 }
 
 /// The keys of these classes.
-pub(crate) fn keys(keys: &[(&str, &str)]) -> Markup {
+pub(crate) fn keys(keys: &[Key]) -> Markup {
     html! {
         ul.keys { @for (class, words) in keys { li { i.(class) {} (words) } } }
     }
@@ -85,16 +95,17 @@ impl<'a> Charts<'a> {
         &self,
         rows: &[&Drawn],
         place: impl Fn(&Drawn) -> Option<[f64; 2]>,
-    ) -> (Vec<Spots>, Vec<(&'static str, &'static str)>) {
+    ) -> (Vec<Spots>, Vec<Key>) {
         let size = if self.rows.len() > MANY { 3 } else { 5 };
-        let sets: [(_, _, u8, fn(&Drawn) -> bool); 3] = [
-            ("alarm", "suspected", size + 6, |row| row.suspected),
-            ("s0", "fitted", size, |row| !row.held_out),
-            ("s1", "held out", size, |row| row.held_out),
-        ];
         let mut keys = Vec::new();
         let mut all = Vec::new();
-        for (class, words, size, is_of) in sets {
+        for (class, words) in SETS {
+            let is_of = |row: &Drawn| match class {
+                "s0" => !row.held_out,
+                "s1" => row.held_out,
+                _ => row.suspected,
+            };
+            let size = if class == "alarm" { size + AROUND } else { size };
             let points: Vec<Option<[f64; 2]>> =
                 rows.iter().filter(|row| is_of(row)).map(|row| place(row)).collect();
             if points.iter().any(Option::is_some) {
