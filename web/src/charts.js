@@ -43,10 +43,10 @@ function rowsOf({ sets }, path) {
 function dotsOf(path, rows) {
   if (path.dots) return path.dots;
   let [x, y] = [0, 0];
-  const steps = path.getAttribute("d").matchAll(/m(-?\d+) ?(-?\d+)(?:h(\d))?/g);
-  const own = rowsOf(rows, path);
-  path.dots = [...steps].map(([, across, down, length], k) => {
-    const dot = { row: own[k], x: x + Number(across), y: y + Number(down), drawn: length !== undefined };
+  const steps = [...path.getAttribute("d").matchAll(/m(-?\d+) ?(-?\d+)(?:h(\d))?/g)];
+  path.dots = rowsOf(rows, path).map((row, k) => {
+    const [, across, down, length] = steps[k] ?? [0, 0, 0];
+    const dot = { row, x: x + Number(across), y: y + Number(down), drawn: length !== undefined };
     [x, y] = [dot.x + Number(length ?? 0), dot.y];
     return dot;
   });

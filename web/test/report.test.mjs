@@ -277,6 +277,7 @@ describe("the page", { skip }, () => {
     assert.ok((await page.locator("table").count()) > 8);
     assert.ok(await page.locator(".first svg.plot").isVisible());
     await page.locator("#metrologist > summary").click();
+    assert.equal(await page.getByRole("combobox").count(), 0, "nothing is offered that needs a script");
     for (const name of ["rows", "components", "joints", "histogram", "normal", "leverage"]) assert.ok(await page.locator(`[data-chart=${name}] .graph`).first().isVisible(), name);
     await context.close();
   });
@@ -426,7 +427,12 @@ describe("the page", { skip }, () => {
     assert.ok(Math.abs(down / view[1] - (high - rows.columns["0.0"][first]) / (high - low)) < 0.01);
     const reading = await cell.locator(".x").evaluate((it) => ({ ...it.dataset }));
     assert.ok(Math.abs(across / view[0] - (rows.values[joints[2].reading][first] - reading.low) / (reading.high - reading.low)) < 0.01);
+    // A joint that moves no target has dots of what is no motion.
+    const last = chart.locator(".cell").nth(5);
+    assert.equal(await last.locator(".note").isVisible(), false);
+    assert.ok((await last.locator(".dots.s0").getAttribute("d")).match(/M\d+ \d+h0/g).length > 20);
     await chart.getByRole("combobox").selectOption({ index: 0 });
+    assert.ok(await last.locator(".note").isVisible());
     assert.equal(await spoken(), before[1]);
     assert.equal((await dots()).match(/h[01]/g).length, before[0].match(/h[01]/g).length);
     assert.deepEqual(page.complaints, []);

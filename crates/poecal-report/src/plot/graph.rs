@@ -2,7 +2,7 @@
 //!
 //! What is drawn lies in a view of whole numbers, two to the px, which is stretched to its place; strokes and text are not. A series of dots is
 //! one path of lines without length, whose round ends are seen (of square ones half a px, since paper shows none without length): `m12 -7h0` is a dot, from the one before, and `m0 0` a row without one, so that
-//! a script finds the row of each dot by counting.
+//! a script finds the row of each dot by counting; a series of none has an empty path.
 
 use std::fmt::Write as _;
 
@@ -79,6 +79,9 @@ impl View {
 
     fn dots(&self, y: &Ruler, dots: &Spots) -> String {
         let mut path = String::with_capacity(9 * dots.points.len());
+        if dots.points.iter().all(Option::is_none) {
+            return path;
+        }
         let mut last = [0, 0];
         let length = i32::from(dots.is_square());
         for point in &dots.points {
@@ -168,7 +171,7 @@ impl Graph {
                 svg viewBox={ "0 0 " (view.width) " " (view.height) } preserveAspectRatio="none" {
                     path.grid d=(view.upright()) {}
                     @for (k, y) in rulers.iter().enumerate() { path.grid data-side=[mark(k)] hidden[k > 0] d=(view.level(y)) {} }
-                    @for dots in &self.dots {
+                    @for dots in self.dots.iter().filter(|it| !it.points.is_empty()) {
                         path.dots.(dots.class) stroke-linecap=(if dots.is_square() { "square" } else { "round" }) stroke-width=(dots.size) d=(rulers.first().map(|y| view.dots(y, dots)).unwrap_or_default()) {}
                     }
                     @for (k, (side, y)) in self.sides.iter().zip(&rulers).enumerate() {

@@ -111,7 +111,7 @@ pub(crate) fn by_joint(charts: &Charts<'_>, file: &CalibrationFile) -> Result<Ma
         let own = residuals.first();
         let dot = |row: &Drawn| Some([at(row), own?.value(k, row).filter(|_| !row.suspected)?]);
         let (dots, found) = charts.by_set(&few, dot);
-        let is_still = dots.is_empty();
+        let is_still = found.is_empty();
         if found.len() > all_keys.len() {
             all_keys = found;
         }

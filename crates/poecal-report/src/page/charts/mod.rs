@@ -109,9 +109,9 @@ impl<'a> Charts<'a> {
             let points: Vec<Option<[f64; 2]>> =
                 rows.iter().filter(|row| is_of(row)).map(|row| place(row)).collect();
             if points.iter().any(Option::is_some) {
-                all.push(Spots { class, size, points });
                 keys.push((class, words));
             }
+            all.push(Spots { class, size, points });
         }
         // What is suspected is drawn behind, and told last.
         if keys.first().is_some_and(|it| it.0 == "alarm") {
