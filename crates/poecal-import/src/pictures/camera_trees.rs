@@ -14,8 +14,8 @@ const OF_KALIBR: &str = "camera_model intrinsics distortion_model distortion_coe
 /// The same of mrcal.
 const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref extrinsics valid_intrinsics_region optimization_inputs \
                         icam_intrinsics";
-/// Models of mrcal that are OpenCV's, in its order of coefficients.
-const MRCAL_MODELS: [&str; 4] = ["PINHOLE", "OPENCV4", "OPENCV5", "OPENCV8"];
+/// Models of mrcal that are OpenCV's, in its order of coefficients, each with the count of them.
+const MRCAL_MODELS: [(&str, usize); 4] = [("PINHOLE", 0), ("OPENCV4", 4), ("OPENCV5", 5), ("OPENCV8", 8)];
 /// Keys of the matrix, row by row or, as Open3D has it, column by column.
 const MATRIX: &str = "camera_matrix.data cameraMatrix.data Camera_Matrix.data K.data M1.data K k camera_matrix cameraMatrix intrinsicMatrix \
                       intrinsic_matrix intrinsics mtx camera_intrinsics";
@@ -27,7 +27,9 @@ const COEFFICIENTS: &str = "distortion_coefficients.data dist_coeffs.data distCo
 /// The same by their names, in OpenCV's order, and where they may be.
 const NAMED: [&str; 8] = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
 const BENT: [&str; 2] = ["distortion", "Distortion"];
-const MODEL: &str = "distortion_model distortionModel model";
+const MODEL: &str = "distortion_model distortionModel";
+/// The same, or that of the device.
+const MODEL_OF_ANY: &str = "model";
 /// OAK's type of a camera is 1 for a fisheye.
 const IS_FISHEYE: &str = "fisheye_model fisheye cameraType";
 /// Width and height of pictures.
@@ -85,14 +87,15 @@ fn read_tree(stated: &Stated<'_>) -> Result<Read> {
     let places = places(stated);
     let (mut cameras, mut said) = (Vec::with_capacity(places.len()), Vec::new());
     for place in &places {
-        let (camera, seen) = read_single(stated, place, places.len() == 1)?;
+        let (camera, seen) = read_single(stated, place, &places)?;
         let name = if places.len() > 1 { place.join("_") } else { camera.name };
         if cameras.iter().any(|it: &Camera| it.name == name) {
             return refuse(stated.path, format!("found the camera `{name}` a second time, expected it once"));
         }
         cameras.push(Camera { name, ..camera });
-        let known = [MATRIX, COEFFICIENTS, MODEL, IS_FISHEYE, SIZE[0], SIZE[1], BESIDE];
+        let known = [MATRIX, COEFFICIENTS, MODEL, MODEL_OF_ANY, IS_FISHEYE, SIZE[0], SIZE[1], BESIDE];
         let known: Vec<&str> = known.into_iter().chain(FOCAL).chain(NAMED).collect();
+        refuse_changes_above(stated, place)?;
         said.extend(seen.into_iter().chain(others(
             place.len(),
             &|leaf| leaf.path.starts_with(place),
@@ -100,6 +103,21 @@ fn read_tree(stated: &Stated<'_>) -> Result<Read> {
         )?));
     }
     Ok((cameras, said))
+}
+
+/// Refuses keys beside those that lead to a lens if they scale or shift pictures; other keys there are not about it.
+fn refuse_changes_above(stated: &Stated<'_>, place: &[String]) -> Result<()> {
+    for depth in 0..place.len() {
+        let beside = |leaf: &Leaf| {
+            let path = leaf.path.get(..=depth)?;
+            let is_beside = path.iter().zip(place).take(depth).all(|(key, own)| key == own)
+                && path.last() != place.get(depth);
+            is_beside.then(|| Leaf { path: path.to_vec(), ..leaf.clone() })
+        };
+        let above = Stated { leaves: stated.leaves.iter().filter_map(beside).collect(), path: stated.path };
+        above.others(KeysOf::Pictures, (depth, |_: &Leaf| true), &["depth*", BESIDE])?;
+    }
+    Ok(())
 }
 
 /// The keys below which a matrix or focal lengths are stated, in the order of the file; none of what is at the top.
@@ -165,7 +183,8 @@ fn listed_size(stated: &Stated<'_>, key: &str) -> Result<Option<[u32; 2]>> {
 /// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
 fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
     let Some(model) = stated.word("lensmodel") else { return Ok(None) };
-    if !MRCAL_MODELS.iter().any(|it| model.strip_prefix("LENSMODEL_") == Some(it)) {
+    let known = MRCAL_MODELS.iter().find(|it| model.strip_prefix("LENSMODEL_") == Some(it.0));
+    let Some((_, count)) = known else {
         return refuse(
             stated.path,
             format!(
@@ -173,8 +192,13 @@ fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
                  `mrcal-convert-lensmodel LENSMODEL_OPENCV8` writes one"
             ),
         );
-    }
+    };
     let mut numbers = stated.list("intrinsics")?;
+    if numbers.len() != 4 + count {
+        let message =
+            format!("found {} numbers of `intrinsics`, expected {} of {model}", numbers.len(), 4 + count);
+        return refuse(stated.path, message);
+    }
     let bent = numbers.split_off(numbers.len().min(4));
     let [fx, fy, cx, cy] = exact(numbers, "intrinsics", stated.path)?;
     let size_px = listed_size(stated, "imagersize")?;
@@ -197,10 +221,11 @@ fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
     all.leaves.iter().map(|leaf| leaf.text.as_str()).find(|text| is_one(text))
 }
 
-/// Refuses a document with one camera whose distortion stands where it is not read.
-fn refuse_far_distortion(all: &Stated<'_>) -> Result<()> {
+/// Refuses a distortion that is of no lens of the document's.
+fn refuse_far_distortion(all: &Stated<'_>, places: &[&[String]]) -> Result<()> {
     let is_far = |leaf: &&Leaf| {
         leaf.path.iter().any(|key| key.to_lowercase().contains("dist"))
+            && (places.len() == 1 || !places.iter().any(|it| leaf.path.starts_with(it)))
             && leaf.text.parse::<f64>().is_ok_and(|number| number != 0.0)
     };
     let Some(leaf) = all.leaves.iter().find(is_far) else { return Ok(()) };
@@ -212,7 +237,7 @@ fn refuse_far_distortion(all: &Stated<'_>) -> Result<()> {
 }
 
 /// The camera below these keys, and what its region changed in words.
-fn read_single(all: &Stated<'_>, place: &[String], is_only: bool) -> Result<(Camera, Option<String>)> {
+fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Result<(Camera, Option<String>)> {
     let path = all.path;
     let in_file = |error: Error| error.in_file(path);
     let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);
@@ -227,13 +252,14 @@ fn read_single(all: &Stated<'_>, place: &[String], is_only: bool) -> Result<(Cam
         return Err(refused(format!("found cameraType {other}, expected 0 (perspective) or 1 (fisheye)")));
     }
     let usual = if is_fisheye { "fisheye" } else { "" };
-    let kind = word(MODEL).or_else(|| other_lens(all).filter(|_| is_only)).unwrap_or(usual);
+    let kind = word(MODEL)
+        .or_else(|| word(MODEL_OF_ANY))
+        .or_else(|| other_lens(all).filter(|_| places.len() == 1))
+        .unwrap_or(usual);
     let distortion = match near().find_map(|it| bent(it, kind).transpose()) {
         Some(found) => found?,
         None => {
-            if is_only {
-                refuse_far_distortion(all)?;
-            }
+            refuse_far_distortion(all, places)?;
             distortion(kind, &[], path)?
         }
     };

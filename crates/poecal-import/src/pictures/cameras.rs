@@ -1,5 +1,6 @@
 //! Files of cameras: CSV, and what OpenCV, ROS, Kalibr, ViSP, HALCON and makers of cameras write.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use roxmltree::Node;
@@ -61,7 +62,8 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     let text = |what: &str| read_up_to(path, what, Limit::Settings);
     let (cameras, said) = match ending.as_deref() {
         Some("yaml" | "yml" | "cameramodel") => {
-            read_trees(trees(&text("a camera (YAML)")?, path, EXPECTED)?, path)?
+            let text = text("a camera (YAML)")?;
+            read_trees(trees(&without_inputs(&text), path, EXPECTED)?, path)?
         }
         Some("json") => {
             let text = text_of(path, "a camera (JSON)")?;
@@ -88,6 +90,20 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     }
     let said = said.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
     Ok(CameraFile { cameras, said })
+}
+
+/// The text of a camera of mrcal without the inputs of its optimization, which are bytes as Python writes them and no YAML.
+fn without_inputs(text: &str) -> Cow<'_, str> {
+    let cut = || {
+        let (before, rest) = text.split_once("optimization_inputs")?;
+        let (between, rest) = rest.split_once("b'")?;
+        let (_, after) = rest.split_once('\'')?;
+        between
+            .chars()
+            .all(|it| matches!(it, '\'' | '"' | ':' | ' '))
+            .then(|| Cow::Owned(format!("{before}optimization_inputs{between}''{after}")))
+    };
+    cut().unwrap_or(Cow::Borrowed(text))
 }
 
 /// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.

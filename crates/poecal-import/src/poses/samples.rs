@@ -19,7 +19,7 @@ use poecal_storage::yaml_tree::{Node, NodeKind, documents};
 const EXPECTED: &str = "samples of a hand-eye calibration: poses of the arm (effector_wrt_world, robot) and of the target (object_wrt_sensor, tracking), or a \
                         folder with a pose in each file";
 /// Endings of files with trees; in folders others have rows of numbers.
-const TREES: [&str; 3] = ["yaml", "yml", "json"];
+const TREES: [&str; 4] = ["yaml", "yml", "json", "samples"];
 const TEXTS: [&str; 3] = ["txt", "csv", "dat"];
 /// Keys of the two parts of a pose.
 const PLACES: [&str; 2] = ["translation", "position"];
@@ -30,6 +30,9 @@ const MATRIX: [&str; 12] =
 const QUATERNION: [&str; 7] = ["x[m]", "y[m]", "z[m]", "qx", "qy", "qz", "qw"];
 const VECTOR: [&str; 6] = ["x[m]", "y[m]", "z[m]", "rvec_x[rad]", "rvec_y[rad]", "rvec_z[rad]"];
 
+/// Beginnings of libfranka's keys of frames on the flange and the tool, and keys of poses that were wanted: none is where the arm was.
+const NOT_OF_THE_ARM: [&str; 5] = ["F_T_", "NE_T_", "EE_T_", "O_T_EE_c", "O_T_EE_d"];
+
 /// A pose as it is written.
 struct Sample {
     whose: Option<Whose>,
@@ -38,8 +41,16 @@ struct Sample {
     /// True if lengths are millimetres.
     in_mm: bool,
     line: usize,
-    /// The number of its file.
-    file: Option<u64>,
+    /// The number of its file, or of the entry of a list that has the poses of a sample.
+    sample: Option<u64>,
+}
+
+/// Poses as they are found.
+#[derive(Default)]
+struct Samples {
+    found: Vec<Sample>,
+    /// Entries of lists so far.
+    entries: u64,
 }
 
 /// The table of a folder or a file of samples; `None` of a file in another form.
@@ -48,7 +59,7 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
         let ending = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
         all.iter().any(|it| ending.eq_ignore_ascii_case(it))
     };
-    let (mut samples, mut whole) = (Vec::new(), String::new());
+    let (mut samples, mut whole) = (Samples::default(), String::new());
     if is_folder(path) {
         let is_wanted = |name: &str| {
             number_at_end(name).is_some() && (ends(Path::new(name), &TREES) || ends(Path::new(name), &TEXTS))
@@ -59,34 +70,34 @@ pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
         for name in names {
             let own = path.join(&name);
             let text = read_up_to(&own, EXPECTED, Limit::Settings)?;
-            let before = samples.len();
+            let before = samples.found.len();
             if ends(&own, &TREES) {
                 for document in documents(&text, &own, EXPECTED)? {
-                    walk(&document, whose_of(&name), &mut samples);
+                    samples.walk(&document, whose_of(&name));
                 }
             } else {
                 let all = text.split(|it: char| it.is_whitespace() || matches!(it, ',' | ';' | '[' | ']'));
                 let numbers =
                     all.filter(|it| !it.is_empty()).map(|it| it.parse().ok()).collect::<Option<Vec<f64>>>();
-                samples.extend(numbers.and_then(|it| Sample::matrix(it, whose_of(&name), 1)));
+                samples.found.extend(numbers.and_then(|it| Sample::matrix(it, whose_of(&name), 1)));
             }
-            if samples.len() != before + 1 {
+            if samples.found.len() != before + 1 {
                 let message = format!(
                     "found {} poses, expected one in each file of the folder: sixteen numbers row by row, or YAML",
-                    samples.len() - before
+                    samples.found.len() - before
                 );
                 return Err(ErrorKind::Measurement.error(message).in_file(&own));
             }
-            samples.iter_mut().skip(before).for_each(|it| it.file = number_at_end(&name));
+            samples.found.iter_mut().skip(before).for_each(|it| it.sample = number_at_end(&name));
             whole.push_str(&text);
         }
     } else if ends(path, &TREES) {
         whole = read_up_to(path, EXPECTED, Limit::Table)?;
-        documents(&whole, path, EXPECTED)?.iter().for_each(|it| walk(it, None, &mut samples));
+        documents(&whole, path, EXPECTED)?.iter().for_each(|it| samples.walk(it, None));
     } else {
         return Ok(None);
     }
-    let made = made(&samples).map_err(|message| refuse(path, message))?;
+    let made = made(&samples.found, is_folder(path)).map_err(|message| refuse(path, message))?;
     Ok(Some(made.of_file("samples of a hand-eye calibration", Some(sha256_of(&whole)))))
 }
 
@@ -104,17 +115,31 @@ fn numbers(node: &Node) -> Option<Vec<f64>> {
     Some(inner?.concat())
 }
 
-/// Takes the poses below a node.
-fn walk(node: &Node, whose: Option<Whose>, found: &mut Vec<Sample>) {
-    if let Some(sample) = Sample::new(node, whose) {
-        return found.push(sample);
-    }
-    match &node.kind {
-        NodeKind::Map(entries) => {
-            entries.iter().for_each(|(key, it)| walk(it, whose_of(key).or(whose), found))
+impl Samples {
+    /// Takes the poses below a node.
+    fn walk(&mut self, node: &Node, whose: Option<Whose>) {
+        if let Some(sample) = Sample::new(node, whose) {
+            return self.found.push(sample);
         }
-        NodeKind::List(entries) => entries.iter().for_each(|it| walk(it, whose, found)),
-        NodeKind::Text(_) => {}
+        match &node.kind {
+            NodeKind::Map(entries) => {
+                let is_pose = |key: &String| !NOT_OF_THE_ARM.iter().any(|it| key.starts_with(it));
+                let poses = entries.iter().filter(|(key, _)| is_pose(key));
+                poses.for_each(|(key, it)| self.walk(it, whose_of(key).or(whose)));
+            }
+            NodeKind::List(entries) => entries.iter().for_each(|it| self.entry(it, whose)),
+            NodeKind::Text(_) => {}
+        }
+    }
+
+    /// Takes an entry of a list; the two poses whose keys are in it belong together.
+    fn entry(&mut self, node: &Node, whose: Option<Whose>) {
+        let before = self.found.len();
+        self.walk(node, whose);
+        self.entries += 1;
+        let own = self.found.get_mut(before..).filter(|own| own.len() <= 2).into_iter().flatten();
+        own.filter(|it| it.whose != whose && it.sample.is_none())
+            .for_each(|it| it.sample = Some(self.entries));
     }
 }
 
@@ -133,13 +158,13 @@ impl Sample {
             } else {
                 return Sample::matrix(numbers, whose, node.line);
             };
-            return Some(Sample { whose, columns, numbers, in_mm: false, line: node.line, file: None });
+            return Some(Sample { whose, columns, numbers, in_mm: false, line: node.line, sample: None });
         };
         let parts = |of: &Node, keys: &[&str]| -> Option<Vec<f64>> {
             keys.iter().map(|key| of.get(key)?.text()?.parse().ok()).collect()
         };
         let numbers = [parts(place, &["x", "y", "z"])?, parts(turn, &["x", "y", "z", "w"])?].concat();
-        Some(Sample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, file: None })
+        Some(Sample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, sample: None })
     }
 
     /// The pose of sixteen numbers, row by row, or column by column where the place comes last.
@@ -159,7 +184,7 @@ impl Sample {
             numbers,
             in_mm: false,
             line,
-            file: None,
+            sample: None,
         })
     }
 
@@ -176,12 +201,12 @@ impl Sample {
 }
 
 /// The table of poses: those of arm and target side by side, by the numbers of their files or in their order.
-fn made(samples: &[Sample]) -> std::result::Result<Made, String> {
+fn made(samples: &[Sample], are_files: bool) -> std::result::Result<Made, String> {
     let mut rows: BTreeMap<u64, Vec<&Sample>> = BTreeMap::new();
     let mut counts = [0_u64; 3];
     for sample in samples {
         let count = &mut counts[sample.whose.map_or(2, |it| usize::from(it == Whose::Target))];
-        rows.entry(sample.file.unwrap_or(*count)).or_default().push(sample);
+        rows.entry(sample.sample.unwrap_or(*count)).or_default().push(sample);
         *count += 1;
     }
     rows.values_mut().for_each(|row| row.sort_by_key(|it| it.whose));
@@ -192,6 +217,7 @@ fn made(samples: &[Sample]) -> std::result::Result<Made, String> {
     };
     let is_alike = |row: &[&Sample]| {
         row.len() == first.len()
+            && row.iter().zip(row.iter().skip(1)).all(|(one, next)| one.whose < next.whose)
             && row.iter().zip(first).all(|(one, other)| {
                 (one.whose, one.columns, one.in_mm) == (other.whose, other.columns, other.in_mm)
             })
@@ -203,7 +229,6 @@ fn made(samples: &[Sample]) -> std::result::Result<Made, String> {
              form, {EXPECTED}"
         ));
     }
-    let are_files = samples.iter().all(|it| it.file.is_some());
     let names = are_files.then(|| Column::from("image"));
     let mut made = Made::new(1, names.into_iter().chain(first.iter().flat_map(|it| it.columns())));
     for (number, row) in &rows {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Screw, rotation};
-use poecal_import::{Join, MeasurementFile, ReadOptions, read, read_joints};
+use poecal_import::{ColumnMap, Join, MeasurementFile, ReadOptions, read, read_joints};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Joint, Robot};
 use poecal_model::simulate::{Kind, Simulation, elbow};
@@ -148,6 +148,15 @@ fn external_axes_are_the_slides_wherever_they_stand() {
         let error = found(&elbow(), name, text).unwrap_err();
         assert!(error.contains("which are not one to one the joints `joint1`"), "{error}");
     }
+    // By a mapping, as the file names them, where they are not one to one the joints: here the rail comes first as the arm's own axis.
+    let swapped = fanuc.replace("EXT1: 100.0 mm", "EXT1: 100.0 mm EXT2: 7.0 deg");
+    let columns: String = (1..=6).map(|at| format!("joint{at} = \"J{at}\"\n")).collect();
+    let mapping = ColumnMap::parse(&format!("[joints]\nrail = \"EXT1\"\n{columns}"), "columns.toml").unwrap();
+    let options = ReadOptions { mapping: Some(mapping), ..ReadOptions::default() };
+    let own = read_joints(folder.write("posreg.va", &swapped), &on_a_rail(true), &options).unwrap().readings;
+    let expected =
+        [0.1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|it: f64| if it < 0.5 { it } else { it.to_radians() });
+    assert!(own.iter().zip(expected).all(|it| (it.0 - it.1).abs() < 1e-12), "{own:?}");
     let turned = fanuc.replace("100.0 mm", "100.0 deg");
     let error = found(&on_a_rail(true), "posreg.va", &turned).unwrap_err();
     assert!(error.contains("EXT1 (deg), which are not one to one the joints `rail` (slides)"), "{error}");

@@ -77,7 +77,14 @@ fn a_lens_is_the_same_in_every_form() {
         (
             "mrcal.cameramodel",
             "# generated with mrcal\n{\n    'lensmodel':  'LENSMODEL_OPENCV5',\n\n    # fx,fy,cx,cy,distortion0,...\n    'intrinsics': [ 1400, 1410, \
-             959.5, 599.5, -0.12, 0.03, 1e-4, -2e-4, 0,],\n\n    'rt_cam_ref': [ 0, 0, 0, 0, 0, 0,],\n    'imagersize': [ 1920, 1200,],\n}\n"
+             959.5, 599.5, -0.12, 0.03, 1e-4, -2e-4, 0,],\n\n    'rt_cam_ref': [ 0, 0, 0, 0, 0, 0,],\n    'imagersize': [ 1920, 1200,],\n\n    \
+             'optimization_inputs': b'P)h>@6aWAK2ml36Ls*{}(#&;[0001v004T}'\n}\n"
+                .to_owned(),
+        ),
+        (
+            "device.json",
+            "{\"model\": \"D435\", \"color\": {\"width\": 1920, \"height\": 1200, \"ppx\": 959.5, \"ppy\": 599.5, \"fx\": 1400.0, \"fy\": 1410.0, \
+             \"distortion_model\": \"plumb_bob\", \"coeffs\": [-0.12, 0.03, 0.0001, -0.0002, 0.0]}, \"depth_scale\": 0.001, \"crop\": false}"
                 .to_owned(),
         ),
     ] {
@@ -148,6 +155,22 @@ fn lenses_of_other_models_are_named() {
             "mrcal.cameramodel",
             "{ 'lensmodel': 'LENSMODEL_CAHVOR', 'intrinsics': [ 1, 2 ] }",
             "`LENSMODEL_CAHVOR` of mrcal, expected LENSMODEL_OPENCV8",
+        ),
+        (
+            "short.cameramodel",
+            "{ 'lensmodel': 'LENSMODEL_OPENCV8', 'intrinsics': [ 700, 700, 320, 240, 0.1, 0.2, 0, 0, 0 ] }",
+            "found 9 numbers of `intrinsics`, expected 12 of LENSMODEL_OPENCV8",
+        ),
+        (
+            "halved.json",
+            "{\"cameras\": {\"scale\": 0.5, \"left\": {\"fx\": 600, \"fy\": 600, \"cx\": 320, \"cy\": 240}}}",
+            "found `0.5` for `cameras.scale`, which this program does not apply",
+        ),
+        (
+            "apart.json",
+            "{\"left\": {\"fx\": 600, \"fy\": 600, \"cx\": 320, \"cy\": 240}, \"right\": {\"fx\": 600, \"fy\": 600, \"cx\": 320, \"cy\": 240}, \
+             \"bent\": {\"dist_left\": [0.1, 0, 0, 0, 0], \"dist_right\": [0.1, 0, 0, 0, 0]}}",
+            "found the distortion `bent.dist_left.0` away from its lens",
         ),
         (
             "kalibr.yaml",
@@ -295,6 +318,35 @@ fn samples_of_other_programs_are_the_same_poses() {
                 + &of(&|arm, seen| format!("{}\n", listed(&[numbers(arm), rvec(seen)].concat()))),
         ));
     }
+    // As easy_handeye2 names it, and libfranka's frames of the tool beside the pose.
+    texts.push(("arm.samples", texts[1].1.clone()));
+    let numbers = |pose: &Pose| listed(&by_columns(pose));
+    let tool = listed(&sixteen(&Pose::from_xyz_rpy([0.0, 0.0, 0.1], [0.0, 0.0, -0.8])));
+    texts.push((
+        "states.json",
+        format!(
+            "[{}]",
+            matrices(&|(arm, seen)| format!(
+                "{{\"O_T_EE\": [{}], \"F_T_EE\": [{tool}], \"O_T_EE_d\": [{tool}], \"target\": [{}]}}",
+                numbers(arm),
+                numbers(seen)
+            ))
+        ),
+    ));
+    // An entry without its target, and one without its arm: as many of both, and no pairs.
+    let lame = format!(
+        "[{}]",
+        matrices(&|it| {
+            let (arm, seen) = (format!("\"robot\": {}", json(&it.0)), format!("\"target\": {}", json(&it.1)));
+            match all.iter().position(|other| other == it) {
+                Some(1) => format!("{{{arm}}}"),
+                Some(3) => format!("{{{seen}}}"),
+                _ => format!("{{{arm}, {seen}}}"),
+            }
+        })
+    );
+    let error = read(&[folder.write("lame.json", &lame)]).unwrap_err();
+    assert!(error.contains("found 4 poses of the arm, 4 of the target"), "{error}");
     for (name, text) in texts {
         let found = read(&[folder.write(name, &text)]).unwrap_or_else(|error| panic!("{name}: {error}"));
         are_poses(name, &found);

@@ -1,9 +1,9 @@
 //! Unpacks chunks, and the messages or the whole files that rosbag2 compresses.
 
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader, Read};
 
 use lz4_flex::frame::FrameDecoder as Lz4;
-use ruzstd::decoding::StreamingDecoder as Zstd;
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder as Zstd};
 
 /// The beginning of a frame of zstd; no message has it.
 pub const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
@@ -16,8 +16,32 @@ pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Resul
     if !is_packed {
         return Ok(Box::new(file));
     }
-    let unpacked = Zstd::new(file).map(|it| Box::new(it.take(most)) as Box<dyn Read + 'r>);
-    unpacked.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))
+    let frame = Zstd::new(BufReader::new(file));
+    let frame = frame.map_err(|error| io::Error::other(format!("{error}; unpack it by `zstd -d`")))?;
+    Ok(Box::new(Frames { frame: Some(frame) }.take(most)))
+}
+
+/// The bytes of all frames of a file; one that is cut off ends where its bytes end, as the same file does unpacked.
+struct Frames<R: Read> {
+    frame: Option<Zstd<BufReader<R>, FrameDecoder>>,
+}
+
+impl<R: Read> Read for Frames<R> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        while let Some(mut frame) = self.frame.take() {
+            let read = frame.read(into);
+            if matches!(read, Ok(1..)) || into.is_empty() {
+                self.frame = Some(frame);
+                return read;
+            }
+            let mut file = frame.into_inner();
+            if !file.fill_buf()?.is_empty() {
+                read?;
+                self.frame = Zstd::new(file).ok();
+            }
+        }
+        Ok(0)
+    }
 }
 
 /// Puts the bytes of a message that is compressed by itself into `into`, up to so many.
@@ -58,6 +82,22 @@ fn frames(mut packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_are_read_to_their_last_frame_and_as_far_as_they_go() {
+        let bytes: Vec<u8> = (0..100_000_u32).flat_map(|it| (it / 7).to_le_bytes()).collect();
+        let zstd = ruzstd::encoding::compress_to_vec(&bytes[..], ruzstd::encoding::CompressionLevel::Fastest);
+        let read = |packed: &[u8]| {
+            let mut into = Vec::new();
+            stream(packed, true, u64::MAX).and_then(|mut it| it.read_to_end(&mut into)).map(|_| into)
+        };
+        let twice = [zstd.clone(), zstd.clone()].concat();
+        assert_eq!(read(&twice).unwrap(), [bytes.clone(), bytes.clone()].concat());
+        let cut = read(&twice[..zstd.len() * 3 / 2]).unwrap();
+        assert!(cut.len() >= bytes.len() && cut.len() < 2 * bytes.len());
+        assert_eq!(cut[..bytes.len()], bytes[..]);
+        assert!(read(b"no zstd").is_err());
+    }
 
     #[test]
     fn chunks_are_unpacked_and_damaged_ones_are_errors() {

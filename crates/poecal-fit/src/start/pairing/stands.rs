@@ -7,6 +7,10 @@ use poecal_numerics::distributions::{mean_square_quantile, median};
 /// Shortest time of a stand, and what is cut off at both of its ends, seconds.
 const SHORTEST_S: f64 = 0.3;
 const CUT_S: f64 = 0.1;
+/// Share of the shortest time that is enough for one of these.
+const SHORT: f64 = 0.75;
+/// Share of the time of a stream that short stands alone must be.
+const MOSTLY_STILL: f64 = 0.8;
 /// Longest time without a row within a window, seconds, and as many steps from row to row where that is more.
 const LONGEST_GAP_S: f64 = 0.15;
 const LONGEST_GAP_STEPS: f64 = 2.5;
@@ -120,7 +124,23 @@ impl Stream {
     /// The times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.
     #[must_use]
     pub fn stands(&self) -> Vec<Stand> {
-        let windows = self.windows();
+        let found = self.stands_by(SHORTEST_S);
+        if !found.is_empty() {
+            return found;
+        }
+        // Nothing but stands one after the other, each as short as may be, is seen by shorter windows.
+        let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
+        let mut found = self.stands_by(0.5 * SHORTEST_S);
+        // A row at an end may be lost in the noise.
+        found.retain(|it| it.span_s.1 - it.span_s.0 + step >= SHORT * SHORTEST_S);
+        let still: f64 = found.iter().map(|it| it.span_s.1 - it.span_s.0 + step).sum();
+        let all = self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first);
+        if still >= MOSTLY_STILL * all { found } else { Vec::new() }
+    }
+
+    /// The times in which nothing moves, by windows of this length, seconds.
+    fn stands_by(&self, window_s: f64) -> Vec<Stand> {
+        let windows = self.windows(window_s);
         if windows.len() < FEWEST {
             return Vec::new();
         }
@@ -184,8 +204,8 @@ impl Stream {
         Some(Stand { rows: start..end, span_s: (first, last) })
     }
 
-    /// Windows of the shortest time of a stand, one from each row on, without gaps.
-    fn windows(&self) -> Vec<Range<usize>> {
+    /// Windows of this length, seconds, one from each row on, without gaps.
+    fn windows(&self, window_s: f64) -> Vec<Range<usize>> {
         let mut found = Vec::new();
         let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
         let longest = LONGEST_GAP_S.max(LONGEST_GAP_STEPS * step);
@@ -197,7 +217,7 @@ impl Stream {
                 if end > start && next - time(end - 1).unwrap_or(next) > longest {
                     gap = Some(end);
                 }
-                if next - begin >= SHORTEST_S {
+                if next - begin >= window_s {
                     break;
                 }
                 end += 1;
