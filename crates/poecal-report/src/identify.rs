@@ -12,7 +12,7 @@ use poecal_model::measurement::{Measured, Quantity};
 use poecal_model::robot::JointKind;
 use poecal_numerics::text::visible;
 use poecal_plan::plan::ListExpectation;
-use poecal_results::calibration_file::{IdentifiabilityEntry, Keyed, SigmaKeys};
+use poecal_results::calibration_file::IdentifiabilityEntry;
 use poecal_results::model::Model;
 
 /// Directions of a kind that the terminal names.
@@ -26,7 +26,7 @@ pub struct Identify {
     kind: &'static str,
     frame: &'static str,
     configurations: usize,
-    noise: Keyed<SigmaKeys>,
+    noise: Measured<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pictures: Option<PicturesEntry>,
     identifiability: IdentifiabilityEntry,
@@ -86,7 +86,7 @@ impl Identify {
             kind: if found.pictures.is_some() { "picture" } else { session.kind.word() },
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
-            noise: sigma.into(),
+            noise: sigma,
             pictures: found.pictures.as_ref().map(PicturesEntry::of),
             identifiability: IdentifiabilityEntry::of(&found.identifiability),
             expected_error: ExpectedEntry {

@@ -17,7 +17,7 @@ pub(crate) fn suspected(out: &mut String, file: &CalibrationFile) {
         Some(loss) => format!("fitted by the {} loss", loss.word()),
         None => "fitted by least squares".to_owned(),
     };
-    let count = robust.suspected_fit + robust.suspected_held_out;
+    let count = robust.suspected.training + robust.suspected.held_out;
     if count == 0 {
         if robust.loss.is_some() {
             line(out, "outliers", &format!("none suspected; {fit}"));
@@ -26,7 +26,7 @@ pub(crate) fn suspected(out: &mut String, file: &CalibrationFile) {
         return;
     }
     let rows = if count == 1 { "row" } else { "rows" };
-    let sets = format!("{} fitted, {} held out", robust.suspected_fit, robust.suspected_held_out);
+    let sets = format!("{} fitted, {} held out", robust.suspected.training, robust.suspected.held_out);
     line(out, "outliers", &format!("{count} {rows} suspected ({sets}); {fit}"));
     // Writing to a String cannot fail.
     let worst = || file.outliers.iter().take(WORST);

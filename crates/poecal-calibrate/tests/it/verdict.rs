@@ -160,7 +160,7 @@ fn stragglers_do_not_count_as_coverage() {
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
     let coverage = &found.trust.coverage[1];
     println!("{} rows, {coverage:?}", made.data.len());
-    assert!(made.data.len() >= 50 && coverage.stragglers > 0.4);
+    assert!(made.data.len() >= 50 && coverage.isolated_share > 0.4);
     assert!(found.verdict.reasons.iter().any(|reason| reason.contains("joint2 was moved through")));
 }
 

@@ -66,8 +66,8 @@ fn verdict_says_how_far_a_calibration_may_be_used() {
         assert_eq!(file["cross_validation"]["blocked"].as_array().unwrap().len(), 12);
         for correction in file["corrections"].as_array().unwrap() {
             assert!(
-                correction["sigma_axis_shift_mm"].as_f64().unwrap()
-                    < correction["axis_shift_mm"].as_f64().unwrap()
+                correction["sigma"]["shift_mm"].as_f64().unwrap()
+                    < correction["axis"]["shift_mm"].as_f64().unwrap()
             );
             assert!(correction["left_nominal_rms_mm"].as_f64().unwrap() > 0.1);
         }

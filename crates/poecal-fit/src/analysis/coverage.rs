@@ -21,7 +21,7 @@ pub struct JointCoverage {
     /// Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
     /// count as sampled.
     #[serde(default)]
-    pub stragglers: f64,
+    pub isolated_share: f64,
     /// Smallest allowed value; null without limits, or with placeholders.
     pub limit_min: Option<f64>,
     /// Largest allowed value.
@@ -33,7 +33,7 @@ impl JointCoverage {
     pub fn of_give(name: &str) -> Self {
         let joint = name.to_owned();
         let (limit_min, limit_max) = (None, None);
-        JointCoverage { joint, sampled_min: 0.0, sampled_max: 0.0, stragglers: 0.0, limit_min, limit_max }
+        JointCoverage { joint, sampled_min: 0.0, sampled_max: 0.0, isolated_share: 0.0, limit_min, limit_max }
     }
 
     /// Sampled share of the allowed range, 0 to 1 (theory.md §9, *Verdict*). A revolute joint is allowed at most one turn, also without
@@ -46,7 +46,7 @@ impl JointCoverage {
             JointKind::Revolute => limits.map_or(turn, |span| span.min(turn)),
             JointKind::Prismatic => limits?,
         };
-        let sampled = (self.sampled_max - self.sampled_min) * (1.0 - self.stragglers);
+        let sampled = (self.sampled_max - self.sampled_min) * (1.0 - self.isolated_share);
         (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
@@ -95,7 +95,7 @@ pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
                 joint: joint.name.clone(),
                 sampled_min,
                 sampled_max,
-                stragglers: stragglers(session.packed, rows, index),
+                isolated_share: isolated_share(session.packed, rows, index),
                 limit_min: limits.map(|limits| limits.lower),
                 limit_max: limits.map(|limits| limits.upper),
             }
@@ -146,7 +146,7 @@ fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f
 }
 
 /// Share of a joint's sampled range that only stragglers reach: at each end at most a fiftieth of the rows, beyond a gap.
-fn stragglers(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
+fn isolated_share(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
     const FEW: usize = 50;
     const GAP: f64 = 0.15;
     let mut values: Vec<f64> = rows.iter().map(|&row| packed.joint_values(row as usize)[joint]).collect();

@@ -56,8 +56,8 @@ pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
     });
     html! {
         @if let Some(doubt) = file.gain_doubt() { (told_words(&capital(&doubt))) ". " }
-        "A program made for the nominal robot, with its frames taught on this robot, misses its targets by " (figure(found.all.median_mm, "compensation.median_mm")) " mm (median), and by up to "
-        (figure(found.all.max_mm, "compensation.max_mm")) " mm, within the measured part of the workspace. "
+        "A program made for the nominal robot, with its frames taught on this robot, misses its targets by " (figure(found.all.position_mm.median, "compensation.position_mm.median")) " mm (median), and by up to "
+        (figure(found.all.position_mm.max, "compensation.position_mm.max")) " mm, within the measured part of the workspace. "
         @if let Some((sigma, key)) = expected {
             "After correction with this calibration, an error of " (figure(sigma, key)) " mm (RMS) is expected."
         } @else {
@@ -68,10 +68,10 @@ pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
 
 /// How far uncorrected programs miss.
 fn map(found: &CompensationEntry) -> Markup {
-    let value = |it: &WorkspaceCellEntry| Some(it.displaced.median_mm);
+    let value = |it: &WorkspaceCellEntry| Some(it.displaced.position_mm.median);
     let axis = axis_words(found);
     let worst =
-        found.cells.iter().max_by(|one, other| one.displaced.max_mm.total_cmp(&other.displaced.max_mm));
+        found.cells.iter().max_by(|one, other| one.displaced.position_mm.max.total_cmp(&other.displaced.position_mm.max));
     let description = format!(
         "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
          is at {}. The table below has all figures.",
@@ -79,7 +79,7 @@ fn map(found: &CompensationEntry) -> Markup {
     );
     heat_map(
         found,
-        found.all.max_mm < SMALL,
+        found.all.position_mm.max < SMALL,
         value,
         ("Error of an uncorrected program", description, "(median)"),
     )
@@ -156,9 +156,9 @@ fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     format!(
         "{}: median {} mm, at most {} mm and {}°{} ({configurations})",
         place_words(found, it),
-        number(own.median_mm),
-        number(own.max_mm),
-        number(own.max_deg),
+        number(own.position_mm.median),
+        number(own.position_mm.max),
+        number(own.rotation_deg.max),
         expected.unwrap_or_default()
     )
 }
@@ -185,14 +185,11 @@ fn joints(found: &CompensationEntry) -> Markup {
     );
     for (k, it) in found.joints.iter().enumerate() {
         let key = |name: &str| format!("compensation.joints.{k}.{name}");
-        let (median, largest, of, unit) = match it.median_mm.zip(it.max_mm) {
-            Some((median, largest)) => (Some(median), Some(largest), "mm", "mm"),
-            None => (it.median_deg, it.max_deg, "deg", "°"),
-        };
+        let unit = if it.unit == "deg" { "°" } else { &it.unit };
         table.row(&[
             &quoted(&it.reading, key("reading")),
-            &figure_or(median, key(&format!("median_{of}")), "–"),
-            &figure_or(largest, key(&format!("max_{of}")), "–"),
+            &figure(it.change.median, key("median")),
+            &figure(it.change.max, key("max")),
             &unit,
         ]);
     }
@@ -208,15 +205,15 @@ fn exceptions(found: &CompensationEntry) -> Markup {
     row("all", found.all.configurations, "configurations");
     row(
         "need no correction: the error is within what is expected of the calibration",
-        found.needless,
-        "needless",
+        found.within_expected_error,
+        "within_expected_error",
     );
     if !found.joints.is_empty() {
         row("corrected values beyond a joint's limits", found.beyond_limits, "beyond_limits");
         row(
             "not corrected: near a singularity, where the arm would have to bend another way",
-            found.unmended,
-            "unmended",
+            found.not_correctable,
+            "not_correctable",
         );
     }
     html! { (table) }
@@ -245,10 +242,10 @@ fn table(found: &CompensationEntry) -> HtmlTable {
             html! { (metres(found, it.radius_m)) },
             html! { (metres(found, it.height_m)) },
             count(own.configurations, key("configurations")),
-            figure(own.median_mm, key("median_mm")),
-            figure(own.max_mm, key("max_mm")),
-            figure(own.median_deg, key("median_deg")),
-            figure(own.max_deg, key("max_deg")),
+            figure(own.position_mm.median, key("position_mm.median")),
+            figure(own.position_mm.max, key("position_mm.max")),
+            figure(own.rotation_deg.median, key("rotation_deg.median")),
+            figure(own.rotation_deg.max, key("rotation_deg.max")),
             figure_or(it.sigma_position_mm, key("sigma_position_mm"), "–"),
         ]);
     }

@@ -24,9 +24,9 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
             (plots(&errors(file, found), "Error of each joint that explains most of the residuals in a part of its range: by the \
                 calibrated model, by the corrected one, and what the joint's own terms say, less their mean, which is no error: its offset. The band is one \
                 standard deviation to each side."))
-            @if !found.confused.is_empty() {
-                h3 { "Not told apart" }
-                (list(&found.confused.iter().enumerate().map(|(k, words)| quoted(words, format_args!("corrected.confused.{k}"))).collect::<Vec<_>>()))
+            @if !found.indistinguishable.is_empty() {
+                h3 { "Not distinguishable" }
+                (list(&found.indistinguishable.iter().enumerate().map(|(k, words)| quoted(words, format_args!("corrected.indistinguishable.{k}"))).collect::<Vec<_>>()))
             }
         }
     } else {
@@ -36,7 +36,7 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
 }
 
 fn effects(found: &CorrectedEntry) -> Markup {
-    let head = ["joint", "what it does", "±, mrad or mm", "told, %", "at the target, mm (RMS)"];
+    let head = ["joint", "what it does", "±, mrad or mm", "determined, %", "at the target, mm (RMS)"];
     let mut table = HtmlTable::new("What the terms do in the fitted configurations", 2, &head);
     let mut faint = 0;
     for (k, it) in found.effects.iter().enumerate() {
@@ -44,12 +44,12 @@ fn effects(found: &CorrectedEntry) -> Markup {
             faint += 1;
             continue;
         }
-        let EffectEntry { joint, words, sigma, told, effect_mm, .. } = it;
+        let EffectEntry { joint, words, sigma, determined_share, effect_mm, .. } = it;
         table.row(&[
             &quoted(joint, format_args!("corrected.effects.{k}.joint")),
             &quoted(words, format_args!("corrected.effects.{k}.words")),
             &figure(*sigma, format_args!("corrected.effects.{k}.sigma")),
-            &scaled(*told, format_args!("corrected.effects.{k}.told"), 100.0),
+            &scaled(*determined_share, format_args!("corrected.effects.{k}.determined_share"), 100.0),
             &figure(*effect_mm, format_args!("corrected.effects.{k}.effect_mm")),
         ]);
     }

@@ -181,9 +181,9 @@ fn noise(file: &CalibrationFile) -> Markup {
         NoiseSource::Estimated => "estimated from the fit",
     };
     html! {
-        @for (k, (quantity, key, sigma)) in noise.sigma.keys().enumerate() {
+        @for (k, (quantity, sigma)) in noise.sigma.iter().enumerate() {
             @if k > 0 { ", " }
-            (figure(sigma, format_args!("noise.{key}"))) (spaced(quantity.unit())) (further_words(quantity))
+            (figure(sigma, format_args!("noise.sigma.{}", quantity.key()))) (spaced(quantity.unit())) (further_words(quantity))
         }
         @if noise.sigma.iter().any(|(quantity, _)| quantity.components() > 1) { " each component" }
         ", " (source)

@@ -132,12 +132,12 @@ fn component_note(residuals: &Residuals) -> String {
 fn set_tables(file: &CalibrationFile) -> Markup {
     let (accuracy, robust) = (&file.accuracy, &file.robust);
     let without =
-        [&robust.training_without_suspected, &robust.held_out_without_suspected].map(Option::as_ref);
+        [&robust.without_suspected.training, &robust.without_suspected.held_out].map(Option::as_ref);
     let sets = [
         ("fitted rows", "accuracy.training", Some(&accuracy.training)),
         ("held-out rows", "accuracy.held_out", accuracy.held_out.as_ref()),
-        ("fitted rows without the suspected", "robust.training_without_suspected", without[0]),
-        ("held-out rows without the suspected", "robust.held_out_without_suspected", without[1]),
+        ("fitted rows without the suspected", "robust.without_suspected.training", without[0]),
+        ("held-out rows without the suspected", "robust.without_suspected.held_out", without[1]),
     ];
     html! {
         div.tables {
@@ -259,12 +259,12 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
         }
     };
     let content = html! {
-        @if robust.suspected_fit + robust.suspected_held_out == 0 {
+        @if robust.suspected.training + robust.suspected.held_out == 0 {
             p { "No row is a suspected outlier. " (fit) }
         } @else {
             p {
-                (count(robust.suspected_fit, "robust.suspected_fit")) " fitted and "
-                (count(robust.suspected_held_out, "robust.suspected_held_out"))
+                (count(robust.suspected.training, "robust.suspected.training")) " fitted and "
+                (count(robust.suspected.held_out, "robust.suspected.held_out"))
                 " held-out rows have residuals too large for noise, in the fit of the joint axes. " (fit) " " b { "Studentised" }
                 " is the length of the residual in units of its own standard deviation, " b { "weight" }
                 " is that of the row in the fit (or what it would be). Check whether a reflector was knocked, or two were confused."
@@ -333,7 +333,7 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
         };
         let place = named(residuals, &found.file, found.row, format_args!("outliers.{k}.row"));
         let mut cells = vec![place, set.render()];
-        let residuals = measured.iter().map(|quantity| found.residual.named(*quantity));
+        let residuals = measured.iter().map(|it| (format!("residual.{}", it.key()), found.residual.get(*it)));
         cells.extend(residuals.map(|(key, residual)| figure(residual, &key)));
         cells.extend([figure(Some(found.studentized), "studentized"), figure(Some(found.weight), "weight")]);
         table.cells(cells);
@@ -344,10 +344,10 @@ fn suspect_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
 fn repeatability(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let Some(found) = &file.repeatability else { return Markup::default() };
     let tables =
-        found.mean.repeatability.keys().map(|(quantity, ..)| repeatability_table(found, residuals, quantity));
+        found.mean.repeatability.iter().map(|(quantity, _)| repeatability_table(found, residuals, quantity));
     let tables: Vec<HtmlTable> = tables.collect();
-    let worst = found.worst_repeatability.keys().map(|(quantity, key, worst)| {
-        html! { (figure(worst, format_args!("repeatability.{key}"))) (spaced(quantity.unit())) (further_words(quantity)) }
+    let worst = found.worst_repeatability.iter().map(|(quantity, worst)| {
+        html! { (figure(worst, format_args!("repeatability.worst_repeatability.{}", quantity.key()))) (spaced(quantity.unit())) (further_words(quantity)) }
     });
     let worst: Vec<Markup> = worst.collect();
     let content = html! {
@@ -372,12 +372,12 @@ fn repeatability_table(found: &RepeatabilityEntry, residuals: &Residuals, quanti
     let head = ["pose", "rows", "accuracy, nominal", "registered", "calibrated", "repeatability"];
     let caption = format!("Pose accuracy and repeatability, {} ({})", sign(quantity.unit()), quantity.name());
     let mut table = HtmlTable::new(&caption, 1, &head);
-    let is_all = found.mean.repeatability.keys().count() == 1;
+    let is_all = found.mean.repeatability.iter().count() == 1;
     let rows = if is_all { count(found.rows, "repeatability.rows") } else { Markup::default() };
     let figures = |numbers: [(String, Option<f64>); 4], key: &str| {
         numbers.map(|(own, value)| figure_or(value, format_args!("{key}.{own}"), "–"))
     };
-    let mean = figures(found.mean.of(quantity), "repeatability");
+    let mean = figures(found.mean.by_key(quantity), "repeatability");
     table.cells(["mean of all".render(), rows].into_iter().chain(mean));
     let listed = found.listed.iter().enumerate();
     let listed = listed.filter(|(_, pose)| pose.own.repeatability.get(quantity).is_some());
@@ -385,7 +385,7 @@ fn repeatability_table(found: &RepeatabilityEntry, residuals: &Residuals, quanti
         let key = format!("repeatability.listed.{k}");
         let place = named(residuals, &pose.file, pose.row, format_args!("{key}.row"));
         let rows = count(pose.rows, format_args!("{key}.rows"));
-        table.cells([place, rows].into_iter().chain(figures(pose.own.of(quantity), &key)));
+        table.cells([place, rows].into_iter().chain(figures(pose.own.by_key(quantity), &key)));
     }
     table
 }

@@ -43,13 +43,13 @@ fn expected(file: &CalibrationFile, found: &UncertaintyEntry, of: &str) -> Marku
         ]);
     }
     let leading = file.accuracy.training.calibrated.leading().map(|(quantity, _)| quantity);
-    let source = leading.and_then(|leading| Some((leading, found.residuals.get(leading)?)));
+    let source = leading.and_then(|leading| Some((leading, *found.residuals.get(&leading)?)));
     html! {
         (table)
         @if let Some((leading, source)) = source { p {
             @match source {
                 Attribution::Robot => {
-                    (figure_or(found.discrepancy.get(leading), format_args!("{of}.discrepancy_{}", leading.key()), "–"))
+                    (figure_or(found.discrepancy.get(leading), format_args!("{of}.model_error.{}", leading.key()), "–"))
                     (spaced(leading.unit()))
                     " per component: the error of the model, by residuals and cross-validation. "
                     @if matches!(file.noise.source, NoiseSource::Given | NoiseSource::Rows) {
@@ -103,7 +103,7 @@ fn blocks(found: &CrossValidationEntry) -> Markup {
     let blocks = found.blocked.iter().enumerate();
     let worst = blocks.max_by(|(_, a), (_, b)| a.rms.lead().total_cmp(&b.rms.lead()));
     let measured: Vec<(Quantity, String)> =
-        found.random.rms.keys().map(|(quantity, key, _)| (quantity, key)).collect();
+        found.random.rms.iter().map(|(quantity, _)| (quantity, format!("rms.{}", quantity.key()))).collect();
     let rms =
         |(quantity, _): &(Quantity, String)| format!("{}, {} (RMS)", quantity.name(), sign(quantity.unit()));
     let errors: Vec<String> = measured.iter().map(rms).collect();

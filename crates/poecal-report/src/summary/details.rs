@@ -21,10 +21,10 @@ pub(crate) fn all(out: &mut String, file: &CalibrationFile) {
         line(out, "pictures", &pictures_words(pictures));
     }
     out.push('\n');
-    let training = file.robust.training_without_suspected.as_ref().unwrap_or(&file.accuracy.training);
-    let held_out = file.robust.held_out_without_suspected.as_ref().or(file.accuracy.held_out.as_ref());
+    let training = file.robust.without_suspected.training.as_ref().unwrap_or(&file.accuracy.training);
+    let held_out = file.robust.without_suspected.held_out.as_ref().or(file.accuracy.held_out.as_ref());
     out.push_str(&accuracy_table(training, held_out));
-    if file.robust.suspected_fit + file.robust.suspected_held_out > 0 {
+    if file.robust.suspected.training + file.robust.suspected.held_out > 0 {
         out.push_str("  (without suspected rows)\n");
     }
     out.push('\n');
@@ -173,7 +173,7 @@ fn corrected(out: &mut String, file: &CalibrationFile) {
         "joints do",
         told.map(|it| format!("{} ({} mm at the target, RMS)", it.words, number(it.effect_mm))),
     );
-    lines(out, "not told", &found.confused);
+    lines(out, "not told", &found.indistinguishable);
 }
 
 /// Expected errors, cross-validation, and what each joint's correction is worth.

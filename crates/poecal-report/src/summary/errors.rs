@@ -35,19 +35,19 @@ impl<'a> Leading<'a> {
     pub(crate) fn of(file: &'a CalibrationFile) -> Self {
         let (accuracy, robust) = (&file.accuracy, &file.robust);
         let training = (&accuracy.training, "accuracy.training");
-        let rest = robust.training_without_suspected.as_ref();
-        let rest = rest.map(|rest| (rest, "robust.training_without_suspected"));
+        let rest = robust.without_suspected.training.as_ref();
+        let rest = rest.map(|rest| (rest, "robust.without_suspected.training"));
         let all = String::new();
         let ((set, key), without, beside) = match &accuracy.held_out {
             Some(set) => {
-                let rest = robust.held_out_without_suspected.as_ref();
-                let words = format!("without {} suspected", robust.suspected_held_out);
-                let beside = rest.map(|rest| (words, (rest, "robust.held_out_without_suspected")));
+                let rest = robust.without_suspected.held_out.as_ref();
+                let words = format!("without {} suspected", robust.suspected.held_out);
+                let beside = rest.map(|rest| (words, (rest, "robust.without_suspected.held_out")));
                 ((set, "accuracy.held_out"), all, beside)
             }
             None => rest.map_or((training, all, None), |rest| {
                 let [without, with] =
-                    [" without", "with"].map(|it| format!("{it} {} suspected", robust.suspected_fit));
+                    [" without", "with"].map(|it| format!("{it} {} suspected", robust.suspected.training));
                 (rest, without, Some((with, training)))
             }),
         };
@@ -127,8 +127,8 @@ pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> 
         let (quantity, key) = (Quantity::Position, "corrected.left_out_position_mm".to_owned());
         return found.left_out_position_mm.map(|rms| CrossValidated { quantity, rms, key });
     }
-    let (quantity, key, rms) = file.cross_validation.as_ref()?.random.rms.leading_key()?;
-    Some(CrossValidated { quantity, rms, key: format!("cross_validation.random.{key}") })
+    let (quantity, rms) = file.cross_validation.as_ref()?.random.rms.leading()?;
+    Some(CrossValidated { quantity, rms, key: format!("cross_validation.random.rms.{}", quantity.key()) })
 }
 
 /// Why the error to expect is larger than the one measured, where it is.
@@ -279,7 +279,7 @@ mod tests {
         let gross = Gross { share: 0.04, ..Gross::default() }.spoil(&mut made.data).len();
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-        assert!(file.accuracy.held_out.is_none() && (gross, file.robust.suspected_fit) == (1, 1));
+        assert!(file.accuracy.held_out.is_none() && (gross, file.robust.suspected.training) == (1, 1));
         let leading = Leading::of(&file);
         let [before, after] = leading.ends().unwrap();
         let rms = |model: &ModelAccuracy| model.get(Quantity::Position).unwrap().rms;

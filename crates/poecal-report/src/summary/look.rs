@@ -42,7 +42,7 @@ pub(crate) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
     // Rows that a repair left out are told with it.
     let is_told = file.repairs.iter().any(|it| it.kind == EventKind::Rows);
-    let suspects = file.robust.suspected_fit + file.robust.suspected_held_out;
+    let suspects = file.robust.suspected.training + file.robust.suspected.held_out;
     let point = |place: Place, text: &str| Point { text: text.to_owned(), place };
     let is_new = |text: &str| !stated.iter().any(|reason| reason == text);
 
@@ -140,19 +140,19 @@ pub(crate) fn reasons(file: &CalibrationFile) -> Vec<String> {
 fn suspects_words(file: &CalibrationFile) -> String {
     let robust = &file.robust;
     let all = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
-    let count = robust.suspected_fit + robust.suspected_held_out;
+    let count = robust.suspected.training + robust.suspected.held_out;
     let rows = if all == 1 { "row" } else { "rows" };
     let are = if count == 1 { "is an outlier" } else { "are outliers" };
     let counted = match robust.loss {
-        _ if robust.suspected_fit == 0 => "",
+        _ if robust.suspected.training == 0 => "",
         Some(Loss::Tukey) => " with almost no weight",
         Some(Loss::Huber | Loss::Cauchy) => " with less weight",
         None => " with full weight",
     };
-    let is_plain = robust.suspected_fit > 0 && robust.loss.is_none();
+    let is_plain = robust.suspected.training > 0 && robust.loss.is_none();
     let see = if is_plain { SEE_ROBUST } else { "" };
     let sets =
-        format!("{} fitted{counted}{see}, {} held out", robust.suspected_fit, robust.suspected_held_out);
+        format!("{} fitted{counted}{see}, {} held out", robust.suspected.training, robust.suspected.held_out);
     let worst: Vec<String> =
         file.outliers.iter().take(WORST).scan("", |last, outlier| Some(named(outlier, last))).collect();
     let worst = if worst.is_empty() { String::new() } else { format!("; worst {}", worst.join(", ")) };

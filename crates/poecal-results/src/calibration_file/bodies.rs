@@ -133,7 +133,7 @@ impl CalibrationFile {
         for (index, entry) in self.joints.iter().enumerate() {
             let on = entry.on.as_ref().map(|on| on.body(&robot)).transpose()?;
             let give_of =
-                entry.gives.as_deref().map(|name| self.joint_that_gives(name, index)).transpose()?;
+                entry.compliance_of.as_deref().map(|name| self.joint_that_gives(name, index)).transpose()?;
             (robot.joints[index].stands_on, robot.joints[index].give_of) = (on, give_of);
         }
         robot.masses = self.robot.masses.iter().map(|entry| entry.mass(&robot)).collect::<Result<_>>()?;
@@ -224,7 +224,7 @@ impl CalibrationFile {
     fn joint_that_gives(&self, name: &str, give: usize) -> Result<usize> {
         let found = self.joints.iter().position(|entry| entry.name == name);
         let own = &self.joints[give].name;
-        found.filter(|&of| of < give && self.joints[of].gives.is_none()).map_or_else(
+        found.filter(|&of| of < give && self.joints[of].compliance_of.is_none()).map_or_else(
             || refuse(format!("found `{own}` as a give of `{name}`, expected one of a joint before it")),
             Ok,
         )

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use poecal_calibrate::{Calibration, Displacements, Spread, Workspace, workspace};
 use poecal_model::robot::JointKind;
+use poecal_numerics::unit::Unit;
 
 /// How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that mend
 /// it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every third
@@ -16,11 +17,11 @@ pub struct CompensationEntry {
     #[serde(flatten)]
     pub all: DisplacementEntry,
     /// Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend.
-    pub needless: usize,
+    pub within_expected_error: usize,
     /// Configurations whose corrected readings are beyond a joint's limits.
     pub beyond_limits: usize,
     /// Configurations from which no small correction leads to the pose, since a singularity is near: another branch is, or none.
-    pub unmended: usize,
+    pub not_correctable: usize,
     /// Corrections of each reading that moves the tip; none of an arm with fewer than six, which cannot mend every displacement.
     pub joints: Vec<ReadingChangeEntry>,
     /// Joint whose axis the map is about; null if that is the base's z axis.
@@ -36,14 +37,19 @@ pub struct CompensationEntry {
 pub struct DisplacementEntry {
     /// Number of configurations.
     pub configurations: usize,
-    /// Median distance, millimetres.
-    pub median_mm: f64,
-    /// Largest distance, millimetres.
-    pub max_mm: f64,
-    /// Median angle, degrees.
-    pub median_deg: f64,
-    /// Largest angle, degrees.
-    pub max_deg: f64,
+    /// Distances, millimetres.
+    pub position_mm: SpreadEntry,
+    /// Angles, degrees.
+    pub rotation_deg: SpreadEntry,
+}
+
+/// Median and largest of some sizes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SpreadEntry {
+    /// Median.
+    pub median: f64,
+    /// Largest.
+    pub max: f64,
 }
 
 /// A part of the workspace: a ring about the axis, as wide and as high as a cell.
@@ -67,43 +73,36 @@ pub struct WorkspaceCellEntry {
 pub struct ReadingChangeEntry {
     /// The reading.
     pub reading: String,
-    /// Median correction of one that turns, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub median_deg: Option<f64>,
-    /// The largest.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_deg: Option<f64>,
-    /// Median correction of one that slides, millimetres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub median_mm: Option<f64>,
-    /// The largest.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_mm: Option<f64>,
+    /// Unit of the numbers: `deg`, or `mm` of a joint that slides.
+    pub unit: String,
+    /// Sizes of its corrections.
+    #[serde(flatten)]
+    pub change: SpreadEntry,
+}
+
+impl SpreadEntry {
+    fn shown(unit: Unit, found: &Spread) -> Self {
+        SpreadEntry { median: unit.shown(found.median), max: unit.shown(found.largest) }
+    }
 }
 
 impl DisplacementEntry {
     fn of(found: &Displacements) -> Self {
         DisplacementEntry {
             configurations: found.configurations,
-            median_mm: 1e3 * found.position_m.median,
-            max_mm: 1e3 * found.position_m.largest,
-            median_deg: found.rotation_rad.median.to_degrees(),
-            max_deg: found.rotation_rad.largest.to_degrees(),
+            position_mm: SpreadEntry::shown(Unit::Metre, &found.position_m),
+            rotation_deg: SpreadEntry::shown(Unit::Radian, &found.rotation_rad),
         }
     }
 }
 
 impl ReadingChangeEntry {
     fn of((name, kind, spread): &(String, JointKind, Spread)) -> Self {
-        let turns = *kind == JointKind::Revolute;
-        let angle = |value: f64| turns.then(|| value.to_degrees());
-        let length = |value: f64| (!turns).then_some(1e3 * value);
+        let unit = if *kind == JointKind::Revolute { Unit::Radian } else { Unit::Metre };
         ReadingChangeEntry {
             reading: name.clone(),
-            median_deg: angle(spread.median),
-            max_deg: angle(spread.largest),
-            median_mm: length(spread.median),
-            max_mm: length(spread.largest),
+            unit: unit.symbol().to_owned(),
+            change: SpreadEntry::shown(unit, spread),
         }
     }
 }
@@ -120,9 +119,9 @@ impl CompensationEntry {
         });
         Some(CompensationEntry {
             all: DisplacementEntry::of(&found.all),
-            needless: found.needless,
+            within_expected_error: found.needless,
             beyond_limits: found.beyond_limits,
-            unmended: found.unmended,
+            not_correctable: found.unmended,
             joints: found.joints.iter().map(ReadingChangeEntry::of).collect(),
             cells: cells.collect(),
             about: found.about,

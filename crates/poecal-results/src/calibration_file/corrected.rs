@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyEntry, InstrumentEntry, targets};
-use super::keyed::{Keyed, SigmaKeys};
 use super::trust::UncertaintyEntry;
 use super::{CalibrationFile, FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry, TargetEntry};
 use poecal_arm::lie::Pose;
@@ -15,7 +14,7 @@ use poecal_calibrate::{
     Correction, JointEffect, JointErrorPart, JointErrors, Sizes, SizesReason, TermGroup, TriedSizes,
 };
 use poecal_fit::analysis::JointCoverage;
-use poecal_model::measurement::Dataset;
+use poecal_model::measurement::{Dataset, Measured};
 use poecal_model::robot::{Gravity, Robot, Statics, Weight};
 use poecal_numerics::error::{ErrorKind, Result};
 
@@ -39,12 +38,12 @@ pub struct CorrectedEntry {
     pub effects: Vec<EffectEntry>,
     /// Effects that the measurements do not tell apart, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub confused: Vec<String>,
+    pub indistinguishable: Vec<String>,
     /// Error of each joint over its sampled range, before and after.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint_errors: Vec<JointErrorsEntry>,
-    /// Standard deviation of the noise, as the fit of screws and terms shows it.
-    pub noise: Keyed<SigmaKeys>,
+    /// Standard deviation of each component of the noise, millimetres or degrees, as the fit of screws and terms shows it.
+    pub noise: Measured<f64>,
     /// Expected errors of predictions; null without more residuals than the measurements determine unknowns.
     pub uncertainty: Option<UncertaintyEntry>,
     /// The corrected robot's frames, and the weights that it carries.
@@ -79,7 +78,7 @@ pub struct EffectEntry {
     /// Its standard deviation.
     pub sigma: f64,
     /// Share of its prior variance that the measurements took away, 0 to 1.
-    pub told: f64,
+    pub determined_share: f64,
     /// Distance by which it moves the target in the fitted rows, but for the mean of all (root mean square), millimetres.
     pub effect_mm: f64,
     /// Whether it is more than chance and the prior make.
@@ -182,7 +181,7 @@ impl CorrectedEntry {
             words: it.words(),
             amplitude: 1e3 * it.amplitude,
             sigma: 1e3 * it.sigma,
-            told: it.told,
+            determined_share: it.told,
             effect_mm: 1e3 * it.effect_m,
             found: it.is_found(),
         };
@@ -201,13 +200,13 @@ impl CorrectedEntry {
         };
         CorrectedEntry {
             effects: found.effects.each.iter().map(effect).collect(),
-            confused: found.effects.confused.clone(),
+            indistinguishable: found.effects.confused.clone(),
             joint_errors: found.effects.errors.iter().map(errors).collect(),
             sizes: of_sizes(&found.sizes),
             reason: found.reason,
             tried: found.tried.iter().filter(|it| it.left_out.is_finite()).map(tried).collect(),
             left_out_position_mm: found.left_out_m.map(|it| with_six_decimals(1e3 * it)),
-            noise: super::measured(&found.training, found.noise).into(),
+            noise: super::measured(&found.training, found.noise),
             uncertainty: UncertaintyEntry::of_correction(found, data),
             robot: RobotEntry::new(robot, &model.robot),
             joints: JointEntry::of_robot(robot, &model.robot),

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::keyed::shown;
+use super::{shown, trust::by_quantity};
 use super::trust::{BootstrapEntry, ExpectedEntry, RangeEntry, held_out};
 use super::{CorrelationsEntry, PoseEntry, UncertaintyEntry, link};
 use poecal_calibrate::{
@@ -10,7 +10,7 @@ use poecal_calibrate::{
 };
 use poecal_fit::parameters::{Parameter, TargetPlace};
 use poecal_fit::uncertainty::{Bootstrap, Discrepancy, Uncertainty};
-use poecal_model::measurement::{Dataset, Measured, Quantity};
+use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::Robot;
 
 /// A model with what it predicts of its own errors.
@@ -150,8 +150,8 @@ impl UncertaintyEntry {
             extrapolation: Some(extrapolation).filter(|it| *it > scatter),
             discrepancy: shown(|quantity| told(quantity, standard_deviation[quantity])),
             noise: shown(|quantity| told(quantity, noise[quantity])),
-            residuals: Measured::of(|quantity| is_told(quantity).then_some(attribution[quantity])).into(),
-            freedom: Measured::of(|quantity| is_finite(quantity).then_some(freedom[quantity])).into(),
+            residuals: by_quantity(&|quantity| is_told(quantity).then_some(attribution[quantity])),
+            freedom: by_quantity(&|quantity| is_finite(quantity).then_some(freedom[quantity])),
             lag_one_correlation: lag_one,
             measured: ExpectedEntry::of(expected.measured.as_ref()?),
             range: ExpectedEntry::of(expected.range.as_ref()?),

@@ -59,9 +59,9 @@ pub struct JointEntry {
     /// Body on which the joint stands, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<BodyEntry>,
-    /// The joint of which this is a give: it turns by its terms alone, whose functions are of that joint.
+    /// The joint whose compliance this is: it turns by its terms alone, whose functions are of that joint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gives: Option<String>,
+    pub compliance_of: Option<String>,
     /// Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(with = "BTreeMap<TermName, f64>")]

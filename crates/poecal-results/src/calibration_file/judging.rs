@@ -47,10 +47,11 @@ impl CalibrationFile {
     /// [`ErrorKind::Model`] if the file holds no valid noise.
     pub fn noise(&self) -> Result<Noise> {
         let sigma = &self.noise.sigma;
-        for (_, key, sigma) in sigma.keys() {
+        for (quantity, sigma) in sigma.iter() {
             if sigma.is_nan() || sigma <= 0.0 {
+                let key = quantity.key();
                 return ErrorKind::Model.refuse(format!(
-                    "found `noise.{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
+                    "found `noise.sigma.{key}` of {sigma}, expected a standard deviation above 0: calibrate again"
                 ));
             }
         }
@@ -71,8 +72,8 @@ impl CalibrationFile {
     pub fn own_error(&self, model: AcceptedModel) -> (f64, &'static str) {
         let (accuracy, robust) = (&self.accuracy, &self.robust);
         let (set, rows) = match &accuracy.held_out {
-            Some(set) => (robust.held_out_without_suspected.as_ref().unwrap_or(set), "held_out"),
-            None => (robust.training_without_suspected.as_ref().unwrap_or(&accuracy.training), "training"),
+            Some(set) => (robust.without_suspected.held_out.as_ref().unwrap_or(set), "held_out"),
+            None => (robust.without_suspected.training.as_ref().unwrap_or(&accuracy.training), "training"),
         };
         let corrected = set.corrected.as_ref().filter(|_| model == AcceptedModel::Corrected);
         let errors = corrected.unwrap_or(&set.calibrated);

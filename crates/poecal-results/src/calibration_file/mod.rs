@@ -11,7 +11,6 @@ mod fitted;
 mod frames;
 mod gain;
 mod judging;
-mod keyed;
 mod known;
 mod link;
 mod original;
@@ -31,15 +30,14 @@ pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use clocks::ClockEntry;
-pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, WorkspaceCellEntry};
+pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry};
 pub use controller::Counted;
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
 };
 pub use frames::*;
-pub use keyed::*;
 pub use original::OriginalUrdf;
-pub use outliers::{OutlierEntry, OutlierSet, RobustEntry};
+pub use outliers::{BySet, OutlierEntry, OutlierSet, RobustEntry};
 pub use pictures::{CommonEntry, PicturesEntry};
 pub use poecal_model::camera::{BoardEntry, CameraEntry, PointEntry};
 pub use recalibrated::{JointRepair, RecalibratedEntry, RecalibrationSources, RepairedPart};
@@ -58,13 +56,13 @@ use poecal_arm::lie::{Pose, Screw, Twist};
 use poecal_calibrate::{Calibration, DeviceFrameKnowledge, ModelAccuracy, names};
 use poecal_fit::forensics::Diagnosis;
 use poecal_fit::parameters::Block;
-use poecal_model::measurement::{Dataset, Measured, Noise};
+use poecal_model::measurement::{Dataset, Measured, Noise, Quantity};
 use poecal_model::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::{json_text, source_text};
 pub use refusal::SCHEMA;
 pub(crate) use refusal::schema_of;
-use refusal::{EARLIER, refusal};
+use refusal::refusal;
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
@@ -104,7 +102,7 @@ impl CalibrationFile {
             suspicions: calibration.suspicions.clone(),
             recalibrated: Vec::new(),
             noise: NoiseEntry {
-                sigma: measured(measured_kinds, calibration.noise).into(),
+                sigma: measured(measured_kinds, calibration.noise),
                 source: calibration.noise_source,
             },
             robot: RobotEntry::new(robot, &calibration.nominal),
@@ -134,10 +132,10 @@ impl CalibrationFile {
         Self::parse(&source_text::read(path, "a calibration.json")?, path)
     }
 
-    /// Reads the text of a file. One of an earlier version that can be read becomes one of this version.
+    /// Reads the text of a file.
     ///
     /// # Errors
-    /// [`ErrorKind::Syntax`] if it is no calibration of a version that can be read.
+    /// [`ErrorKind::Syntax`] if it is no calibration of this version.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         Self::parse_at(text, path.as_ref())
     }
@@ -145,9 +143,7 @@ impl CalibrationFile {
     /// Compiled once, and not for each kind of path.
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         match serde_json::from_str::<Self>(text) {
-            Ok(file) if [SCHEMA, EARLIER].contains(&&*file.schema) => {
-                Ok(CalibrationFile { schema: SCHEMA.to_owned(), ..file })
-            }
+            Ok(file) if file.schema == SCHEMA => Ok(file),
             other => Err(refusal(text, other.err(), path)),
         }
     }
@@ -180,6 +176,11 @@ impl CalibrationFile {
         let schema = settings.into_generator().into_root_schema_for::<CalibrationFile>();
         serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
     }
+}
+
+/// Numbers in the unit of files from those in metres or radians.
+fn shown(mut si: impl FnMut(Quantity) -> Option<f64>) -> Measured<f64> {
+    Measured::of(|quantity| si(quantity).map(|number| quantity.unit().shown(number)))
 }
 
 /// An error of a file that holds no valid robot, as a result.
@@ -289,7 +290,7 @@ impl JointEntry {
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
                 reading: joint.reading.clone(),
                 on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
-                gives: joint.give_of.and_then(|of| robot.joints.get(of)).map(|of| of.name.clone()),
+                compliance_of: joint.give_of.and_then(|of| robot.joints.get(of)).map(|of| of.name.clone()),
                 terms: BTreeMap::new(),
                 nominal_terms: BTreeMap::new(),
             })

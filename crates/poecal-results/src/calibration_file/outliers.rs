@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::CalibrationFile;
-use super::keyed::{Keyed, ResidualKeys, shown};
+use super::shown;
 use poecal_calibrate::{Calibration, Loss, RowError, SetAccuracy, row_influence};
-use poecal_model::measurement::Dataset;
+use poecal_model::measurement::{Dataset, Measured};
 
 /// Most suspected rows in a file; `robust` has their number.
 const LISTED: usize = 1000;
@@ -19,14 +19,19 @@ const LISTED: usize = 1000;
 pub struct RobustEntry {
     /// Loss of a robust fit; null: least squares.
     pub loss: Option<Loss>,
-    /// Number of suspected training rows.
-    pub suspected_fit: usize,
-    /// Number of suspected held-out rows.
-    pub suspected_held_out: usize,
-    /// `accuracy.training` without suspected rows; null if there are none.
-    pub training_without_suspected: Option<SetAccuracy>,
-    /// `accuracy.held_out` without suspected rows; null if there are none.
-    pub held_out_without_suspected: Option<SetAccuracy>,
+    /// Numbers of suspected rows.
+    pub suspected: BySet<usize>,
+    /// `accuracy` without suspected rows; null of a set that has none.
+    pub without_suspected: BySet<Option<SetAccuracy>>,
+}
+
+/// Of the training rows and of those held out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct BySet<T> {
+    /// Of the training rows.
+    pub training: T,
+    /// Of the held-out rows.
+    pub held_out: T,
 }
 
 /// A suspected outlier.
@@ -40,8 +45,7 @@ pub struct OutlierEntry {
     pub set: OutlierSet,
     /// Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
     /// millimetres or degrees.
-    #[serde(flatten)]
-    pub residual: Keyed<ResidualKeys>,
+    pub residual: Measured<f64>,
     /// Studentised residual: length over its own standard deviation.
     pub studentized: f64,
     /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had.
@@ -65,10 +69,14 @@ impl RobustEntry {
         let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
         RobustEntry {
             loss: robustness.loss,
-            suspected_fit: suspected(&calibration.fit_rows),
-            suspected_held_out: suspected(&calibration.held_out_rows),
-            training_without_suspected: robustness.training_rest,
-            held_out_without_suspected: robustness.held_out_rest,
+            suspected: BySet {
+                training: suspected(&calibration.fit_rows),
+                held_out: suspected(&calibration.held_out_rows),
+            },
+            without_suspected: BySet {
+                training: robustness.training_rest,
+                held_out: robustness.held_out_rest,
+            },
         }
     }
 }

@@ -8,11 +8,8 @@ use serde::de::IgnoredAny;
 use poecal_numerics::error::{Error, ErrorKind};
 use poecal_storage::looks_like;
 
-/// Version of the files that are written. Readers take those of version 1 too, and refuse others.
-pub const SCHEMA: &str = "poecal-calibration-2";
-
-/// Version without quantities beside position and rotation, but otherwise the same.
-pub(crate) const EARLIER: &str = "poecal-calibration-1";
+/// Version of the files that are written; those of other versions are refused.
+pub const SCHEMA: &str = "poecal-calibration-3";
 
 /// Message for a text that is no calibration of this version; `error` is the parser's.
 pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path) -> Error {
@@ -38,12 +35,13 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
     if let Err(error) = serde_json::from_str::<IgnoredAny>(text) {
         return syntax(&error);
     }
-    let schema = schema_of(text.as_bytes());
+    let Head { schema, inputs } = Head::read(text.as_bytes());
     ErrorKind::Syntax
         .error(match (schema.as_deref(), error) {
-            (Some(SCHEMA | EARLIER), Some(error)) => return syntax(&error),
+            (Some(SCHEMA), Some(error)) => return syntax(&error),
             (Some(other), _) => {
-                format!("found schema `{other}`, expected `{SCHEMA}`: calibrate again with this version")
+                let again = inputs.again().map_or_else(|| "calibrate again".to_owned(), |it| format!("calibrate again: `{it}`"));
+                format!("found schema `{other}`, expected `{SCHEMA}`, that of this version: {again}")
             }
             (None, _) => {
                 format!("found JSON without the key `schema`, expected a calibration of schema `{SCHEMA}`")
@@ -52,11 +50,42 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         .in_file(path)
 }
 
-/// The key `schema` of a text of JSON; nothing else of it is held.
-pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
-    #[derive(Deserialize)]
-    struct Head {
-        schema: Option<String>,
+/// What files of all versions state of themselves and of their inputs.
+#[derive(Default, Deserialize)]
+struct Head {
+    schema: Option<String>,
+    #[serde(default)]
+    inputs: Sources,
+}
+
+/// The inputs of a calibration, as all versions have them.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Sources {
+    command: Option<String>,
+    model: Option<String>,
+    measurements: Vec<String>,
+}
+
+impl Head {
+    /// The head of a text of JSON; nothing else of it is held.
+    fn read(text: &[u8]) -> Self {
+        serde_json::from_slice(text).unwrap_or_default()
     }
-    serde_json::from_slice::<Head>(text).ok()?.schema
+}
+
+impl Sources {
+    /// The command that makes the calibration again from the inputs that the file lists.
+    fn again(self) -> Option<String> {
+        let Sources { command, model, measurements } = self;
+        command.or_else(|| {
+            let words = std::iter::once(model?).chain(measurements);
+            Some(format!("poecal calibrate {}", words.collect::<Vec<_>>().join(" ")))
+        })
+    }
+}
+
+/// The key `schema` of a text of JSON.
+pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
+    Head::read(text).schema
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::keyed::{CalibratedKeys, Keyed, NominalKeys, RegisteredKeys, RepeatabilityKeys, WorstKeys, shown};
+use super::shown;
 use poecal_calibrate::{Calibration, RepeatedPose, repeatability};
 use poecal_model::measurement::{Dataset, Measured, Quantity};
 
@@ -21,8 +21,7 @@ pub struct RepeatabilityEntry {
     #[serde(flatten)]
     pub mean: PoseRepeatability,
     /// The largest repeatability.
-    #[serde(flatten)]
-    pub worst_repeatability: Keyed<WorstKeys>,
+    pub worst_repeatability: Measured<f64>,
     /// The poses, those with most rows first, at most 100.
     pub listed: Vec<RepeatedPoseEntry>,
 }
@@ -44,30 +43,35 @@ pub struct RepeatedPoseEntry {
 /// Accuracy and repeatability of the quantity by which a pose was measured, millimetres or degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PoseRepeatability {
-    /// Accuracy of the nominal model: distance from its prediction to the mean measured position.
-    #[serde(flatten)]
-    pub accuracy_nominal: Keyed<NominalKeys>,
-    /// Of the registered model.
-    #[serde(flatten)]
-    pub accuracy_registered: Keyed<RegisteredKeys>,
-    /// Of the calibrated model.
-    #[serde(flatten)]
-    pub accuracy_calibrated: Keyed<CalibratedKeys>,
+    /// Distance from the prediction of each model to the mean measured position.
+    pub accuracy: PoseAccuracy,
     /// Repeatability: mean distance of measured positions from their mean, plus three standard deviations.
-    #[serde(flatten)]
-    pub repeatability: Keyed<RepeatabilityKeys>,
+    pub repeatability: Measured<f64>,
+}
+
+/// Accuracy of each model in a pose, millimetres or degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PoseAccuracy {
+    /// Of the nominal model.
+    pub nominal: Measured<f64>,
+    /// Of the registered model.
+    pub registered: Measured<f64>,
+    /// Of the calibrated model.
+    pub calibrated: Measured<f64>,
 }
 
 impl PoseRepeatability {
     /// Those of a quantity with their keys.
     #[must_use]
-    pub fn of(&self, quantity: Quantity) -> [(String, Option<f64>); 4] {
+    pub fn by_key(&self, quantity: Quantity) -> [(String, Option<f64>); 4] {
+        let PoseAccuracy { nominal, registered, calibrated } = self.accuracy;
         [
-            self.accuracy_nominal.named(quantity),
-            self.accuracy_registered.named(quantity),
-            self.accuracy_calibrated.named(quantity),
-            self.repeatability.named(quantity),
+            ("accuracy.nominal", nominal),
+            ("accuracy.registered", registered),
+            ("accuracy.calibrated", calibrated),
+            ("repeatability", self.repeatability),
         ]
+        .map(|(key, values)| (format!("{key}.{}", quantity.key()), values.get(quantity)))
     }
 }
 
@@ -93,10 +97,12 @@ impl RepeatabilityEntry {
             poses: count,
             rows: poses.iter().map(|pose| pose.rows.len()).sum(),
             mean: PoseRepeatability {
-                accuracy_nominal: mean(|pose| pose.accuracy[0]).into(),
-                accuracy_registered: mean(|pose| pose.accuracy[1]).into(),
-                accuracy_calibrated: mean(|pose| pose.accuracy[2]).into(),
-                repeatability: mean(|pose| pose.repeatability).into(),
+                accuracy: PoseAccuracy {
+                    nominal: mean(|pose| pose.accuracy[0]),
+                    registered: mean(|pose| pose.accuracy[1]),
+                    calibrated: mean(|pose| pose.accuracy[2]),
+                },
+                repeatability: mean(|pose| pose.repeatability),
             },
             worst_repeatability: shown(worst),
             listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::of(pose, data)).collect(),
@@ -116,9 +122,11 @@ impl RepeatedPoseEntry {
             row: source.line,
             rows: pose.rows.len(),
             own: PoseRepeatability {
-                accuracy_nominal: shown(|quantity| own(quantity, nominal)),
-                accuracy_registered: shown(|quantity| own(quantity, registered)),
-                accuracy_calibrated: shown(|quantity| own(quantity, calibrated)),
+                accuracy: PoseAccuracy {
+                    nominal: shown(|quantity| own(quantity, nominal)),
+                    registered: shown(|quantity| own(quantity, registered)),
+                    calibrated: shown(|quantity| own(quantity, calibrated)),
+                },
                 repeatability: shown(|quantity| own(quantity, pose.repeatability)),
             },
         }

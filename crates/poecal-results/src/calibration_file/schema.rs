@@ -12,7 +12,6 @@ use super::changes::CommonDirectionEntry;
 use super::compensation::CompensationEntry;
 use super::corrected::CorrectedEntry;
 use super::frames::{FrameEntry, JointEntry, PoseEntry, RobotEntry, StationEntry, TargetEntry};
-use super::keyed::{Keyed, SigmaKeys};
 use super::original::OriginalUrdf;
 use super::recalibrated::RecalibratedEntry;
 use super::trust::{CorrectionEntry, CrossValidationEntry, UncertaintyEntry};
@@ -22,6 +21,7 @@ use poecal_calibrate::{Acceptance, Accuracy, Event, FormulationWords, NoiseSourc
 use poecal_fit::analysis::{Direction, Identifiability, JointCoverage, Observability};
 use poecal_fit::forensics::DiagnosisKind;
 use poecal_import::{InputEntry, JoinEntry, MeasurementFile};
+use poecal_model::measurement::Measured;
 use poecal_model::robot::Controller;
 use poecal_numerics::error::Result;
 use poecal_numerics::solve::Termination;
@@ -282,7 +282,7 @@ pub struct IdentifiabilityEntry {
     pub rank: usize,
     /// Effective number of unknowns that the measurements determine beside the prior.
     #[serde(default)]
-    pub told: Option<f64>,
+    pub effective_unknowns: Option<f64>,
     /// Condition number over these directions; null if there are none.
     pub condition: Option<f64>,
     /// Directions that the configurations do not determine.
@@ -310,7 +310,7 @@ impl IdentifiabilityEntry {
         IdentifiabilityEntry {
             parameters: found.parameters,
             rank: found.rank,
-            told: Some(found.effective_unknowns),
+            effective_unknowns: Some(found.effective_unknowns),
             condition: Some(found.condition).filter(|condition| condition.is_finite()),
             unidentifiable: found.unidentifiable.clone(),
             weak: found.weak.clone(),
@@ -324,8 +324,7 @@ impl IdentifiabilityEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoiseEntry {
     /// Standard deviation of each component of each measured quantity, millimetres or degrees.
-    #[serde(flatten)]
-    pub sigma: Keyed<SigmaKeys>,
+    pub sigma: Measured<f64>,
     /// Source of the noise.
     pub source: NoiseSource,
 }

@@ -1,14 +1,15 @@
 //! Verdict, coverage, cross-validation and uncertainty in `calibration.json`.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::keyed::{AttributionKeys, DiscrepancyKeys, FreedomKeys, Keyed, NoiseKeys, RmsKeys, shown};
-use super::{CorrelationsEntry, JointChangeEntry, PoseEntry};
+use super::{CorrelationsEntry, JointChangeEntry, PoseEntry, shown};
 use poecal_calibrate::{CoverageCheck, Expected, JointCorrection, PartCoverage, RangePart, Trust};
 use poecal_fit::analysis::JointCoverage;
 use poecal_fit::uncertainty::{Attribution, Bootstrap, LeftOut};
-use poecal_model::measurement::Measured;
+use poecal_model::measurement::{Measured, Quantity};
 use poecal_model::robot::Robot;
 
 /// Errors of the rows of a fold or block, predicted by a fit of the others.
@@ -19,8 +20,7 @@ pub struct LeftOutEntry {
     /// Number of rows.
     pub rows: usize,
     /// Root mean square error of each measured quantity, millimetres or degrees.
-    #[serde(flatten)]
-    pub rms: Keyed<RmsKeys>,
+    pub rms: Measured<f64>,
 }
 
 /// Cross-validation on the fitted rows.
@@ -91,29 +91,34 @@ pub struct RangeEntry {
     pub sigma_position_mm: f64,
 }
 
+/// Tilt and shift of an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AxisEntry {
+    /// Of its direction, degrees.
+    pub tilt_deg: Option<f64>,
+    /// Of its place, millimetres; null of a joint that slides.
+    pub shift_mm: Option<f64>,
+}
+
+impl AxisEntry {
+    fn from_si(tilt_rad: Option<f64>, shift_m: Option<f64>) -> Self {
+        AxisEntry { tilt_deg: tilt_rad.map(f64::to_degrees), shift_mm: shift_m.map(|it| 1e3 * it) }
+    }
+}
+
 /// A joint's correction, its uncertainty, and its effect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CorrectionEntry {
     /// The joint.
     pub joint: String,
-    /// Angle between the axis and its nominal direction, degrees: offsets of earlier joints included, unlike the tilt in `change`.
-    #[serde(alias = "tilt_deg")]
-    pub axis_tilt_deg: f64,
-    /// Distance of the axis from the nominal joint's origin, millimetres: offsets of earlier joints included, unlike the shift in `change`.
-    #[serde(alias = "shift_mm")]
-    pub axis_shift_mm: f64,
-    /// Standard deviation of `axis_tilt_deg` (root mean square); null where it is not determined.
-    #[serde(alias = "sigma_tilt_deg")]
-    pub sigma_axis_tilt_deg: Option<f64>,
-    /// Standard deviation of `axis_shift_mm`; null where it is not determined.
-    #[serde(alias = "sigma_shift_mm")]
-    pub sigma_axis_shift_mm: Option<f64>,
-    /// `sigma_axis_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held.
-    #[serde(default, skip_serializing_if = "Option::is_none", alias = "sigma_tilt_held_deg")]
-    pub sigma_axis_tilt_held_deg: Option<f64>,
-    /// The same of `sigma_axis_shift_mm`; missing of a joint that slides.
-    #[serde(default, skip_serializing_if = "Option::is_none", alias = "sigma_shift_held_mm")]
-    pub sigma_axis_shift_held_mm: Option<f64>,
+    /// Difference of the axis from the nominal one, offsets of earlier joints included, unlike `change`: of its direction, and of its distance from
+    /// the nominal joint's origin.
+    pub axis: AxisEntry,
+    /// Standard deviations of `axis` (root mean square); null where it is not determined.
+    pub sigma: AxisEntry,
+    /// `sigma` if the axes of all other joints were known; absent where the axis was held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_alone: Option<AxisEntry>,
     /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_from_data: Option<f64>,
@@ -139,17 +144,17 @@ pub struct UncertaintyEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<f64>,
     /// Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and what else was measured.
-    #[serde(flatten)]
-    pub discrepancy: Keyed<DiscrepancyKeys>,
+    #[serde(rename = "model_error")]
+    pub discrepancy: Measured<f64>,
     /// Measurement noise in the residuals: standard deviation of each component, millimetres or degrees.
-    #[serde(flatten)]
-    pub noise: Keyed<NoiseKeys>,
-    /// Whether the residuals count as the robot's or the instrument's.
-    #[serde(flatten)]
-    pub residuals: Keyed<AttributionKeys, Attribution>,
-    /// Degrees of freedom of the residuals' variance; none where their noise is stated.
-    #[serde(flatten)]
-    pub freedom: Keyed<FreedomKeys>,
+    pub noise: Measured<f64>,
+    /// Whether the residuals of each quantity count as the robot's or the instrument's.
+    #[schemars(with = "BTreeMap<String, Attribution>")]
+    pub residuals: BTreeMap<Quantity, Attribution>,
+    /// Degrees of freedom of the variance of each quantity's residuals; absent where their noise is stated.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", rename = "degrees_of_freedom")]
+    #[schemars(with = "BTreeMap<String, f64>")]
+    pub freedom: BTreeMap<Quantity, f64>,
     /// Correlation of residuals of consecutive rows; null if not significant.
     #[serde(default)]
     pub lag_one_correlation: Option<f64>,
@@ -187,6 +192,11 @@ pub struct UncertaintyEntry {
     /// The same outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance_outside_m2: Option<Vec<f64>>,
+}
+
+/// Values of the quantities that have one.
+pub(crate) fn by_quantity<T>(value: &dyn Fn(Quantity) -> Option<T>) -> BTreeMap<Quantity, T> {
+    Quantity::ALL.into_iter().filter_map(|it| Some((it, value(it)?))).collect()
 }
 
 impl LeftOutEntry {
@@ -254,15 +264,11 @@ impl CorrectionEntry {
     fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
             joint: coverage.joint.clone(),
-            axis_tilt_deg: found.tilt_rad.to_degrees(),
-            axis_shift_mm: found.shift_m * 1e3,
-            sigma_axis_tilt_deg: found.sigma_tilt_rad.map(f64::to_degrees),
-            sigma_axis_shift_mm: found.sigma_shift_m.map(|sigma| sigma * 1e3),
-            sigma_axis_tilt_held_deg: found.held.map(|(tilt, _)| tilt.to_degrees()),
-            sigma_axis_shift_held_mm: found
+            axis: AxisEntry::from_si(Some(found.tilt_rad), Some(found.shift_m)),
+            sigma: AxisEntry::from_si(found.sigma_tilt_rad, found.sigma_shift_m),
+            sigma_alone: found
                 .held
-                .filter(|(_, shift)| *shift > 0.0)
-                .map(|(_, shift)| 1e3 * shift),
+                .map(|(tilt, shift)| AxisEntry::from_si(Some(tilt), Some(shift).filter(|it| *it > 0.0))),
             tilt_from_data: found.tilt_from_data,
             shift_from_data: found.shift_from_data,
             left_nominal_rms_mm: found.left_nominal_rms_m * 1e3,

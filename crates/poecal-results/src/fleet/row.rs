@@ -168,8 +168,8 @@ impl LedgerRow {
                 sigma_tilt_deg: change.sigma_tilt_deg.map(shown),
                 shift_mm: shown(change.shift_mm.as_ref().map_or(0.0, length)),
                 sigma_shift_mm: change.sigma_shift_mm.map(shown),
-                axis_tilt_deg: shown(entry.axis_tilt_deg),
-                axis_shift_mm: shown(entry.axis_shift_mm),
+                axis_tilt_deg: entry.axis.tilt_deg.map_or(0.0, shown),
+                axis_shift_mm: entry.axis.shift_mm.map_or(0.0, shown),
                 tilt_from_data: entry.tilt_from_data.map(shown),
                 shift_from_data: entry.shift_from_data.map(shown),
             })

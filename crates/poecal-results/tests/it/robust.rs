@@ -293,13 +293,13 @@ fn held_out_rows_are_judged_too_and_the_file_names_all() {
     let held_out = file.outliers.iter().filter(|outlier| outlier.set == OutlierSet::HeldOut).count();
     println!("{} suspected, {held_out} of them held out; {:?}", rows.len(), found.warnings);
     assert_eq!(
-        (file.robust.suspected_fit, file.robust.suspected_held_out),
+        (file.robust.suspected.training, file.robust.suspected.held_out),
         (rows.len() - held_out, held_out)
     );
     assert!(held_out > 0 && file.outliers.iter().all(|o| o.file == "session.csv" && o.weight == 0.0));
     assert!(file.outliers.is_sorted_by(|a, b| a.studentized >= b.studentized));
     let all = file.accuracy.held_out.unwrap().calibrated.position_mm().rms;
-    let rest = file.robust.held_out_without_suspected.unwrap();
+    let rest = file.robust.without_suspected.held_out.unwrap();
     println!("held out: {all:.3} mm with them, {:.3} mm without", rest.calibrated.position_mm().rms);
     assert!(
         rest.count + held_out == found.held_out_rows.len() && all > 20.0 * rest.calibrated.position_mm().rms
