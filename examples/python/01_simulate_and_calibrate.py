@@ -36,7 +36,7 @@ print(f"{calibration.accuracy.training.count} poses fitted, {held_out.count} hel
 for name, model in [("nominal", held_out.nominal), ("registered", held_out.registered), ("calibrated", held_out.calibrated)]:
     assert model.rotation_deg is not None
     print(f"{name:<12} {model.position_mm.rms:8.4f} mm {model.rotation_deg.rms:8.4f} deg (RMS)")
-noise_mm = calibration.to_dict()["noise"]["sigma_position_mm"]
+noise_mm = calibration.to_dict()["noise"]["sigma"]["position_mm"]
 print(f"noise        {noise_mm:8.4f} mm each component, as the fit estimates it")
 print(f"verdict      {calibration.verdict.level}")
 for found in calibration.corrections:

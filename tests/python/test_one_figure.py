@@ -59,7 +59,7 @@ def test_one_figure_for_one_question(name, tmp_path):
         rows = list(csv.DictReader(text.splitlines()))
         predicted += [1e3 * float(row["sigma_position[m]"]) for row in rows if row["inside_sampled_range"] == "true"]
     rms = float(np.sqrt(np.mean(np.square(predicted))))
-    left_out = corrected.get("left_out_position_mm") if has_terms else file["cross_validation"]["random"]["position_rms_mm"]
+    left_out = corrected.get("left_out_position_mm") if has_terms else file["cross_validation"]["random"]["rms"]["position_mm"]
     print(f"{name}: {verdict['model']}, expected {expected:.4f} mm, predictions {rms:.4f} mm, cross-validation {left_out:.4f} mm")
     # The expected error is a mean over 400 fitted rows at most, and predictions are of held-out rows too.
     assert abs(rms / expected - 1) < 0.05

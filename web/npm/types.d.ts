@@ -669,6 +669,14 @@ export type Accuracy = {
 /** Whether the residuals count as the robot's or the instrument's. */
 export type Attribution = "robot" | "stated_noise" | "repeats";
 
+/** Tilt and shift of an axis. */
+export type AxisEntry = {
+  /** Of its place, millimetres; null of a joint that slides. */
+  shift_mm?: number | null;
+  /** Of its direction, degrees. */
+  tilt_deg?: number | null;
+};
+
 /** Blocks of unknowns by name: `JOINT.axis`, `JOINT.offset` and other terms, `target.NAME`, `frame.NAME`. */
 export type BlocksEntry = {
   /** Fitted. */
@@ -698,6 +706,22 @@ export type BootstrapEntry = {
   formal_sigma_position_mm: number;
   /** Root mean square distance over these samples, millimetres. */
   sigma_position_mm: number;
+};
+
+/** Of the training rows and of those held out. */
+export type BySet = {
+  /** Of the held-out rows. */
+  held_out: number;
+  /** Of the training rows. */
+  training: number;
+};
+
+/** Of the training rows and of those held out. */
+export type BySet2 = {
+  /** Of the held-out rows. */
+  held_out?: SetAccuracy | null;
+  /** Of the training rows. */
+  training?: SetAccuracy | null;
 };
 
 /** A camera with its lens. */
@@ -787,18 +811,14 @@ export type CompensationEntry = {
   configurations: number;
   /** Corrections of each reading that moves the tip; none of an arm with fewer than six, which cannot mend every displacement. */
   joints: ReadingChangeEntry[];
-  /** Largest angle, degrees. */
-  max_deg: number;
-  /** Largest distance, millimetres. */
-  max_mm: number;
-  /** Median angle, degrees. */
-  median_deg: number;
-  /** Median distance, millimetres. */
-  median_mm: number;
-  /** Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend. */
-  needless: number;
   /** Configurations from which no small correction leads to the pose, since a singularity is near: another branch is, or none. */
-  unmended: number;
+  not_correctable: number;
+  /** Distances, millimetres. */
+  position_mm: SpreadEntry;
+  /** Angles, degrees. */
+  rotation_deg: SpreadEntry;
+  /** Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend. */
+  within_expected_error: number;
 };
 
 /**
@@ -835,10 +855,10 @@ export type ControllerReading = {
  * model.
  */
 export type CorrectedEntry = {
-  /** Effects that the measurements do not tell apart, a sentence each. */
-  confused?: string[];
   /** What each group of terms does at each joint, the one that moves the target most first. */
   effects?: EffectEntry[];
+  /** Effects that the measurements do not tell apart, a sentence each. */
+  indistinguishable?: string[];
   /** Instruments on the robot. */
   instruments?: { [name: string]: InstrumentEntry };
   /** Error of each joint over its sampled range, before and after. */
@@ -852,21 +872,8 @@ export type CorrectedEntry = {
   left_out_position_mm?: number | null;
   /** Frame of the measuring device. */
   measurement_frame: FrameEntry;
-  /** Standard deviation of the noise, as the fit of screws and terms shows it. */
-  noise: {
-    /** Standard deviation of each component of contact, millimetres. */
-    sigma_contact_mm?: number;
-    /** Standard deviation of each component of distance, millimetres. */
-    sigma_distance_mm?: number;
-    /** Standard deviation of each component of height, millimetres. */
-    sigma_height_mm?: number;
-    /** Standard deviation of each component of position, millimetres. */
-    sigma_position_mm?: number;
-    /** Standard deviation of each component of rotation, degrees; null where none was measured. */
-    sigma_rotation_deg?: number | null;
-    /** Standard deviation of each component of tilt, degrees. */
-    sigma_tilt_deg?: number;
-  };
+  /** Standard deviation of each component of the noise, millimetres or degrees, as the fit of screws and terms shows it. */
+  noise: MeasuredOfNumber;
   /** Why these sizes. */
   reason: SizesReason;
   /** The corrected robot's frames, and the weights that it carries. */
@@ -887,10 +894,11 @@ export type CorrectedEntry = {
 
 /** A joint's correction, its uncertainty, and its effect. */
 export type CorrectionEntry = {
-  /** Distance of the axis from the nominal joint's origin, millimetres: offsets of earlier joints included, unlike the shift in `change`. */
-  axis_shift_mm: number;
-  /** Angle between the axis and its nominal direction, degrees: offsets of earlier joints included, unlike the tilt in `change`. */
-  axis_tilt_deg: number;
+  /**
+   * Difference of the axis from the nominal one, offsets of earlier joints included, unlike `change`: of its direction, and of its distance
+   * from the nominal joint's origin.
+   */
+  axis: AxisEntry;
   /** The correction in parts, with directions; missing in older files. */
   change?: JointChangeEntry | null;
   /** The joint. */
@@ -899,14 +907,10 @@ export type CorrectionEntry = {
   left_nominal_rms_mm: number;
   /** The same of the axis' place; absent of a joint that slides. */
   shift_from_data?: number | null;
-  /** The same of `sigma_axis_shift_mm`; missing of a joint that slides. */
-  sigma_axis_shift_held_mm?: number | null;
-  /** Standard deviation of `axis_shift_mm`; null where it is not determined. */
-  sigma_axis_shift_mm?: number | null;
-  /** Standard deviation of `axis_tilt_deg` (root mean square); null where it is not determined. */
-  sigma_axis_tilt_deg?: number | null;
-  /** `sigma_axis_tilt_deg` if the axes of all other joints were known; missing in older files, and where the axis was held. */
-  sigma_axis_tilt_held_deg?: number | null;
+  /** Standard deviations of `axis` (root mean square); null where it is not determined. */
+  sigma: AxisEntry;
+  /** `sigma` if the axes of all other joints were known; absent where the axis was held. */
+  sigma_alone?: AxisEntry | null;
   /** Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position. */
   suspicious?: string | null;
   /** The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance. */
@@ -978,6 +982,8 @@ export type Direction = {
 export type EffectEntry = {
   /** Largest deviation in the fitted rows, milliradians, of shift and runout millimetres; of a ratio the change each radian. */
   amplitude: number;
+  /** Share of its prior variance that the measurements took away, 0 to 1. */
+  determined_share: number;
   /** Distance by which it moves the target in the fitted rows, but for the mean of all (root mean square), millimetres. */
   effect_mm: number;
   /** Whether it is more than chance and the prior make. */
@@ -988,8 +994,6 @@ export type EffectEntry = {
   joint: string;
   /** Its standard deviation. */
   sigma: number;
-  /** Share of its prior variance that the measurements took away, 0 to 1. */
-  told: number;
   /** The effect in words. */
   words: string;
 };
@@ -1095,6 +1099,8 @@ export type GravityEntry = {
 export type IdentifiabilityEntry = {
   /** Condition number over these directions; null if there are none. */
   condition?: number | null;
+  /** Effective number of unknowns that the measurements determine beside the prior. */
+  effective_unknowns?: number | null;
   /** Observability indices; null where a singular value is zero. */
   observability?: Observability;
   /** Unknowns in the minimal basis. */
@@ -1103,8 +1109,6 @@ export type IdentifiabilityEntry = {
   rank: number;
   /** Directions that are not observable by measurements of this kind: not among the parameters, and without effect on predictions. */
   structural?: Direction[];
-  /** Effective number of unknowns that the measurements determine beside the prior. */
-  told?: number | null;
   /** Directions that the configurations do not determine. */
   unidentifiable: Direction[];
   /** Directions that they determine weakly, little better than the nominal model. */
@@ -1268,6 +1272,11 @@ export type JointChangeEntry = {
 
 /** Sampled and allowed values of a joint (radians; metres of a prismatic joint). */
 export type JointCoverage = {
+  /**
+   * Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
+   * count as sampled.
+   */
+  isolated_share?: number;
   /** The joint. */
   joint: string;
   /** Largest allowed value. */
@@ -1278,19 +1287,14 @@ export type JointCoverage = {
   sampled_max: number;
   /** Smallest value sampled. */
   sampled_min: number;
-  /**
-   * Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
-   * count as sampled.
-   */
-  stragglers?: number;
 };
 
 /** A calibrated joint. */
 export type JointEntry = {
   /** Calibrated frame of the joint and of the link that it moves, at zero. */
   base_from_joint: PoseEntry;
-  /** The joint of which this is a give: it turns by its terms alone, whose functions are of that joint. */
-  gives?: string | null;
+  /** The joint whose compliance this is: it turns by its terms alone, whose functions are of that joint. */
+  compliance_of?: string | null;
   /** Kind. */
   kind: KindWord;
   /** Lower and upper limit, radians or metres. */
@@ -1350,22 +1354,12 @@ export type KindWord = "revolute" | "prismatic";
 
 /** Errors of the rows of a fold or block, predicted by a fit of the others. */
 export type LeftOutEntry = {
-  /** Root mean square error of contact, millimetres. */
-  contact_rms_mm?: number;
-  /** Root mean square error of distance, millimetres. */
-  distance_rms_mm?: number;
-  /** Root mean square error of height, millimetres. */
-  height_rms_mm?: number;
   /** Name of the block. */
   left_out: string;
-  /** Root mean square error of position, millimetres. */
-  position_rms_mm?: number;
-  /** Root mean square error of rotation, degrees; null where none was measured. */
-  rotation_rms_deg?: number | null;
+  /** Root mean square error of each measured quantity, millimetres or degrees. */
+  rms: MeasuredOfNumber;
   /** Number of rows. */
   rows: number;
-  /** Root mean square error of tilt, degrees. */
-  tilt_rms_deg?: number;
 };
 
 /** Level of a verdict: what the delivered model may be used for. */
@@ -1460,18 +1454,8 @@ export type MotionEntry = {
 
 /** Noise by which residuals were weighted where a row stated none. */
 export type NoiseEntry = {
-  /** Standard deviation of each component of contact, millimetres. */
-  sigma_contact_mm?: number;
-  /** Standard deviation of each component of distance, millimetres. */
-  sigma_distance_mm?: number;
-  /** Standard deviation of each component of height, millimetres. */
-  sigma_height_mm?: number;
-  /** Standard deviation of each component of position, millimetres. */
-  sigma_position_mm?: number;
-  /** Standard deviation of each component of rotation, degrees; null where none was measured. */
-  sigma_rotation_deg?: number | null;
-  /** Standard deviation of each component of tilt, degrees. */
-  sigma_tilt_deg?: number;
+  /** Standard deviation of each component of each measured quantity, millimetres or degrees. */
+  sigma: MeasuredOfNumber;
   /** Source of the noise. */
   source: NoiseSource;
 };
@@ -1529,18 +1513,11 @@ export type OriginalUrdf = {
 export type OutlierEntry = {
   /** Its file, as named by the user. */
   file: string;
-  /** Distance or angle from the contact that the calibrated model predicts, millimetres. */
-  residual_contact_mm?: number;
-  /** Distance or angle from the rotation that the calibrated model predicts, degrees; null where none was measured. */
-  residual_deg?: number | null;
-  /** Distance or angle from the distance that the calibrated model predicts, millimetres. */
-  residual_distance_mm?: number;
-  /** Distance or angle from the height that the calibrated model predicts, millimetres. */
-  residual_height_mm?: number;
-  /** Distance or angle from the position that the calibrated model predicts, millimetres. */
-  residual_mm?: number;
-  /** Distance or angle from the tilt that the calibrated model predicts, degrees. */
-  residual_tilt_deg?: number;
+  /**
+   * Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
+   * millimetres or degrees.
+   */
+  residual: MeasuredOfNumber;
   /** Its line in that file, from 1. */
   row: number;
   /** Its set. */
@@ -1609,6 +1586,16 @@ export type PointEntry = {
   place_mm: [number, number, number];
 };
 
+/** Accuracy of each model in a pose, millimetres or degrees. */
+export type PoseAccuracy = {
+  /** Of the calibrated model. */
+  calibrated: MeasuredOfNumber;
+  /** Of the nominal model. */
+  nominal: MeasuredOfNumber;
+  /** Of the registered model. */
+  registered: MeasuredOfNumber;
+};
+
 /** A pose. */
 export type PoseEntry = {
   /** Position, metres. */
@@ -1631,16 +1618,14 @@ export type RangeEntry = {
 
 /** By how much a reading is corrected. */
 export type ReadingChangeEntry = {
-  /** The largest. */
-  max_deg?: number | null;
-  /** The largest. */
-  max_mm?: number | null;
-  /** Median correction of one that turns, degrees. */
-  median_deg?: number | null;
-  /** Median correction of one that slides, millimetres. */
-  median_mm?: number | null;
+  /** Largest. */
+  max: number;
+  /** Median. */
+  median: number;
   /** The reading. */
   reading: string;
+  /** Unit of the numbers: `deg`, or `mm` of a joint that slides. */
+  unit: string;
 };
 
 /** `value = multiplier * reading + offset`. */
@@ -1716,126 +1701,28 @@ export type RepairedPart = "zero" | "axis";
 
 /** Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs. */
 export type RepeatabilityEntry = {
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_contact_mm?: number;
-  /** The same of the calibrated model, degrees. */
-  accuracy_calibrated_deg?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_distance_mm?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_height_mm?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_mm?: number;
-  /** The same of the calibrated model, degrees. */
-  accuracy_calibrated_tilt_deg?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured contact, millimetres. */
-  accuracy_nominal_contact_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured rotation, degrees. */
-  accuracy_nominal_deg?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured distance, millimetres. */
-  accuracy_nominal_distance_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured height, millimetres. */
-  accuracy_nominal_height_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured position, millimetres. */
-  accuracy_nominal_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured tilt, degrees. */
-  accuracy_nominal_tilt_deg?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_contact_mm?: number;
-  /** The same of the registered model, degrees. */
-  accuracy_registered_deg?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_distance_mm?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_height_mm?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_mm?: number;
-  /** The same of the registered model, degrees. */
-  accuracy_registered_tilt_deg?: number;
+  /** Distance from the prediction of each model to the mean measured position. */
+  accuracy: PoseAccuracy;
   /** The poses, those with most rows first, at most 100. */
   listed: RepeatedPoseEntry[];
   /** Number of targets in configurations with three rows or more. */
   poses: number;
-  /** Repeatability: mean distance of the measured contact from its mean, plus three standard deviations, millimetres. */
-  repeatability_contact_mm?: number;
-  /** Repeatability: mean distance of the measured rotation from its mean, plus three standard deviations, degrees. */
-  repeatability_deg?: number;
-  /** Repeatability: mean distance of the measured distance from its mean, plus three standard deviations, millimetres. */
-  repeatability_distance_mm?: number;
-  /** Repeatability: mean distance of the measured height from its mean, plus three standard deviations, millimetres. */
-  repeatability_height_mm?: number;
-  /** Repeatability: mean distance of the measured position from its mean, plus three standard deviations, millimetres. */
-  repeatability_mm?: number;
-  /** Repeatability: mean distance of the measured tilt from its mean, plus three standard deviations, degrees. */
-  repeatability_tilt_deg?: number;
+  /** Repeatability: mean distance of measured positions from their mean, plus three standard deviations. */
+  repeatability: MeasuredOfNumber;
   /** Number of their rows. */
   rows: number;
-  /** The largest repeatability of contact, millimetres. */
-  worst_repeatability_contact_mm?: number;
-  /** The largest repeatability of rotation, degrees. */
-  worst_repeatability_deg?: number;
-  /** The largest repeatability of distance, millimetres. */
-  worst_repeatability_distance_mm?: number;
-  /** The largest repeatability of height, millimetres. */
-  worst_repeatability_height_mm?: number;
-  /** The largest repeatability of position, millimetres. */
-  worst_repeatability_mm?: number;
-  /** The largest repeatability of tilt, degrees. */
-  worst_repeatability_tilt_deg?: number;
+  /** The largest repeatability. */
+  worst_repeatability: MeasuredOfNumber;
 };
 
 /** A configuration that was measured several times. */
 export type RepeatedPoseEntry = {
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_contact_mm?: number;
-  /** The same of the calibrated model, degrees. */
-  accuracy_calibrated_deg?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_distance_mm?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_height_mm?: number;
-  /** The same of the calibrated model, millimetres. */
-  accuracy_calibrated_mm?: number;
-  /** The same of the calibrated model, degrees. */
-  accuracy_calibrated_tilt_deg?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured contact, millimetres. */
-  accuracy_nominal_contact_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured rotation, degrees. */
-  accuracy_nominal_deg?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured distance, millimetres. */
-  accuracy_nominal_distance_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured height, millimetres. */
-  accuracy_nominal_height_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured position, millimetres. */
-  accuracy_nominal_mm?: number;
-  /** Pose accuracy of the nominal model: from its prediction to the mean of the measured tilt, degrees. */
-  accuracy_nominal_tilt_deg?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_contact_mm?: number;
-  /** The same of the registered model, degrees. */
-  accuracy_registered_deg?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_distance_mm?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_height_mm?: number;
-  /** The same of the registered model, millimetres. */
-  accuracy_registered_mm?: number;
-  /** The same of the registered model, degrees. */
-  accuracy_registered_tilt_deg?: number;
+  /** Distance from the prediction of each model to the mean measured position. */
+  accuracy: PoseAccuracy;
   /** File of its first row. */
   file: string;
-  /** Repeatability: mean distance of the measured contact from its mean, plus three standard deviations, millimetres. */
-  repeatability_contact_mm?: number;
-  /** Repeatability: mean distance of the measured rotation from its mean, plus three standard deviations, degrees. */
-  repeatability_deg?: number;
-  /** Repeatability: mean distance of the measured distance from its mean, plus three standard deviations, millimetres. */
-  repeatability_distance_mm?: number;
-  /** Repeatability: mean distance of the measured height from its mean, plus three standard deviations, millimetres. */
-  repeatability_height_mm?: number;
-  /** Repeatability: mean distance of the measured position from its mean, plus three standard deviations, millimetres. */
-  repeatability_mm?: number;
-  /** Repeatability: mean distance of the measured tilt from its mean, plus three standard deviations, degrees. */
-  repeatability_tilt_deg?: number;
+  /** Repeatability: mean distance of measured positions from their mean, plus three standard deviations. */
+  repeatability: MeasuredOfNumber;
   /** Line of its first row, from 1. */
   row: number;
   /** Number of its rows. */
@@ -1866,16 +1753,12 @@ export type RobotEntry = {
 
 /** Treatment of outliers. */
 export type RobustEntry = {
-  /** `accuracy.held_out` without suspected rows; null if there are none. */
-  held_out_without_suspected?: SetAccuracy | null;
   /** Loss of a robust fit; null: least squares. */
   loss?: Loss | null;
-  /** Number of suspected training rows. */
-  suspected_fit: number;
-  /** Number of suspected held-out rows. */
-  suspected_held_out: number;
-  /** `accuracy.training` without suspected rows; null if there are none. */
-  training_without_suspected?: SetAccuracy | null;
+  /** Numbers of suspected rows. */
+  suspected: BySet;
+  /** `accuracy` without suspected rows; null of a set that has none. */
+  without_suspected: BySet2;
 };
 
 /** A row of a file. */
@@ -1940,6 +1823,14 @@ export type SolverEntry = {
   termination: Termination;
   /** Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again. */
   trace?: number[];
+};
+
+/** Median and largest of some sizes. */
+export type SpreadEntry = {
+  /** Largest. */
+  max: number;
+  /** Median. */
+  median: number;
 };
 
 /** A station of the measuring device. */
@@ -2048,34 +1939,12 @@ export type UncertaintyEntry = {
   covariance_m2: number[];
   /** The same outside the sampled range; absent if no larger. */
   covariance_outside_m2?: number[] | null;
-  /** Model error: standard deviation of each component of contact, millimetres. */
-  discrepancy_contact_mm?: number;
-  /** Model error: standard deviation of each component of distance, millimetres. */
-  discrepancy_distance_mm?: number;
-  /** Model error: standard deviation of each component of height, millimetres. */
-  discrepancy_height_mm?: number;
-  /** Model error: standard deviation of each component of position, millimetres. */
-  discrepancy_position_mm: number;
-  /** Model error: standard deviation of each component of rotation, degrees. */
-  discrepancy_rotation_deg: number;
-  /** Model error: standard deviation of each component of tilt, degrees. */
-  discrepancy_tilt_deg?: number;
+  /** Degrees of freedom of the variance of each quantity's residuals; absent where their noise is stated. */
+  degrees_of_freedom?: { [name: string]: number };
   /** The same outside the sampled range; absent if no larger. */
   extrapolation?: number | null;
   /** Point of the device frame about which its unknowns turn, metres, where the frame is among them. */
   frame_about_m?: [number, number, number] | null;
-  /** Degrees of freedom of the residuals' variance, of contact. */
-  freedom_contact?: number;
-  /** Degrees of freedom of the residuals' variance, of distance. */
-  freedom_distance?: number;
-  /** Degrees of freedom of the residuals' variance, of height. */
-  freedom_height?: number;
-  /** Degrees of freedom of the residuals' variance, of position; null where their noise is stated. */
-  freedom_position?: number | null;
-  /** Degrees of freedom of the residuals' variance, of rotation; null where their noise is stated. */
-  freedom_rotation?: number | null;
-  /** Degrees of freedom of the residuals' variance, of tilt. */
-  freedom_tilt?: number;
   /** Errors of held-out rows compared with their predicted uncertainty; null without such rows. */
   held_out?: MeasuredOfKeptEntry | null;
   /** Factor of the covariance over that of independent residuals. */
@@ -2086,34 +1955,16 @@ export type UncertaintyEntry = {
   length_m: number;
   /** In the measured configurations. */
   measured: ExpectedEntry;
-  /** Measurement noise in the residuals: standard deviation of each component of contact, millimetres. */
-  noise_contact_mm?: number;
-  /** Measurement noise in the residuals: standard deviation of each component of distance, millimetres. */
-  noise_distance_mm?: number;
-  /** Measurement noise in the residuals: standard deviation of each component of height, millimetres. */
-  noise_height_mm?: number;
-  /** Measurement noise in the residuals: standard deviation of each component of position, millimetres. */
-  noise_position_mm?: number;
-  /** Measurement noise in the residuals: standard deviation of each component of rotation, degrees. */
-  noise_rotation_deg?: number;
-  /** Measurement noise in the residuals: standard deviation of each component of tilt, degrees. */
-  noise_tilt_deg?: number;
+  /** Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and what else was measured. */
+  model_error: MeasuredOfNumber;
+  /** Measurement noise in the residuals: standard deviation of each component, millimetres or degrees. */
+  noise: MeasuredOfNumber;
   /** By parts of each joint's range. */
   parts: RangeEntry[];
   /** Anywhere within the limits. */
   range: ExpectedEntry;
-  /** Whether the residuals of contact count as the robot's or the instrument's. */
-  residuals_contact?: Attribution;
-  /** Whether the residuals of distance count as the robot's or the instrument's. */
-  residuals_distance?: Attribution;
-  /** Whether the residuals of height count as the robot's or the instrument's. */
-  residuals_height?: Attribution;
-  /** Whether the residuals of position count as the robot's or the instrument's. */
-  residuals_position?: Attribution;
-  /** Whether the residuals of rotation count as the robot's or the instrument's. */
-  residuals_rotation?: Attribution;
-  /** Whether the residuals of tilt count as the robot's or the instrument's. */
-  residuals_tilt?: Attribution;
+  /** Whether the residuals of each quantity count as the robot's or the instrument's. */
+  residuals: { [name: string]: Attribution };
   /**
    * Targets with unknowns, `true` for frames: shifts along their axes, and for frames turns about them. One that is the tip has an empty
    * name.
@@ -2170,16 +2021,12 @@ export type WorkspaceCellEntry = {
   configurations: number;
   /** Its height along the axis above the base's origin, from, metres. */
   height_m: number;
-  /** Largest angle, degrees. */
-  max_deg: number;
-  /** Largest distance, millimetres. */
-  max_mm: number;
-  /** Median angle, degrees. */
-  median_deg: number;
-  /** Median distance, millimetres. */
-  median_mm: number;
+  /** Distances, millimetres. */
+  position_mm: SpreadEntry;
   /** Distance of the nominal tip from the axis, from, metres. */
   radius_m: number;
+  /** Angles, degrees. */
+  rotation_deg: SpreadEntry;
   /**
    * Expected error of predicted positions in these configurations (root mean square, millimetres): what a corrected program is expected to
    * miss by. Missing without an uncertainty, and in files of earlier versions.

@@ -23,8 +23,8 @@ const URDF: &str = include_str!("../../../examples/elbow/robot.urdf");
 const TOML: &str = include_str!("../../../examples/elbow/robot.toml");
 const POINTS: &str = include_str!("../../../examples/elbow/points.csv");
 /// Of an earlier schema: poses and points, suspected and repeated rows.
-const EARLIER: &str = include_str!("../../poecal-testing/data/calibration_schema_1.json");
-const EARLIER_ROWS: &str = include_str!("../../poecal-testing/data/calibration_schema_1.csv");
+const CALIBRATED: &str = include_str!("../../poecal-testing/data/calibration.json");
+const CALIBRATED_ROWS: &str = include_str!("../../poecal-testing/data/calibration_rows.csv");
 const UR10_MAP: &str = include_str!("../../../validation/ur10_raw_columns.toml");
 /// A follower, a fixed joint within the chain, a comment, entities.
 const MIMIC: &str = r#"<?xml version="1.0"?>
@@ -146,8 +146,8 @@ fn main() {
         put("residuals", name, &residuals);
         put("report", name, &both(&json, &residuals));
     }
-    put("calibration", "schema_1", EARLIER);
-    put("report", "schema_1", &both(EARLIER, EARLIER_ROWS));
+    put("calibration", "mixed", CALIBRATED);
+    put("report", "mixed", &both(CALIBRATED, CALIBRATED_ROWS));
     let two = two_targets(&gantry());
     put("pipeline", "two_targets", &both(&robot_toml::write(&gantry()), &two));
     let twelve = POINTS.lines().take(31).map(|line| format!("{line}\n")).collect::<String>();

@@ -71,7 +71,7 @@ def test_all_options_are_taken(made):
     told = []
     found = poecal.calibrate(made.nominal, made.measurements, **options, progress=told.append).to_dict()
     assert found["accuracy"]["held_out"]["count"] == 10
-    assert found["noise"] == {"sigma_position_mm": 0.05, "sigma_rotation_deg": 0.01, "source": "given"}
+    assert found["noise"] == {"sigma": {"position_mm": 0.05, "rotation_deg": 0.01}, "source": "given"}
     assert found["solver"]["formulation"] == "screw" and found["solver"]["pose_residual"] == "spatial"
     assert found["solver"]["method"] == "gauss-newton" and found["robust"]["loss"] == "huber"
     assert told == ["finding the device frame and the targets", "fitting the screws", "judging the result"]
@@ -158,7 +158,7 @@ def test_a_calibration_shows_itself(calibration):
 
 def test_what_measuring_would_tell():
     found = poecal.identify(elbow(), configurations(30), kind="point", sigma_position_mm=0.02)
-    assert found["configurations"] == 30 and found["noise"]["sigma_position_mm"] == 0.02
+    assert found["configurations"] == 30 and found["noise"]["position_mm"] == 0.02
     assert "determined" in str(found) and found.to_dict() == json.loads(found.to_json())
 
 

@@ -125,7 +125,7 @@ def test_the_covariance_is_that_of_predictions(kind, frame):
     columns = [(places(moved(calibration, it, step)) - places(moved(calibration, it, -step))) / (2 * step) for it in covariance.names]
     jacobian = np.stack(columns, axis=-1)
     spread = np.einsum("mik,kl,mil->m", jacobian, covariance.matrix, jacobian)
-    own = calibration.uncertainty["discrepancy_position_mm"] * 1e-3
+    own = calibration.uncertainty["model_error"]["position_mm"] * 1e-3
     expected = np.sqrt(spread + 3 * own**2)
     inside = found.inside_sampled_range
     worst = np.abs(expected / found.sigma_position_m - 1)[inside].max()

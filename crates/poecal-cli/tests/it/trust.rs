@@ -62,7 +62,7 @@ fn verdict_says_how_far_a_calibration_may_be_used() {
         folder.run("calibrate robot.urdf narrow.csv --out some --force --require inside_sampled_range");
     assert_eq!(enough.code, 0, "{enough:?}");
     for file in [json(&folder, "all/calibration.json"), file] {
-        assert!(file["cross_validation"]["random"]["position_rms_mm"].as_f64().unwrap() > 0.0);
+        assert!(file["cross_validation"]["random"]["rms"]["position_mm"].as_f64().unwrap() > 0.0);
         assert_eq!(file["cross_validation"]["blocked"].as_array().unwrap().len(), 12);
         for correction in file["corrections"].as_array().unwrap() {
             assert!(

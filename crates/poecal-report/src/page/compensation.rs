@@ -70,8 +70,10 @@ pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
 fn map(found: &CompensationEntry) -> Markup {
     let value = |it: &WorkspaceCellEntry| Some(it.displaced.position_mm.median);
     let axis = axis_words(found);
-    let worst =
-        found.cells.iter().max_by(|one, other| one.displaced.position_mm.max.total_cmp(&other.displaced.position_mm.max));
+    let worst = found
+        .cells
+        .iter()
+        .max_by(|one, other| one.displaced.position_mm.max.total_cmp(&other.displaced.position_mm.max));
     let description = format!(
         "A map over distance from {axis} and height along it: the median distance between nominal and actual tip in each cell. The largest \
          is at {}. The table below has all figures.",

@@ -258,7 +258,9 @@ fn what_is_known_only_together_is_said() {
     }
     let mut largest = 0f64;
     for it in &file.corrections {
-        let (Some(all), Some(held)) = (it.sigma.shift_mm, it.sigma_alone.and_then(|it| it.shift_mm)) else { continue };
+        let (Some(all), Some(held)) = (it.sigma.shift_mm, it.sigma_alone.and_then(|it| it.shift_mm)) else {
+            continue;
+        };
         println!("{}: shift known to {all:.3} mm, with the others held to {held:.3}", it.joint);
         largest = largest.max(all / held);
     }

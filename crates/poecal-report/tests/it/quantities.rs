@@ -1,4 +1,4 @@
-//! Numbers by quantity: the table of quantities, files of an earlier schema, rows without a position.
+//! Numbers by quantity: the table of quantities, files of another schema, rows without a position.
 
 use std::collections::BTreeSet;
 
@@ -10,18 +10,14 @@ use poecal_results::calibration_file::{CalibrationFile, SCHEMA};
 use poecal_results::residuals::{Residuals, columns};
 use serde_json::Value;
 
-/// Written by the last version of schema 1: a turning and a sliding joint, poses and points, suspected and repeated rows.
-const EARLIER: &str = include_str!("../../../poecal-testing/data/calibration_schema_1.json");
+/// A turning and a sliding joint, poses and points, suspected and repeated rows.
+const FILE: &str = include_str!("../../../poecal-testing/data/calibration.json");
 /// The rows of it.
-const ROWS: &str = include_str!("../../../poecal-testing/data/calibration_schema_1.csv");
-
-fn earlier() -> CalibrationFile {
-    CalibrationFile::parse(EARLIER, "calibration.json").unwrap()
-}
+const ROWS: &str = include_str!("../../../poecal-testing/data/calibration_rows.csv");
 
 /// The file without what it says of positions, as if orientations alone had been measured; expected errors of predictions stay.
 fn without_positions(value: &Value) -> Value {
-    let position = ["position_mm", "sigma_position_mm", "position_rms_mm", "residual_mm"];
+    let position = ["position_mm", "sigma_position_mm"];
     match value {
         Value::Object(map) => {
             let is_own = |key: &str| {
@@ -37,18 +33,25 @@ fn without_positions(value: &Value) -> Value {
 }
 
 #[test]
-fn a_file_of_the_earlier_schema_is_read_as_one_of_this() {
-    let text = EARLIER.replace("poecal-calibration-1", SCHEMA);
-    assert_ne!(text, EARLIER);
-    assert_eq!(earlier(), CalibrationFile::parse(&text, "calibration.json").unwrap());
-    // All keys of poses and points are as they were, but for those of a whole axis, which have its name now.
-    let mut renamed = text;
-    for key in ["tilt_deg", "shift_mm"] {
-        renamed = renamed.replace(&format!("\"{key}\""), &format!("\"axis_{key}\""));
-        renamed = renamed.replace(&format!("\"sigma_{key}\""), &format!("\"sigma_axis_{key}\""));
+fn a_file_is_read_as_it_is_written_and_one_of_another_schema_names_its_command() {
+    let file = CalibrationFile::parse(FILE, "calibration.json").unwrap();
+    assert_eq!(CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap(), file);
+    assert_eq!(file.uncertainty(&[None]).unwrap().1, [0]);
+    let inputs = r#"{"model": "arm.urdf", "measurements": ["joints.csv", "seen.csv"]"#;
+    for (inputs, command) in [
+        (format!("{inputs}}}"), "poecal calibrate arm.urdf joints.csv seen.csv"),
+        (
+            format!("{inputs}, \"command\": \"poecal calibrate --settings poecal.toml\"}}"),
+            "poecal calibrate --settings poecal.toml",
+        ),
+    ] {
+        let text = format!(r#"{{"schema": "poecal-calibration-2", "inputs": {inputs}}}"#);
+        let error = CalibrationFile::parse(&text, "calibration.json").unwrap_err().to_string();
+        let expected = format!(
+            "found schema `poecal-calibration-2`, expected `{SCHEMA}`, that of this version: calibrate again: `{command}`"
+        );
+        assert!(error.contains(&expected), "{error}");
     }
-    assert_eq!(earlier().to_text().unwrap(), renamed);
-    assert_eq!(earlier().uncertainty(&[None]).unwrap().1, [0]);
 }
 
 #[test]
@@ -103,7 +106,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     }
     let residuals = Residuals::parse(&text(&rows), "residuals.csv").unwrap();
     assert_eq!(residuals.measured(), [Quantity::Rotation]);
-    let mut value = without_positions(&serde_json::from_str(EARLIER).unwrap());
+    let mut value = without_positions(&serde_json::from_str(FILE).unwrap());
     for (set, held_out) in [("training", false), ("held_out", true)] {
         let own = residuals.rows().iter().filter(|row| row.held_out == held_out);
         let errors: Vec<f64> = own.map(|row| row.errors.rotation_deg().unwrap().calibrated()).collect();

@@ -2,9 +2,9 @@
 
 use nalgebra::Matrix3;
 
-use super::{shown, trust::by_quantity};
 use super::trust::{BootstrapEntry, ExpectedEntry, RangeEntry, held_out};
 use super::{CorrelationsEntry, PoseEntry, UncertaintyEntry, link};
+use super::{shown, trust::by_quantity};
 use poecal_calibrate::{
     CalibratedTarget, Calibration, Correction, CoverageCheck, Expectations, ModelAccuracy, names,
 };

@@ -29,7 +29,8 @@ impl UncertaintyEntry {
             let shown = |quantity: Quantity| keyed.get(teller(quantity)).unwrap_or_default();
             ByQuantity::from_fn(|quantity| quantity.unit().from_shown(shown(quantity)))
         };
-        let attribution = |quantity| self.residuals.get(&teller(quantity)).copied().unwrap_or(Attribution::Robot);
+        let attribution =
+            |quantity| self.residuals.get(&teller(quantity)).copied().unwrap_or(Attribution::Robot);
         let freedom = |quantity| self.freedom.get(&teller(quantity)).copied().unwrap_or(f64::INFINITY);
         Discrepancy {
             scatter: self.inflation,

@@ -30,7 +30,9 @@ pub use alike::SuspectedConfigurationEntry;
 pub use bodies::{BodyEntry, InstrumentEntry, MassEntry, MeasuredEntry};
 pub use changes::{CommonDirectionEntry, CorrelatedEntry, CorrelationsEntry, JointChangeEntry};
 pub use clocks::ClockEntry;
-pub use compensation::{CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry};
+pub use compensation::{
+    CompensationEntry, DisplacementEntry, ReadingChangeEntry, SpreadEntry, WorkspaceCellEntry,
+};
 pub use controller::Counted;
 pub use corrected::{
     CorrectedEntry, EffectEntry, GravityEntry, JointErrorEntry, JointErrorsEntry, TriedEntry, WeightEntry,
@@ -61,8 +63,8 @@ use poecal_model::robot::{Joint, JointKind, JointTerm, Limits, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::{json_text, source_text};
 pub use refusal::SCHEMA;
-pub(crate) use refusal::schema_of;
 use refusal::refusal;
+pub(crate) use refusal::schema_of;
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;

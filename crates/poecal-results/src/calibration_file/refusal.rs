@@ -40,7 +40,9 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         .error(match (schema.as_deref(), error) {
             (Some(SCHEMA), Some(error)) => return syntax(&error),
             (Some(other), _) => {
-                let again = inputs.again().map_or_else(|| "calibrate again".to_owned(), |it| format!("calibrate again: `{it}`"));
+                let again = inputs
+                    .again()
+                    .map_or_else(|| "calibrate again".to_owned(), |it| format!("calibrate again: `{it}`"));
                 format!("found schema `{other}`, expected `{SCHEMA}`, that of this version: {again}")
             }
             (None, _) => {
