@@ -220,7 +220,7 @@ mod tests {
         let known = IdentifiabilityEntry {
             parameters: 30,
             rank: 27,
-            told: None,
+            effective_unknowns: None,
             condition: None,
             unidentifiable: vec![direction("a", Cause::StoodStill, 2), direction("b", Cause::TooFew, 1)],
             weak: vec![

@@ -79,10 +79,10 @@ fn displacements_are_those_of_the_two_robots() {
             let largest = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
             assert_eq!(rows.len(), own.configurations);
             [
-                (middle(of(&moved)), own.median_mm),
-                (largest(of(&moved)), own.max_mm),
-                (middle(of(&turned)), own.median_deg),
-                (largest(of(&turned)), own.max_deg),
+                (middle(of(&moved)), own.position_mm.median),
+                (largest(of(&moved)), own.position_mm.max),
+                (middle(of(&turned)), own.rotation_deg.median),
+                (largest(of(&turned)), own.rotation_deg.max),
             ]
             .into_iter()
             .map(|(expected, found)| (expected - found).abs() / (1e-3 + expected))
@@ -106,8 +106,8 @@ fn displacements_are_those_of_the_two_robots() {
             "{}: {} cells, {:.3} mm in the median, at most {:.3} mm; largest difference {off:.1e}",
             robot.name,
             found.cells.len(),
-            found.all.median_mm,
-            found.all.max_mm
+            found.all.position_mm.median,
+            found.all.position_mm.max
         );
         assert_eq!(seen, sample.len());
         // Two steps of the fit leave the third order of a motion of 2 degrees.
@@ -123,8 +123,8 @@ fn corrections_are_told_where_an_arm_can_be_corrected() {
     println!("{:?}", found.joints);
     assert_eq!(found.joints.len(), 6);
     for joint in &found.joints {
-        let (median, largest) = joint.median_deg.zip(joint.max_deg).unwrap();
-        assert!(0.0 < median && median < largest && largest < 0.6_f64.to_degrees() && joint.max_mm.is_none());
+        let (median, largest) = (joint.change.median, joint.change.max);
+        assert!(0.0 < median && median < largest && largest < 0.6_f64.to_degrees() && joint.unit == "deg");
     }
     // An arm of fewer joints cannot mend every displacement, and nothing is said of corrections.
     let (file, _) = file_of(&scara(), Kind::POSE, &options);
