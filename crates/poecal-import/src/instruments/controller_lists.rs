@@ -88,7 +88,9 @@ fn numbered(element: &str, letter: char) -> BTreeMap<usize, Axis<'_>> {
     attributes
         .filter_map(|(name, value)| {
             let value = value.trim_matches(['"', '\'', '/', '>']);
-            Some((name.strip_prefix(letter)?.parse().ok()?, Axis { value, unit: None }))
+            // No controller has more: tables are made by the largest number.
+            let number: u8 = name.strip_prefix(letter)?.parse().ok()?;
+            Some((number.into(), Axis { value, unit: None }))
         })
         .collect()
 }

@@ -113,6 +113,11 @@ fn lists_of_controllers_have_the_readings_of_a_plain_table() {
             "<Rob Type=\"KUKA\"><AIPos A1=\"1\" A2=\"2\"/><IPOC>4</IPOC></Rob>\n",
             "rsi.xml:1: found the axes A1, A2, which are not one to one the joints `joint1`",
         ),
+        (
+            "rsi.xml",
+            "<Rob Type=\"KUKA\"><AIPos A1=\"1\" A4294967297=\"2\"/><IPOC>4</IPOC></Rob>\n",
+            "rsi.xml:1: found the axes A1, which are not one to one the joints `joint1`",
+        ),
         ("echo.csv", &format!("{echo}1,2,,other,0.5\n"), "found no joint `"),
         ("echo.csv", &format!("{echo}1,2,,a,b,0.5,0.5,1\n"), "found 3 numbers behind the names of 2 joints"),
     ] {
