@@ -127,6 +127,10 @@ const LISTS: &[Form] = &[
     headerless::FORM,
 ];
 
+/// Those of them whose axes have names that a mapping may give to joints.
+const NUMBERED: &[Form] =
+    &[controller_lists::FANUC, controller_lists::STAUBLI, controller_lists::KUKA, headerless::FORM];
+
 /// Times the columns of a table that a line may have separators: what is no table, such as a program, may have more than that.
 const WIDE: usize = 16;
 
@@ -223,10 +227,10 @@ impl Opening<'_> {
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        // A mapping that names columns reads the text as it is; where it says nothing of joints, lists of them are what they are without it.
+        // A mapping that names columns reads tables as they are; where it says nothing of joints, lists of them are what they are without it.
         let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
             None => FORMS,
-            Some(map) if map.names_joints() => &[headerless::FORM],
+            Some(map) if map.names_joints() => NUMBERED,
             Some(_) => LISTS,
         };
         let mut forms = forms.iter();
