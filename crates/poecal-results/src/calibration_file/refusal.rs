@@ -35,7 +35,7 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
     if let Err(error) = serde_json::from_str::<IgnoredAny>(text) {
         return syntax(&error);
     }
-    let Head { schema, inputs } = Head::read(text.as_bytes());
+    let schema = schema_of(text.as_bytes());
     ErrorKind::Syntax
         .error(match (schema.as_deref(), error) {
             (Some(SCHEMA), Some(error)) => return syntax(&error),
@@ -52,14 +52,6 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         .in_file(path)
 }
 
-/// What files of all versions state of themselves and of their inputs.
-#[derive(Default, Deserialize)]
-struct Head {
-    schema: Option<String>,
-    #[serde(default)]
-    inputs: Sources,
-}
-
 /// The inputs of a calibration, as all versions have them.
 #[derive(Default, Deserialize)]
 #[serde(default)]
@@ -67,13 +59,6 @@ struct Sources {
     command: Option<String>,
     model: Option<String>,
     measurements: Vec<String>,
-}
-
-impl Head {
-    /// The head of a text of JSON; nothing else of it is held.
-    fn read(text: &[u8]) -> Self {
-        serde_json::from_slice(text).unwrap_or_default()
-    }
 }
 
 impl Sources {
@@ -87,7 +72,21 @@ impl Sources {
     }
 }
 
-/// The key `schema` of a text of JSON.
+/// The key `schema` of a text of JSON; nothing else of it is held.
 pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
-    Head::read(text).schema
+    #[derive(Deserialize)]
+    struct Head {
+        schema: Option<String>,
+    }
+    serde_json::from_slice::<Head>(text).ok()?.schema
+}
+
+/// The inputs that a calibration of any version lists.
+fn sources(text: &str) -> Sources {
+    #[derive(Default, Deserialize)]
+    struct Head {
+        #[serde(default)]
+        inputs: Sources,
+    }
+    serde_json::from_str::<Head>(text).unwrap_or_default().inputs
 }
