@@ -40,7 +40,7 @@ pub(crate) fn refusal(text: &str, error: Option<serde_json::Error>, path: &Path)
         .error(match (schema.as_deref(), error) {
             (Some(SCHEMA), Some(error)) => return syntax(&error),
             (Some(other), _) => {
-                let again = inputs
+                let again = sources(text)
                     .again()
                     .map_or_else(|| "calibrate again".to_owned(), |it| format!("calibrate again: `{it}`"));
                 format!("found schema `{other}`, expected `{SCHEMA}`, that of this version: {again}")
