@@ -7,7 +7,7 @@
 //! [`visible_markup`](poecal_numerics::text::visible_markup) goes over the whole; its style and script are built from `web/src` into `page/assets`.
 //! [`plot`] gets numbers, titles and axes, and returns SVG, without robots and calibrations.
 //!
-//! Not here: files (`poecal-results` writes the texts), computation.
+//! Not here: files (`poecal-results` writes the texts), computation but for charts: smoothed curves, and how joints move what was measured.
 
 #![forbid(unsafe_code)]
 
