@@ -16,6 +16,7 @@ pub(crate) mod acceptance;
 pub(crate) mod corrections;
 pub(crate) mod doubts;
 pub(crate) mod events;
+pub(crate) mod iso9283;
 pub mod limit_words;
 pub(crate) mod moves;
 pub(crate) mod pictures;
@@ -66,6 +67,10 @@ pub use corrections::{
     unknowns, whitened_rows,
 };
 pub use events::{Event, EventKind, RepairLimit, RepairLimits, Repairs, family};
+pub use iso9283::{
+    Figure, FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, STANDARD_CYCLES, TestLabels,
+    TestRow, iso9283,
+};
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};
 pub use robust::{Loss, Robust, Robustness, RowInfluence, RowJudgement, row_influence};
 pub use workspace::{Displacements, Spread, Workspace, workspace};

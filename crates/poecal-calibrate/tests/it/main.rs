@@ -9,6 +9,7 @@ mod few_rows;
 mod forensics;
 mod gauge;
 mod identifiability;
+mod iso9283;
 mod mistakes;
 mod mistakes_of_places;
 mod moves;

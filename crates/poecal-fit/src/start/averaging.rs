@@ -7,7 +7,7 @@ use poecal_numerics::linalg;
 
 /// The rigid motion `T` that minimises `Σ |y_k - T x_k|²` (horn1987: largest eigenvector of a 4×4 matrix, a proper rotation always):
 /// theory.md §6 (32).
-pub(crate) fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Pose {
+pub fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Pose {
     let count = from.len().max(1) as f64;
     let from_mean = from.iter().sum::<Vector3<f64>>() / count;
     let to_mean = to.iter().sum::<Vector3<f64>>() / count;

@@ -13,7 +13,7 @@ mod registration;
 mod robust;
 mod stations;
 
-pub use averaging::mean_rotation;
+pub use averaging::{mean_rotation, rigid_motion};
 pub(crate) use averaging::rotation_maximising;
 pub use faces::{faces_on_known_planes, settle_faces};
 pub use markers::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};

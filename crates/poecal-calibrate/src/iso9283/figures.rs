@@ -1,0 +1,307 @@
+//! The figures of a test, a row each.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::figure::{Figure, FigureBounds, FigureName};
+use super::frame::{Registered, mean_and_covariance, register};
+use super::intervals::{self, Part};
+use super::rows::{Cell, Cells, TestRow};
+use super::spread::{self, DEVIATIONS};
+use super::{STANDARD_CYCLES, faults};
+use poecal_arm::lie::{Pose, rotation};
+use poecal_fit::start::mean_rotation;
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// A test: its figures, and the frame in which accuracy is stated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Iso9283 {
+    /// Names of the poses.
+    pub poses: Vec<String>,
+    /// Fewest cycles of a pose.
+    pub cycles: usize,
+    /// Rows of the figures AP to RD.
+    pub rows: usize,
+    /// Pose of the device in the robot's base.
+    pub base_from_device: Pose,
+    /// Coordinates of the barycentres, and how many of them the fit of the frame absorbed; 0 of a stated frame.
+    pub coordinates: [usize; 2],
+    /// The figures.
+    pub figures: Vec<Figure>,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Iso9283 {
+    /// Expected ratio of position errors without a fitted frame to those beside it, if errors are independent: `√(3m / (3m - 6))`.
+    #[must_use]
+    pub fn absorbed_ratio(&self) -> f64 {
+        let [all, absorbed] = self.coordinates.map(|it| it as f64);
+        (all / (all - absorbed).max(1.0)).sqrt()
+    }
+
+    /// Whether all poses have the cycles of the standard.
+    #[must_use]
+    pub fn has_standard_cycles(&self) -> bool {
+        self.cycles >= STANDARD_CYCLES
+    }
+
+    /// Figures of a name, of lengths or of angles.
+    pub fn of_name(&self, name: FigureName, is_of_angles: bool) -> impl Iterator<Item = &Figure> {
+        self.figures.iter().filter(move |it| it.name == name && it.axis.is_some() == is_of_angles)
+    }
+}
+
+/// Figures of ISO 9283:1998 of some rows, each with its 95 % interval (theory.md §9). Accuracy is stated in the frame `base_from_device`, or in one
+/// that is fitted to the barycentres, which absorbs six of their coordinates, and the mean orientation error.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] for rows of which no figure can be computed, with the row: doubled, exchanged, of another pose, too few, or of mixed
+/// speeds; for poses that determine no frame.
+pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso9283> {
+    if rows.is_empty() {
+        return ErrorKind::Measurement
+            .refuse("found no rows with a measured position, expected a row for each pose and cycle");
+    }
+    let cells = Cells::from_rows(rows);
+    let mut warnings = faults::check(&cells)?;
+    let base = &cells.base;
+    let commanded: Vec<Pose> = base.iter().map(Cell::commanded).collect();
+    let places = |poses: &[Pose]| poses.iter().map(|it| it.translation).collect::<Vec<_>>();
+    let found = register(base, &places(&commanded), base_from_device)?;
+    faults::refuse_gross(base, &found.errors, base_from_device.is_none())?;
+    let calibrated: Option<Vec<Pose>> = base.iter().map(Cell::calibrated).collect();
+    let corrected =
+        calibrated.as_ref().map(|it| register(base, &places(it), base_from_device)).transpose()?;
+    let mut figures = positions(base, &found, corrected.as_ref());
+    if cells.have_rotations() {
+        let is_fitted = base_from_device.is_none();
+        figures.extend(orientations(base, &found, &commanded, is_fitted, None));
+        if let (Some(wanted), Some(corrected)) = (&calibrated, &corrected) {
+            let after = orientations(base, corrected, wanted, is_fitted, None);
+            let mut own = figures.iter_mut().filter(|it| it.axis.is_some());
+            after.iter().for_each(|after| {
+                if let Some(figure) = own.next().filter(|it| it.name == FigureName::Ap) {
+                    figure.corrected = Some(after.measured);
+                }
+            });
+        }
+    } else if base.iter().flat_map(|it| &it.rows).any(|row| row.rotation.is_some()) {
+        warnings.push(
+            "found orientations in some rows only, expected them in all: they are not judged".to_owned(),
+        );
+    }
+    figures.extend(distances(base, &commanded, calibrated.as_deref()));
+    figures.extend(variations(&cells));
+    figures.extend(drifts(&cells, &found));
+    Ok(Iso9283 {
+        poses: base.iter().map(|it| it.pose.clone()).collect(),
+        cycles: base.iter().map(Cell::count).min().unwrap_or(0),
+        rows: base.iter().map(Cell::count).sum(),
+        base_from_device: found.base_from_device,
+        coordinates: [3 * base.len(), if base_from_device.is_some() { 0 } else { 6 }],
+        figures,
+        warnings,
+    })
+}
+
+/// A figure of a cell.
+fn figure(name: FigureName, cell: &Cell<'_>, measured: FigureBounds) -> Figure {
+    let (pose, cycles) = (cell.pose.clone(), cell.count());
+    Figure { name, axis: None, pose, cycles, measured, without_noise: None, corrected: None }
+}
+
+/// AP and RP of positions.
+fn positions(base: &[Cell<'_>], found: &Registered, corrected: Option<&Registered>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for (k, cell) in base.iter().enumerate() {
+        let accuracy = |of: &Registered| intervals::length(&of.errors[k], &of.parts[k]);
+        let own = figure(FigureName::Ap, cell, accuracy(found));
+        figures.push(Figure { corrected: corrected.map(accuracy), ..own });
+    }
+    figures.extend(base.iter().map(position_repeatability));
+    figures
+}
+
+/// RP of a cell's positions.
+fn position_repeatability(cell: &Cell<'_>) -> Figure {
+    let places: Vec<Vector3<f64>> = cell.rows.iter().map(|row| row.position_m).collect();
+    let (measured, without_noise) = spread::with_interval(&places, cell.noise_variance(0));
+    Figure { without_noise, ..figure(FigureName::Rp, cell, measured) }
+}
+
+/// AP and RP of angles about the axes of the base: components of the rotation from command to measurement. Beside a fitted frame the mean of all
+/// poses is that of the target on the flange.
+fn orientations(
+    base: &[Cell<'_>],
+    found: &Registered,
+    wanted: &[Pose],
+    is_fitted: bool,
+    target: Option<Matrix3<f64>>,
+) -> Vec<Figure> {
+    let turn = found.base_from_device.rotation;
+    let measured = |row: &TestRow| row.rotation.map_or(turn, |it| turn * it);
+    let of_cell = |(cell, wanted): (&Cell<'_>, &Pose)| {
+        let own = mean_rotation(cell.rows.iter().map(|row| measured(row)));
+        own.transpose() * wanted.rotation
+    };
+    let fitted = || mean_rotation(base.iter().zip(wanted).map(of_cell));
+    let target = target.unwrap_or_else(|| if is_fitted { fitted() } else { Matrix3::identity() });
+    let errors = |(cell, wanted): (&Cell<'_>, &Pose)| {
+        let error = |row: &&TestRow| rotation::log(&(measured(row) * target * wanted.rotation.transpose()));
+        let errors: Vec<Vector3<f64>> = cell.rows.iter().map(error).collect();
+        mean_and_covariance(errors.into_iter())
+    };
+    let spreads: Vec<(Vector3<f64>, Matrix3<f64>)> = base.iter().zip(wanted).map(errors).collect();
+    let share = if is_fitted { 1.0 / base.len() as f64 } else { 0.0 };
+    let mut figures = Vec::new();
+    for name in [FigureName::Ap, FigureName::Rp] {
+        for (k, cell) in base.iter().enumerate() {
+            for axis in 0..3 {
+                let variance = |at: usize| spreads[at].1[(axis, axis)];
+                let weight = |at: usize| if at == k { 1.0 - share } else { share };
+                let part = |at: usize| {
+                    let count = base[at].count() as f64;
+                    (weight(at).powi(2) * variance(at) / count, count - 1.0)
+                };
+                let own = if name == FigureName::Ap {
+                    let parts: Vec<(f64, f64)> = (0..base.len()).map(part).collect();
+                    figure(name, cell, intervals::mean(spreads[k].0[axis], &parts))
+                } else {
+                    scatter(name, cell, variance(k), cell.noise_variance(1))
+                };
+                figures.push(Figure { axis: Some(axis), ..own });
+            }
+        }
+    }
+    figures
+}
+
+/// Three standard deviations of a number, with and without noise of a variance.
+fn scatter(name: FigureName, cell: &Cell<'_>, variance: f64, noise: Option<f64>) -> Figure {
+    let of = |deviation: f64| intervals::deviation(deviation, cell.count(), DEVIATIONS);
+    let raw = of(variance.sqrt());
+    let free = |value: f64, noise: f64| (value * value - DEVIATIONS.powi(2) * noise).max(0.0).sqrt();
+    let without_noise = noise.map(|noise| FigureBounds {
+        found: free(raw.found, noise),
+        from: free(raw.from, noise),
+        to: free(raw.to, noise),
+    });
+    Figure { without_noise, ..figure(name, cell, raw) }
+}
+
+/// AD and RD between P2 and P4, or the two poses whose commands are farthest apart.
+fn distances(base: &[Cell<'_>], commanded: &[Pose], calibrated: Option<&[Pose]>) -> Vec<Figure> {
+    let at = |name: &str| base.iter().position(|it| it.pose == name);
+    let apart = |poses: &[Pose], (a, b): (usize, usize)| (poses[a].translation - poses[b].translation).norm();
+    let all = (0..base.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+    // Of equal distances the first pair, whatever rounding says.
+    let mut farthest: Option<(usize, usize)> = None;
+    for pair in all {
+        if farthest.is_none_or(|it| apart(commanded, pair) > apart(commanded, it) + 1e-6) {
+            farthest = Some(pair);
+        }
+    }
+    let Some(pair) = at("P2").zip(at("P4")).or(farthest) else { return Vec::new() };
+    let found = paired(&base[pair.0], &base[pair.1]);
+    if found.len() < 2 {
+        return Vec::new();
+    }
+    let count = found.len() as f64;
+    let mean = found.iter().sum::<f64>() / count;
+    let variance = found.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let noise = base[pair.0].noise_variance(0).zip(base[pair.1].noise_variance(0)).map(|(a, b)| a + b);
+    let rows = base[pair.0].rows.iter().take(found.len()).copied().collect();
+    let both =
+        Cell { pose: format!("{}-{}", base[pair.0].pose, base[pair.1].pose), rows, ..base[pair.0].clone() };
+    let accuracy =
+        |poses: &[Pose]| intervals::mean(mean - apart(poses, pair), &[(variance / count, count - 1.0)]);
+    let own = figure(FigureName::Ad, &both, accuracy(commanded));
+    vec![
+        Figure { corrected: calibrated.map(accuracy), ..own },
+        scatter(FigureName::Rd, &both, variance, noise),
+    ]
+}
+
+/// Distances between two poses in each cycle that both have; by their order if cycles have no names.
+fn paired(first: &Cell<'_>, second: &Cell<'_>) -> Vec<f64> {
+    let is_named = |it: &Cell<'_>| it.rows.iter().all(|row| !row.labels.cycle.is_empty());
+    let by_name = is_named(first) && is_named(second);
+    let partner = |(k, row): (usize, &&TestRow)| {
+        let own = |it: &&&TestRow| it.labels.cycle == row.labels.cycle;
+        let other = if by_name { second.rows.iter().find(own) } else { second.rows.get(k) };
+        Some((row.position_m - other?.position_m).norm())
+    };
+    first.rows.iter().enumerate().filter_map(partner).collect()
+}
+
+/// vAP and E: the farthest two barycentres of approaches, and of arms.
+fn variations(cells: &Cells<'_>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for name in [FigureName::Vap, FigureName::E] {
+        for base in &cells.base {
+            let is_alike = |it: &&Cell<'_>| {
+                let (own, other) = (base.labels, it.labels);
+                let is_of_arm = name == FigureName::E;
+                it.pose == base.pose
+                    && own.series == other.series
+                    && (own.arm == other.arm) != is_of_arm
+                    && (own.approach == other.approach) == is_of_arm
+            };
+            let others: Vec<&Cell<'_>> =
+                std::iter::once(base).chain(cells.others.iter().filter(is_alike)).collect();
+            let pairs = (0..others.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            let bounds = pairs.map(|(a, b)| {
+                let [(first, own), (second, other)] = [others[a].barycentre(), others[b].barycentre()];
+                let part = |cell: &Cell<'_>, spread: Matrix3<f64>| {
+                    let count = cell.count() as f64;
+                    Part { covariance: spread / count, freedom: count - 1.0 }
+                };
+                intervals::length(&(first - second), &[part(others[a], own), part(others[b], other)])
+            });
+            figures.extend(largest(bounds).map(|it| figure(name, base, it)));
+        }
+    }
+    figures
+}
+
+/// The largest of several figures, with the largest ends of their intervals.
+fn largest(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
+    bounds.reduce(|a, b| FigureBounds {
+        found: a.found.max(b.found),
+        from: a.from.max(b.from),
+        to: a.to.max(b.to),
+    })
+}
+
+/// dAP and dRP: the largest change from the first series.
+fn drifts(cells: &Cells<'_>, found: &Registered) -> Vec<Figure> {
+    let accuracy = |cell: &Cell<'_>, wanted: &Vector3<f64>| {
+        let (mean, spread) = cell.barycentre();
+        let turn = found.base_from_device.rotation;
+        let count = cell.count() as f64;
+        let covariance = turn * spread * turn.transpose() / count;
+        let error = found.base_from_device.act(&mean) - wanted;
+        intervals::length(&error, &[Part { covariance, freedom: count - 1.0 }])
+    };
+    let mut figures = Vec::new();
+    for name in [FigureName::Dap, FigureName::Drp] {
+        for base in &cells.base {
+            let own = base.labels;
+            let is_later = |it: &&Cell<'_>| {
+                let other = it.labels;
+                it.pose == base.pose
+                    && (own.arm == other.arm && own.approach == other.approach)
+                    && own.series != other.series
+            };
+            let wanted = base.commanded().translation;
+            let of = |cell: &Cell<'_>| match name {
+                FigureName::Dap => accuracy(cell, &wanted),
+                _ => position_repeatability(cell).measured,
+            };
+            let first = of(base);
+            let later = cells.others.iter().filter(is_later).map(|it| intervals::difference(&of(it), &first));
+            figures.extend(largest(later).map(|it| figure(name, base, it)));
+        }
+    }
+    figures
+}

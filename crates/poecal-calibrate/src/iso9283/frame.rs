@@ -1,0 +1,111 @@
+//! Barycentres in the base frame: by a stated device frame, or by one that is fitted to them.
+
+use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3};
+
+use super::intervals::Part;
+use super::rows::Cell;
+use poecal_arm::lie::{Pose, hat};
+use poecal_fit::start::rigid_motion;
+use poecal_numerics::error::{ErrorKind, Result};
+use poecal_numerics::linalg;
+
+/// Least standard deviation (metres) of the barycentres across the line that fits them best, for a frame to be fitted.
+const FLAT_M: f64 = 1e-3;
+
+/// Mean of vectors, and their covariance with `n - 1` degrees of freedom.
+pub(super) fn mean_and_covariance(
+    of: impl Iterator<Item = Vector3<f64>> + Clone,
+) -> (Vector3<f64>, Matrix3<f64>) {
+    let count = of.clone().count().max(1) as f64;
+    let mean = of.clone().sum::<Vector3<f64>>() / count;
+    let squares: Matrix3<f64> = of.map(|it| (it - mean) * (it - mean).transpose()).sum();
+    (mean, squares / (count - 1.0).max(1.0))
+}
+
+/// Barycentres beside commanded positions, in the base frame.
+pub(super) struct Registered {
+    pub(super) base_from_device: Pose,
+    /// Barycentre less command of each pose, metres.
+    pub(super) errors: Vec<Vector3<f64>>,
+    /// What each cell's scatter adds to the covariance of each error.
+    pub(super) parts: Vec<Vec<Part>>,
+}
+
+/// Barycentres of cells in the base frame, beside where they should be; the frame is fitted to them (least squares) unless it is stated.
+///
+/// # Errors
+/// [`ErrorKind::Measurement`] if the poses do not determine a frame.
+pub(super) fn register(
+    cells: &[Cell<'_>],
+    wanted: &[Vector3<f64>],
+    stated: Option<Pose>,
+) -> Result<Registered> {
+    let (means, spreads): (Vec<_>, Vec<_>) = cells.iter().map(Cell::barycentre).unzip();
+    if stated.is_none() {
+        refuse_undetermined(&means)?;
+    }
+    let base_from_device = stated.unwrap_or_else(|| rigid_motion(&means, wanted));
+    let places: Vec<Vector3<f64>> = means.iter().map(|it| base_from_device.act(it)).collect();
+    let turn = base_from_device.rotation;
+    let own = |k: usize| turn * spreads[k] * turn.transpose() / cells[k].count() as f64;
+    let freedom = |k: usize| cells[k].count() as f64 - 1.0;
+    let through = match stated {
+        Some(_) => None,
+        None => Some(Through::new(&places)?),
+    };
+    let parts = (0..cells.len()).map(|i| match &through {
+        None => vec![Part { covariance: own(i), freedom: freedom(i) }],
+        Some(through) => (0..cells.len())
+            .map(|k| {
+                let left = through.left(i, k);
+                Part { covariance: left * own(k) * left.transpose(), freedom: freedom(k) }
+            })
+            .collect(),
+    });
+    let parts = parts.collect();
+    let errors = places.iter().zip(wanted).map(|(place, wanted)| place - wanted).collect();
+    Ok(Registered { base_from_device, errors, parts })
+}
+
+fn refuse_undetermined(means: &[Vector3<f64>]) -> Result<()> {
+    if means.len() >= 3 && linalg::principal_spread(means)[1] > FLAT_M {
+        return Ok(());
+    }
+    ErrorKind::Measurement.refuse(format!(
+        "found {} poses from which no frame of the device can be fitted, expected three or more that are not on a line (the standard has five): measure \
+         these, or state the frame with --device-frame base",
+        means.len()
+    ))
+}
+
+/// The fit of a frame to points, linearised: which share of each point's error is left.
+struct Through {
+    rows: Vec<Matrix3x6<f64>>,
+    inverse: Matrix6<f64>,
+}
+
+impl Through {
+    fn new(places: &[Vector3<f64>]) -> Result<Self> {
+        let middle = places.iter().sum::<Vector3<f64>>() / places.len().max(1) as f64;
+        let row = |place: &Vector3<f64>| {
+            let mut row = Matrix3x6::zeros();
+            row.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::identity());
+            row.fixed_view_mut::<3, 3>(0, 3).copy_from(&-hat(&(place - middle)));
+            row
+        };
+        let rows: Vec<Matrix3x6<f64>> = places.iter().map(row).collect();
+        let normal: Matrix6<f64> = rows.iter().map(|row| row.transpose() * row).sum();
+        let Some(inverse) = linalg::inverse_6(normal) else {
+            return ErrorKind::Measurement.refuse(
+                "found poses on a line, expected others beside it: they do not determine the device frame",
+            );
+        };
+        Ok(Through { rows, inverse })
+    }
+
+    /// Effect of point `k` on the error that is left of point `i`.
+    fn left(&self, i: usize, k: usize) -> Matrix3<f64> {
+        let own = if i == k { Matrix3::identity() } else { Matrix3::zeros() };
+        own - self.rows[i] * self.inverse * self.rows[k].transpose()
+    }
+}

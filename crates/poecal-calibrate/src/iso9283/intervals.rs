@@ -1,0 +1,79 @@
+//! Intervals of means, standard deviations and lengths of means, 95 %.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::figure::FigureBounds;
+use poecal_numerics::distributions::f_quantile;
+
+/// Degrees of freedom that stand for infinitely many.
+const INFINITE: f64 = 1e6;
+
+/// A part of the covariance of an estimate, with its degrees of freedom.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) covariance: Matrix3<f64>,
+    pub(super) freedom: f64,
+}
+
+/// Degrees of freedom of a sum of estimated variances (satterthwaite1946).
+fn freedom(variances: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for (variance, freedom) in variances {
+        sum += variance;
+        squares += variance * variance / freedom.max(1.0);
+    }
+    if squares > 0.0 { (sum * sum / squares).max(1.0) } else { INFINITE }
+}
+
+/// Student's quantile that is exceeded on either side together with this probability.
+fn student(risk: f64, freedom: f64) -> f64 {
+    f_quantile(risk, 1.0, freedom).sqrt()
+}
+
+/// Of a mean whose variance has several parts: variance and degrees of freedom each.
+pub(super) fn mean(found: f64, variances: &[(f64, f64)]) -> FigureBounds {
+    let sum: f64 = variances.iter().map(|it| it.0).sum();
+    let half = student(0.05, freedom(variances.iter().copied())) * sum.sqrt();
+    FigureBounds { found, from: found - half, to: found + half }
+}
+
+/// Of a standard deviation, times `factor`.
+pub(super) fn deviation(found: f64, count: usize, factor: f64) -> FigureBounds {
+    let freedom = (count as f64 - 1.0).max(1.0);
+    let upper = f_quantile(0.025, freedom, INFINITE);
+    let lower = 1.0 / f_quantile(0.025, INFINITE, freedom);
+    let found = factor * found;
+    FigureBounds { found, from: found / upper.sqrt(), to: found / lower.sqrt() }
+}
+
+/// Of the length of an error, whose estimate is too long by its scatter across: `E|e|² = |ε|² + tr C`. If the error is not shown to differ from
+/// zero, the interval is one-sided, from zero.
+pub(super) fn length(error: &Vector3<f64>, parts: &[Part]) -> FigureBounds {
+    let found = error.norm();
+    let total: Matrix3<f64> = parts.iter().map(|it| it.covariance).sum();
+    let along = |direction: &Vector3<f64>, of: &Matrix3<f64>| (direction.transpose() * of * direction)[0];
+    let direction = if found > 0.0 { error / found } else { Vector3::x() };
+    let variance = along(&direction, &total);
+    let across = total.trace() - variance;
+    let middle = (found * found - across).max(0.0).sqrt();
+    let own = |of: fn(&Matrix3<f64>) -> f64| freedom(parts.iter().map(|it| (of(&it.covariance), it.freedom)));
+    let all = own(|it| it.trace());
+    // A sum of squares with as many degrees of freedom as its covariance has comparable directions.
+    let directions = total.trace().powi(2) / (total * total).trace().max(f64::MIN_POSITIVE);
+    let shown = found * found > total.trace() * f_quantile(0.05, directions.clamp(1.0, 3.0), all);
+    let freedom = freedom(parts.iter().map(|it| (along(&direction, &it.covariance), it.freedom)));
+    if shown {
+        let half = student(0.05, freedom) * variance.sqrt();
+        return FigureBounds { found, from: (middle - half).max(0.0), to: (middle + half).max(found) };
+    }
+    let widest = (total.trace() - across.min(total.trace())).max(total.trace() / directions.max(1.0));
+    FigureBounds { found, from: 0.0, to: (middle + student(0.10, all) * widest.sqrt()).max(found) }
+}
+
+/// Of the size of a difference of two figures, by their own intervals.
+pub(super) fn difference(first: &FigureBounds, second: &FigureBounds) -> FigureBounds {
+    let found = (first.found - second.found).abs();
+    let half = |it: &FigureBounds| 0.5 * (it.to - it.from);
+    let half = half(first).hypot(half(second));
+    FigureBounds { found, from: (found - half).max(0.0), to: found + half }
+}
