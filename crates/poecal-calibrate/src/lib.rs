@@ -68,7 +68,7 @@ pub use corrections::{
 };
 pub use events::{Event, EventKind, RepairLimit, RepairLimits, Repairs, family};
 pub use iso9283::{
-    Figure, FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, STANDARD_CYCLES, TestLabels,
+    FigureBounds, FigureLimit, FigureName, Iso9283, JudgedFigure, STANDARD_CYCLES, TestFigure, TestLabels,
     TestRow, iso9283,
 };
 pub use poecal_model::robot::{CorrectionModel, Corrections, Sizes, TermGroup};

@@ -8,6 +8,7 @@ mod detect;
 mod fleet;
 mod hand_eye;
 mod init;
+mod iso9283;
 mod offsets;
 mod plan;
 mod report;
@@ -28,6 +29,7 @@ pub(crate) use detect::Detect;
 pub(crate) use fleet::{Fleet, FleetCommand, FleetPrior, FleetReport};
 pub(crate) use hand_eye::{HandEye, OutFrames, Tcp};
 pub(crate) use init::Init;
+pub(crate) use iso9283::Iso9283;
 pub(crate) use offsets::Offsets;
 pub(crate) use plan::{FitArgs, Plan, PlannedDevice, exclusive};
 pub(crate) use report::{Report, ReportPlace};
@@ -107,6 +109,10 @@ pub(crate) enum Command {
     /// Ends with code 1 if any robot failed.
     #[cfg(any(unix, windows))]
     Fleet(Box<Fleet>),
+    /// Test a robot by ISO 9283: accuracy and repeatability as a data sheet states them, each with its 95 % interval
+    ///
+    /// Ends with code 1 if a limit of --accept is not shown to be kept.
+    Iso9283(Box<Iso9283>),
     /// Compare two calibrations of one robot: what changed, and what is noise
     ///
     /// Ends with code 1 if the tip moved by more than the limit.

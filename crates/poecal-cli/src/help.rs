@@ -15,7 +15,7 @@ const NAMES: usize = 15;
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Measure", &["init", "plan", "simulate", "watch", "detect"]),
     ("Calibrate", &["check", "import", "calibrate", "hand-eye", "tcp", "report"]),
-    ("Use", &["export", "offsets", "compensate", "predict"]),
+    ("Use", &["iso9283", "export", "offsets", "compensate", "predict"]),
     ("Keep", &["validate", "track", "compare", "fleet"]),
 ];
 

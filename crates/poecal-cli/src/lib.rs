@@ -219,6 +219,7 @@ fn run_command(
         Command::Track(options) => commands::track(options, typed, console),
         #[cfg(any(unix, windows))]
         Command::Fleet(options) => commands::fleet(options, console),
+        Command::Iso9283(options) => commands::iso9283(options, typed, console),
         Command::Compare(options) => commands::compare(options, console),
         Command::Predict(options) => commands::predict(options, console),
         Command::Check(options) => commands::check(options, console),

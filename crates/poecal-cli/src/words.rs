@@ -10,6 +10,7 @@ use poecal_model::robot::ThirdAxis;
 use poecal_model::simulate::Kind;
 use poecal_plan::plan::PlanCriterion;
 use poecal_results::export::ExportFormat;
+use poecal_results::iso9283::TestFrame;
 use poecal_results::predictions::PredictionFrame;
 
 /// Words, each with its help and its meaning.
@@ -24,6 +25,13 @@ pub(crate) fn word_of<T: PartialEq>(words: Words<T>, meaning: &T) -> &'static st
 pub const FRAME: Words<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
+];
+
+/// The frame in which accuracy of a test is stated.
+pub const TEST_FRAME: Words<TestFrame> = &[
+    ("unknown", "It is fitted to the barycentres, which makes AP smaller", TestFrame::Unknown),
+    ("base", "Measurements are in the robot's base frame", TestFrame::Base),
+    ("calibration", "The device stands where the calibration has it", TestFrame::Calibration),
 ];
 
 /// Where the camera of simulated pictures is.

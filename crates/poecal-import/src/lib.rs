@@ -32,6 +32,7 @@ pub use crate::poses::pose_columns::PoseUnits;
 pub use crate::poses::pose_lists::{FlangePoses, PosePairs, PoseSource, read_flange_poses, read_pose_pairs};
 pub use crate::poses::pose_table::pose_table;
 pub use crate::read::joints::{JointsTable, parse_joints, read_joints};
+pub use crate::read::labels::{LabelColumns, read_labels};
 pub use crate::read::socket_distance::SocketDistances;
 pub use crate::table::cells::{Cell, Separator, split};
 pub use crate::table::lost::lost_words;

@@ -19,6 +19,7 @@ mod fleet_prior;
 mod found;
 mod hand_eye;
 mod identify;
+mod iso9283;
 mod judgement;
 mod offsets;
 mod outliers;
@@ -42,6 +43,7 @@ pub use fleet::{Figure, Line, PriorUse};
 pub use fleet_prior::fleet_prior;
 pub use hand_eye::{hand_eye, hand_eye_answer};
 pub use identify::Identify;
+pub use iso9283::iso9283;
 pub use judgement::{judged, judgement};
 pub use offsets::Offsets;
 pub use page::{

@@ -18,6 +18,7 @@ pub mod fleet;
 pub mod frame_entries;
 pub mod frame_texts;
 pub mod hand_eye;
+pub mod iso9283;
 pub mod lens_entries;
 pub mod model;
 pub mod offsets;

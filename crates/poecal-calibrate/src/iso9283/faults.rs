@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::STANDARD_CYCLES;
-use super::rows::{Cell, Cells, TestLabels, TestRow};
+use super::rows::{PoseCell, PoseCells, TestLabels, TestRow};
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 
 /// Fewest cycles of a pose.
@@ -27,7 +27,7 @@ fn refuse<T>(row: &TestRow, message: &str) -> Result<T> {
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`], with the row.
-pub(super) fn check(cells: &Cells<'_>) -> Result<Vec<String>> {
+pub(super) fn check(cells: &PoseCells<'_>) -> Result<Vec<String>> {
     mixed(cells)?;
     for cell in cells.base.iter().chain(&cells.others) {
         doubled(cell)?;
@@ -55,7 +55,7 @@ fn cycles(count: usize) -> String {
 }
 
 /// Two speeds or loads in one figure.
-fn mixed(cells: &Cells<'_>) -> Result<()> {
+fn mixed(cells: &PoseCells<'_>) -> Result<()> {
     let conditions: [(&str, fn(&TestLabels) -> &str); 2] =
         [("speed", |it| &it.speed), ("payload", |it| &it.payload)];
     for (word, of) in conditions {
@@ -77,7 +77,7 @@ fn mixed(cells: &Cells<'_>) -> Result<()> {
 }
 
 /// Two rows of one pose in one cycle.
-fn doubled(cell: &Cell<'_>) -> Result<()> {
+fn doubled(cell: &PoseCell<'_>) -> Result<()> {
     for (k, row) in cell.rows.iter().enumerate() {
         let same = |it: &&&TestRow| !row.labels.cycle.is_empty() && it.labels.cycle == row.labels.cycle;
         if let Some(first) = cell.rows[..k].iter().find(same) {
@@ -94,7 +94,7 @@ fn doubled(cell: &Cell<'_>) -> Result<()> {
 }
 
 /// Two commands of one pose.
-fn commands(cell: &Cell<'_>) -> Result<()> {
+fn commands(cell: &PoseCell<'_>) -> Result<()> {
     const SAME_M: f64 = 2e-5;
     let Some(first) = cell.rows.first() else { return Ok(()) };
     let apart_m = |row: &TestRow| (row.commanded.translation - first.commanded.translation).norm();
@@ -113,8 +113,8 @@ fn commands(cell: &Cell<'_>) -> Result<()> {
 }
 
 /// Rows that were measured far from the others of their pose.
-fn misplaced(cells: &Cells<'_>) -> Result<()> {
-    let middles: Vec<(Vector3<f64>, f64)> = cells.base.iter().map(Cell::middle).collect();
+fn misplaced(cells: &PoseCells<'_>) -> Result<()> {
+    let middles: Vec<(Vector3<f64>, f64)> = cells.base.iter().map(PoseCell::middle).collect();
     for (at, cell) in cells.base.iter().enumerate() {
         let (middle, scatter) = middles[at];
         let limit = (BEYOND * scatter).max(BEYOND_M);
@@ -151,9 +151,9 @@ fn misplaced(cells: &Cells<'_>) -> Result<()> {
 }
 
 /// What is missing, a sentence each.
-fn missing(cells: &Cells<'_>) -> Vec<String> {
+fn missing(cells: &PoseCells<'_>) -> Vec<String> {
     let mut said = Vec::new();
-    let most = cells.base.iter().map(Cell::count).max().unwrap_or(0);
+    let most = cells.base.iter().map(PoseCell::count).max().unwrap_or(0);
     let mut all: Vec<&str> = Vec::new();
     for row in cells.base.iter().flat_map(|it| &it.rows) {
         let cycle = row.labels.cycle.as_str();
@@ -181,7 +181,7 @@ fn missing(cells: &Cells<'_>) -> Vec<String> {
             ));
         }
     }
-    let fewest = cells.base.iter().map(Cell::count).min().unwrap_or(0);
+    let fewest = cells.base.iter().map(PoseCell::count).min().unwrap_or(0);
     if fewest < STANDARD_CYCLES {
         said.push(format!(
             "found {}, expected {STANDARD_CYCLES} for a test of ISO 9283 (clause 6.11): the intervals are of those that were measured",
@@ -193,7 +193,7 @@ fn missing(cells: &Cells<'_>) -> Vec<String> {
 }
 
 /// Two rows of a pose with the same digits.
-fn copied(cell: &Cell<'_>) -> Option<String> {
+fn copied(cell: &PoseCell<'_>) -> Option<String> {
     let pair = cell.rows.iter().enumerate().find_map(|(k, row)| {
         let first = cell.rows[..k].iter().find(|it| it.position_m == row.position_m)?;
         Some((first, row))
@@ -210,7 +210,7 @@ fn copied(cell: &Cell<'_>) -> Option<String> {
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`], with the pose.
-pub(super) fn refuse_gross(cells: &[Cell<'_>], errors: &[Vector3<f64>], is_fitted: bool) -> Result<()> {
+pub(super) fn refuse_gross(cells: &[PoseCell<'_>], errors: &[Vector3<f64>], is_fitted: bool) -> Result<()> {
     let places: Vec<Vector3<f64>> = cells.iter().map(|it| it.commanded().translation).collect();
     let apart = |a: &Vector3<f64>| places.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
     let size = places.iter().map(apart).fold(0.0, f64::max);

@@ -77,7 +77,7 @@ pub struct FigureBounds {
 
 /// A figure of one pose, or of two.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct TestFigure {
     /// Which figure.
     pub name: FigureName,
     /// Axis of the base about which angles are counted: 0 to 2 for a, b and c; `None` for lengths.
@@ -94,7 +94,7 @@ pub struct Figure {
     pub corrected: Option<FigureBounds>,
 }
 
-impl Figure {
+impl TestFigure {
     /// Symbol with its axis: `AP`, `APa`.
     #[must_use]
     pub fn symbol(&self) -> String {
@@ -156,7 +156,7 @@ impl FigureLimit {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if there is no such figure.
-    pub fn judge(self, figures: &[Figure]) -> Result<JudgedFigure> {
+    pub fn judge(self, figures: &[TestFigure]) -> Result<JudgedFigure> {
         let own = || figures.iter().filter(|it| it.name == self.name && it.unit() == self.unit);
         if own().next().is_none() {
             return ErrorKind::Option.refuse(format!(

@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::figure::{Figure, FigureBounds, FigureName};
+use super::figure::{FigureBounds, FigureName, TestFigure};
 use super::frame::{Registered, mean_and_covariance, register};
-use super::intervals::{self, Part};
-use super::rows::{Cell, Cells, TestRow};
+use super::intervals::{self, VariancePart};
+use super::rows::{PoseCell, PoseCells, TestRow};
 use super::spread::{self, DEVIATIONS};
 use super::{STANDARD_CYCLES, faults};
 use poecal_arm::lie::{Pose, rotation};
@@ -26,7 +26,7 @@ pub struct Iso9283 {
     /// Coordinates of the barycentres, and how many of them the fit of the frame absorbed; 0 of a stated frame.
     pub coordinates: [usize; 2],
     /// The figures.
-    pub figures: Vec<Figure>,
+    pub figures: Vec<TestFigure>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -46,7 +46,7 @@ impl Iso9283 {
     }
 
     /// Figures of a name, of lengths or of angles.
-    pub fn of_name(&self, name: FigureName, is_of_angles: bool) -> impl Iterator<Item = &Figure> {
+    pub fn of_name(&self, name: FigureName, is_of_angles: bool) -> impl Iterator<Item = &TestFigure> {
         self.figures.iter().filter(move |it| it.name == name && it.axis.is_some() == is_of_angles)
     }
 }
@@ -62,14 +62,14 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
         return ErrorKind::Measurement
             .refuse("found no rows with a measured position, expected a row for each pose and cycle");
     }
-    let cells = Cells::from_rows(rows);
+    let cells = PoseCells::from_rows(rows);
     let mut warnings = faults::check(&cells)?;
     let base = &cells.base;
-    let commanded: Vec<Pose> = base.iter().map(Cell::commanded).collect();
+    let commanded: Vec<Pose> = base.iter().map(PoseCell::commanded).collect();
     let places = |poses: &[Pose]| poses.iter().map(|it| it.translation).collect::<Vec<_>>();
     let found = register(base, &places(&commanded), base_from_device)?;
     faults::refuse_gross(base, &found.errors, base_from_device.is_none())?;
-    let calibrated: Option<Vec<Pose>> = base.iter().map(Cell::calibrated).collect();
+    let calibrated: Option<Vec<Pose>> = base.iter().map(PoseCell::calibrated).collect();
     let corrected =
         calibrated.as_ref().map(|it| register(base, &places(it), base_from_device)).transpose()?;
     let mut figures = positions(base, &found, corrected.as_ref());
@@ -95,8 +95,8 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
     figures.extend(drifts(&cells, &found));
     Ok(Iso9283 {
         poses: base.iter().map(|it| it.pose.clone()).collect(),
-        cycles: base.iter().map(Cell::count).min().unwrap_or(0),
-        rows: base.iter().map(Cell::count).sum(),
+        cycles: base.iter().map(PoseCell::count).min().unwrap_or(0),
+        rows: base.iter().map(PoseCell::count).sum(),
         base_from_device: found.base_from_device,
         coordinates: [3 * base.len(), if base_from_device.is_some() { 0 } else { 6 }],
         figures,
@@ -105,48 +105,48 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
 }
 
 /// A figure of a cell.
-fn figure(name: FigureName, cell: &Cell<'_>, measured: FigureBounds) -> Figure {
+fn figure(name: FigureName, cell: &PoseCell<'_>, measured: FigureBounds) -> TestFigure {
     let (pose, cycles) = (cell.pose.clone(), cell.count());
-    Figure { name, axis: None, pose, cycles, measured, without_noise: None, corrected: None }
+    TestFigure { name, axis: None, pose, cycles, measured, without_noise: None, corrected: None }
 }
 
 /// AP and RP of positions.
-fn positions(base: &[Cell<'_>], found: &Registered, corrected: Option<&Registered>) -> Vec<Figure> {
+fn positions(base: &[PoseCell<'_>], found: &Registered, corrected: Option<&Registered>) -> Vec<TestFigure> {
     let mut figures = Vec::new();
     for (k, cell) in base.iter().enumerate() {
         let accuracy = |of: &Registered| intervals::length(&of.errors[k], &of.parts[k]);
         let own = figure(FigureName::Ap, cell, accuracy(found));
-        figures.push(Figure { corrected: corrected.map(accuracy), ..own });
+        figures.push(TestFigure { corrected: corrected.map(accuracy), ..own });
     }
     figures.extend(base.iter().map(position_repeatability));
     figures
 }
 
 /// RP of a cell's positions.
-fn position_repeatability(cell: &Cell<'_>) -> Figure {
+fn position_repeatability(cell: &PoseCell<'_>) -> TestFigure {
     let places: Vec<Vector3<f64>> = cell.rows.iter().map(|row| row.position_m).collect();
     let (measured, without_noise) = spread::with_interval(&places, cell.noise_variance(0));
-    Figure { without_noise, ..figure(FigureName::Rp, cell, measured) }
+    TestFigure { without_noise, ..figure(FigureName::Rp, cell, measured) }
 }
 
 /// AP and RP of angles about the axes of the base: components of the rotation from command to measurement. Beside a fitted frame the mean of all
 /// poses is that of the target on the flange.
 fn orientations(
-    base: &[Cell<'_>],
+    base: &[PoseCell<'_>],
     found: &Registered,
     wanted: &[Pose],
     is_fitted: bool,
     target: Option<Matrix3<f64>>,
-) -> Vec<Figure> {
+) -> Vec<TestFigure> {
     let turn = found.base_from_device.rotation;
     let measured = |row: &TestRow| row.rotation.map_or(turn, |it| turn * it);
-    let of_cell = |(cell, wanted): (&Cell<'_>, &Pose)| {
+    let of_cell = |(cell, wanted): (&PoseCell<'_>, &Pose)| {
         let own = mean_rotation(cell.rows.iter().map(|row| measured(row)));
         own.transpose() * wanted.rotation
     };
     let fitted = || mean_rotation(base.iter().zip(wanted).map(of_cell));
     let target = target.unwrap_or_else(|| if is_fitted { fitted() } else { Matrix3::identity() });
-    let errors = |(cell, wanted): (&Cell<'_>, &Pose)| {
+    let errors = |(cell, wanted): (&PoseCell<'_>, &Pose)| {
         let error = |row: &&TestRow| rotation::log(&(measured(row) * target * wanted.rotation.transpose()));
         let errors: Vec<Vector3<f64>> = cell.rows.iter().map(error).collect();
         mean_and_covariance(errors.into_iter())
@@ -169,7 +169,7 @@ fn orientations(
                 } else {
                     scatter(name, cell, variance(k), cell.noise_variance(1))
                 };
-                figures.push(Figure { axis: Some(axis), ..own });
+                figures.push(TestFigure { axis: Some(axis), ..own });
             }
         }
     }
@@ -177,7 +177,7 @@ fn orientations(
 }
 
 /// Three standard deviations of a number, with and without noise of a variance.
-fn scatter(name: FigureName, cell: &Cell<'_>, variance: f64, noise: Option<f64>) -> Figure {
+fn scatter(name: FigureName, cell: &PoseCell<'_>, variance: f64, noise: Option<f64>) -> TestFigure {
     let of = |deviation: f64| intervals::deviation(deviation, cell.count(), DEVIATIONS);
     let raw = of(variance.sqrt());
     let free = |value: f64, noise: f64| (value * value - DEVIATIONS.powi(2) * noise).max(0.0).sqrt();
@@ -186,11 +186,11 @@ fn scatter(name: FigureName, cell: &Cell<'_>, variance: f64, noise: Option<f64>)
         from: free(raw.from, noise),
         to: free(raw.to, noise),
     });
-    Figure { without_noise, ..figure(name, cell, raw) }
+    TestFigure { without_noise, ..figure(name, cell, raw) }
 }
 
 /// AD and RD between P2 and P4, or the two poses whose commands are farthest apart.
-fn distances(base: &[Cell<'_>], commanded: &[Pose], calibrated: Option<&[Pose]>) -> Vec<Figure> {
+fn distances(base: &[PoseCell<'_>], commanded: &[Pose], calibrated: Option<&[Pose]>) -> Vec<TestFigure> {
     let at = |name: &str| base.iter().position(|it| it.pose == name);
     let apart = |poses: &[Pose], (a, b): (usize, usize)| (poses[a].translation - poses[b].translation).norm();
     let all = (0..base.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -211,20 +211,23 @@ fn distances(base: &[Cell<'_>], commanded: &[Pose], calibrated: Option<&[Pose]>)
     let variance = found.iter().map(|it| (it - mean).powi(2)).sum::<f64>() / (count - 1.0);
     let noise = base[pair.0].noise_variance(0).zip(base[pair.1].noise_variance(0)).map(|(a, b)| a + b);
     let rows = base[pair.0].rows.iter().take(found.len()).copied().collect();
-    let both =
-        Cell { pose: format!("{}-{}", base[pair.0].pose, base[pair.1].pose), rows, ..base[pair.0].clone() };
+    let both = PoseCell {
+        pose: format!("{}-{}", base[pair.0].pose, base[pair.1].pose),
+        rows,
+        ..base[pair.0].clone()
+    };
     let accuracy =
         |poses: &[Pose]| intervals::mean(mean - apart(poses, pair), &[(variance / count, count - 1.0)]);
     let own = figure(FigureName::Ad, &both, accuracy(commanded));
     vec![
-        Figure { corrected: calibrated.map(accuracy), ..own },
+        TestFigure { corrected: calibrated.map(accuracy), ..own },
         scatter(FigureName::Rd, &both, variance, noise),
     ]
 }
 
 /// Distances between two poses in each cycle that both have; by their order if cycles have no names.
-fn paired(first: &Cell<'_>, second: &Cell<'_>) -> Vec<f64> {
-    let is_named = |it: &Cell<'_>| it.rows.iter().all(|row| !row.labels.cycle.is_empty());
+fn paired(first: &PoseCell<'_>, second: &PoseCell<'_>) -> Vec<f64> {
+    let is_named = |it: &PoseCell<'_>| it.rows.iter().all(|row| !row.labels.cycle.is_empty());
     let by_name = is_named(first) && is_named(second);
     let partner = |(k, row): (usize, &&TestRow)| {
         let own = |it: &&&TestRow| it.labels.cycle == row.labels.cycle;
@@ -235,11 +238,11 @@ fn paired(first: &Cell<'_>, second: &Cell<'_>) -> Vec<f64> {
 }
 
 /// vAP and E: the farthest two barycentres of approaches, and of arms.
-fn variations(cells: &Cells<'_>) -> Vec<Figure> {
+fn variations(cells: &PoseCells<'_>) -> Vec<TestFigure> {
     let mut figures = Vec::new();
     for name in [FigureName::Vap, FigureName::E] {
         for base in &cells.base {
-            let is_alike = |it: &&Cell<'_>| {
+            let is_alike = |it: &&PoseCell<'_>| {
                 let (own, other) = (base.labels, it.labels);
                 let is_of_arm = name == FigureName::E;
                 it.pose == base.pose
@@ -247,14 +250,14 @@ fn variations(cells: &Cells<'_>) -> Vec<Figure> {
                     && (own.arm == other.arm) != is_of_arm
                     && (own.approach == other.approach) == is_of_arm
             };
-            let others: Vec<&Cell<'_>> =
+            let others: Vec<&PoseCell<'_>> =
                 std::iter::once(base).chain(cells.others.iter().filter(is_alike)).collect();
             let pairs = (0..others.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
             let bounds = pairs.map(|(a, b)| {
                 let [(first, own), (second, other)] = [others[a].barycentre(), others[b].barycentre()];
-                let part = |cell: &Cell<'_>, spread: Matrix3<f64>| {
+                let part = |cell: &PoseCell<'_>, spread: Matrix3<f64>| {
                     let count = cell.count() as f64;
-                    Part { covariance: spread / count, freedom: count - 1.0 }
+                    VariancePart { covariance: spread / count, freedom: count - 1.0 }
                 };
                 intervals::length(&(first - second), &[part(others[a], own), part(others[b], other)])
             });
@@ -274,27 +277,27 @@ fn largest(bounds: impl Iterator<Item = FigureBounds>) -> Option<FigureBounds> {
 }
 
 /// dAP and dRP: the largest change from the first series.
-fn drifts(cells: &Cells<'_>, found: &Registered) -> Vec<Figure> {
-    let accuracy = |cell: &Cell<'_>, wanted: &Vector3<f64>| {
+fn drifts(cells: &PoseCells<'_>, found: &Registered) -> Vec<TestFigure> {
+    let accuracy = |cell: &PoseCell<'_>, wanted: &Vector3<f64>| {
         let (mean, spread) = cell.barycentre();
         let turn = found.base_from_device.rotation;
         let count = cell.count() as f64;
         let covariance = turn * spread * turn.transpose() / count;
         let error = found.base_from_device.act(&mean) - wanted;
-        intervals::length(&error, &[Part { covariance, freedom: count - 1.0 }])
+        intervals::length(&error, &[VariancePart { covariance, freedom: count - 1.0 }])
     };
     let mut figures = Vec::new();
     for name in [FigureName::Dap, FigureName::Drp] {
         for base in &cells.base {
             let own = base.labels;
-            let is_later = |it: &&Cell<'_>| {
+            let is_later = |it: &&PoseCell<'_>| {
                 let other = it.labels;
                 it.pose == base.pose
                     && (own.arm == other.arm && own.approach == other.approach)
                     && own.series != other.series
             };
             let wanted = base.commanded().translation;
-            let of = |cell: &Cell<'_>| match name {
+            let of = |cell: &PoseCell<'_>| match name {
                 FigureName::Dap => accuracy(cell, &wanted),
                 _ => position_repeatability(cell).measured,
             };

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3};
 
-use super::intervals::Part;
-use super::rows::Cell;
+use super::intervals::VariancePart;
+use super::rows::PoseCell;
 use poecal_arm::lie::{Pose, hat};
 use poecal_fit::start::rigid_motion;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -28,7 +28,7 @@ pub(super) struct Registered {
     /// Barycentre less command of each pose, metres.
     pub(super) errors: Vec<Vector3<f64>>,
     /// What each cell's scatter adds to the covariance of each error.
-    pub(super) parts: Vec<Vec<Part>>,
+    pub(super) parts: Vec<Vec<VariancePart>>,
 }
 
 /// Barycentres of cells in the base frame, beside where they should be; the frame is fitted to them (least squares) unless it is stated.
@@ -36,11 +36,11 @@ pub(super) struct Registered {
 /// # Errors
 /// [`ErrorKind::Measurement`] if the poses do not determine a frame.
 pub(super) fn register(
-    cells: &[Cell<'_>],
+    cells: &[PoseCell<'_>],
     wanted: &[Vector3<f64>],
     stated: Option<Pose>,
 ) -> Result<Registered> {
-    let (means, spreads): (Vec<_>, Vec<_>) = cells.iter().map(Cell::barycentre).unzip();
+    let (means, spreads): (Vec<_>, Vec<_>) = cells.iter().map(PoseCell::barycentre).unzip();
     if stated.is_none() {
         refuse_undetermined(&means)?;
     }
@@ -54,11 +54,11 @@ pub(super) fn register(
         None => Some(Through::new(&places)?),
     };
     let parts = (0..cells.len()).map(|i| match &through {
-        None => vec![Part { covariance: own(i), freedom: freedom(i) }],
+        None => vec![VariancePart { covariance: own(i), freedom: freedom(i) }],
         Some(through) => (0..cells.len())
             .map(|k| {
                 let left = through.left(i, k);
-                Part { covariance: left * own(k) * left.transpose(), freedom: freedom(k) }
+                VariancePart { covariance: left * own(k) * left.transpose(), freedom: freedom(k) }
             })
             .collect(),
     });

@@ -10,7 +10,7 @@ const INFINITE: f64 = 1e6;
 
 /// A part of the covariance of an estimate, with its degrees of freedom.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct VariancePart {
     pub(super) covariance: Matrix3<f64>,
     pub(super) freedom: f64,
 }
@@ -48,7 +48,7 @@ pub(super) fn deviation(found: f64, count: usize, factor: f64) -> FigureBounds {
 
 /// Of the length of an error, whose estimate is too long by its scatter across: `E|e|² = |ε|² + tr C`. If the error is not shown to differ from
 /// zero, the interval is one-sided, from zero.
-pub(super) fn length(error: &Vector3<f64>, parts: &[Part]) -> FigureBounds {
+pub(super) fn length(error: &Vector3<f64>, parts: &[VariancePart]) -> FigureBounds {
     let found = error.norm();
     let total: Matrix3<f64> = parts.iter().map(|it| it.covariance).sum();
     let along = |direction: &Vector3<f64>, of: &Matrix3<f64>| (direction.transpose() * of * direction)[0];

@@ -12,7 +12,7 @@ mod intervals;
 mod rows;
 mod spread;
 
-pub use figure::{Figure, FigureBounds, FigureLimit, FigureName, JudgedFigure};
+pub use figure::{FigureBounds, FigureLimit, FigureName, JudgedFigure, TestFigure};
 pub use figures::{Iso9283, iso9283};
 pub use rows::{TestLabels, TestRow};
 

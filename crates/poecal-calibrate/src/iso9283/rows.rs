@@ -49,7 +49,7 @@ pub struct TestRow {
 
 /// Rows of one pose, arm, approach and series.
 #[derive(Clone, Debug)]
-pub(super) struct Cell<'a> {
+pub(super) struct PoseCell<'a> {
     pub(super) pose: String,
     pub(super) labels: &'a TestLabels,
     pub(super) rows: Vec<&'a TestRow>,
@@ -57,16 +57,16 @@ pub(super) struct Cell<'a> {
 
 /// All cells. The base cells are those of the first row's arm, approach and series: one for each pose.
 #[derive(Clone, Debug)]
-pub(super) struct Cells<'a> {
-    pub(super) base: Vec<Cell<'a>>,
-    pub(super) others: Vec<Cell<'a>>,
+pub(super) struct PoseCells<'a> {
+    pub(super) base: Vec<PoseCell<'a>>,
+    pub(super) others: Vec<PoseCell<'a>>,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> PoseCells<'a> {
     /// Sorts rows; poses without a name are told apart by their commanded positions.
     pub(super) fn from_rows(rows: &'a [TestRow]) -> Self {
         let mut unnamed: Vec<Vector3<f64>> = Vec::new();
-        let mut cells: Vec<Cell<'a>> = Vec::new();
+        let mut cells: Vec<PoseCell<'a>> = Vec::new();
         for row in rows {
             let pose = if row.labels.pose.is_empty() {
                 let own = row.commanded.translation;
@@ -81,14 +81,14 @@ impl<'a> Cells<'a> {
             };
             match cells.iter_mut().find(|it| it.pose == pose && it.is_like(&row.labels)) {
                 Some(cell) => cell.rows.push(row),
-                None => cells.push(Cell { pose, labels: &row.labels, rows: vec![row] }),
+                None => cells.push(PoseCell { pose, labels: &row.labels, rows: vec![row] }),
             }
         }
         let first = cells.first().map(|it| it.labels);
         let (mut base, others): (Vec<_>, Vec<_>) =
             cells.into_iter().partition(|it| first.is_some_and(|first| it.is_like(first)));
         base.sort_by(|a, b| a.pose.cmp(&b.pose));
-        Cells { base, others }
+        PoseCells { base, others }
     }
 
     /// Whether the base rows have orientations, all of them.
@@ -97,7 +97,7 @@ impl<'a> Cells<'a> {
     }
 }
 
-impl Cell<'_> {
+impl PoseCell<'_> {
     /// Whether rows with these labels are of the same arm, approach and series.
     fn is_like(&self, labels: &TestLabels) -> bool {
         let of = |it: &TestLabels| [it.arm.clone(), it.approach.clone(), it.series.clone()];

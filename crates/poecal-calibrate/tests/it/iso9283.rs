@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
-use poecal_calibrate::{Figure, FigureLimit, FigureName, Iso9283, TestLabels, TestRow, iso9283};
+use poecal_calibrate::{FigureLimit, FigureName, Iso9283, TestFigure, TestLabels, TestRow, iso9283};
 use poecal_fit::start::rigid_motion;
 use poecal_model::simulate::random::{normal_vector, rotation as any_rotation, uniform};
 use poecal_testing::trials::trials;
@@ -112,7 +112,7 @@ impl Known {
     }
 }
 
-fn of<'a>(found: &'a Iso9283, name: FigureName, is_of_angles: bool) -> Vec<&'a Figure> {
+fn of<'a>(found: &'a Iso9283, name: FigureName, is_of_angles: bool) -> Vec<&'a TestFigure> {
     found.of_name(name, is_of_angles).collect()
 }
 
@@ -250,7 +250,11 @@ fn wrong_rows_are_named() {
     assert!(refusal(&other).ends_with("of P2's others: correct its pose"), "{}", refusal(&other));
     let mut far = rows.clone();
     far[11].position_m.x += 0.02;
-    assert!(refusal(&far).contains("rows.csv:13: found a position 20.0"), "{}", refusal(&far));
+    assert!(
+        refusal(&far).contains("mm from the other rows of pose P2, which scatter by"),
+        "{}",
+        refusal(&far)
+    );
     let mut doubled = rows.clone();
     doubled[16].labels.cycle = "3".to_owned();
     assert!(

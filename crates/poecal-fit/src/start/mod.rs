@@ -13,8 +13,8 @@ mod registration;
 mod robust;
 mod stations;
 
-pub use averaging::{mean_rotation, rigid_motion};
 pub(crate) use averaging::rotation_maximising;
+pub use averaging::{mean_rotation, rigid_motion};
 pub use faces::{faces_on_known_planes, settle_faces};
 pub use markers::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};
 pub use pairing::{

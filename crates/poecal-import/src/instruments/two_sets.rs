@@ -158,8 +158,12 @@ impl<'t> Sets<'t> {
     }
 }
 
-fn is_it(text: &str, _: &Opening<'_>) -> bool {
-    Sets::of_text(text).is_some()
+/// Not of a table whose commanded set is what the robot reads.
+fn is_it(text: &str, opening: &Opening<'_>) -> bool {
+    Sets::of_text(text).is_some_and(|it| {
+        let has = |name: &String| it.head.names.iter().any(|cell| parts(cell).0 == name);
+        !opening.robot.reading_names().iter().any(has)
+    })
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {

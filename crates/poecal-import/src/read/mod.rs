@@ -4,6 +4,7 @@ mod joined_stands;
 pub(crate) mod joining;
 pub(crate) mod joints;
 mod judging;
+pub(crate) mod labels;
 pub(crate) mod socket_distance;
 
 use std::collections::BTreeMap;

@@ -1,0 +1,259 @@
+//! Rows of a test from files: where the target was commanded to be, and where it was measured.
+//!
+//! Commands are joint readings of a robot, or poses in the columns `commanded_x`, `commanded_y`, `commanded_z` with or without `commanded_roll`,
+//! `commanded_pitch`, `commanded_yaw`. These are readings too: of a gantry whose tip is the commanded pose. So all forms of measurement files are read.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+
+use super::TestFrame;
+use crate::calibration_file::CalibrationFile;
+use crate::model::{Model, ModelSource};
+use crate::predictions::{PredictionFrame, default_target, predicted};
+use poecal_arm::lie::{Pose, Screw};
+use poecal_calibrate::{TestLabels, TestRow};
+use poecal_import::{LabelColumns, MeasurementFile, ReadOptions, read, read_labels};
+use poecal_model::measurement::{Dataset, Observation, Quantity};
+use poecal_model::robot::{Joint, Robot};
+use poecal_numerics::error::{ErrorKind, Result};
+
+/// Columns of what was done, in the order of [`labels`].
+const LABELS: [&str; 7] = ["pose", "cycle", "approach", "series", "arm", "speed", "payload"];
+/// Columns of commanded positions, and of their orientations.
+const COMMANDED: [&str; 3] = ["commanded_x", "commanded_y", "commanded_z"];
+const TURNED: [&str; 3] = ["commanded_yaw", "commanded_pitch", "commanded_roll"];
+/// Commanded orientations (radians) within this are one.
+const SAME_RAD: f64 = 0.01;
+
+/// How the rows of a test are read.
+#[derive(Clone, Debug, Default)]
+pub struct TestOptions {
+    /// How measurement files are read.
+    pub reading: ReadOptions,
+    /// The device's frame.
+    pub frame: TestFrame,
+    /// Standard deviation of the instrument's noise, each component, for rows that state none, metres.
+    pub sigma_position_m: Option<f64>,
+    /// The same of rotations, radians.
+    pub sigma_rotation_rad: Option<f64>,
+}
+
+/// Rows of a test.
+#[derive(Clone, Debug, Default)]
+pub struct TestFile {
+    /// The rows.
+    pub rows: Vec<TestRow>,
+    /// Pose of the device in the base, if it is stated.
+    pub base_from_device: Option<Pose>,
+    /// How the files were read.
+    pub read: MeasurementFile,
+    /// Speed, as the rows state it.
+    pub speed: String,
+    /// Warnings, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the rows of a test. With a robot, commands are its joint readings, by the nominal model; of a calibration.json the rows are also predicted by the
+/// corrected model. Without one, files have the columns of commanded poses.
+///
+/// # Errors
+/// As [`poecal_import::read()`]; [`ErrorKind::Measurement`] if a row has no position, or rows are of several targets or device frames;
+/// [`ErrorKind::Option`] for the frame of a calibration without one.
+pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions) -> Result<TestFile> {
+    let gantry = gantry(paths, options, model.is_none())?;
+    let commanded = match (model, &gantry) {
+        (Some(model), _) => nominal(model)?,
+        (None, robot) => Model { robot: robot.clone(), source: ModelSource::Toml, path: PathBuf::new() },
+    };
+    let reading = ReadOptions { ignore_sets: true, ..options.reading.clone() };
+    let reading = model.map_or(reading.clone(), |model| model.reads(reading));
+    let read = read(paths, &commanded.robot, &reading)?;
+    let data = &read.data;
+    refuse_several(data)?;
+    let base_from_device = stated_frame(model, options.frame)?;
+    let target = target_of(model, data);
+    let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row)).copied().collect();
+    let poses = |model: &Model| {
+        Ok::<_, poecal_numerics::error::Error>(
+            predicted(model, &readings, PredictionFrame::Base, target.as_deref(), false)?.poses,
+        )
+    };
+    let wanted = poses(&commanded)?;
+    let calibrated = match model {
+        Some(model) if calibration(model).is_some() => Some(poses(&model.clone().corrected()?)?),
+        _ => None,
+    };
+    let labels = labels(paths, &commanded.robot, &reading);
+    let rows = data.observations.iter().enumerate().map(|(row, seen)| {
+        let words =
+            labels.get(seen.source.file as usize).and_then(|it| it.lines.get(&(seen.source.line as usize)));
+        let place = place(data, seen);
+        let Some(position_m) = seen.measurement.position() else {
+            return ErrorKind::Measurement.refuse(format!(
+                "{place}: found {}, expected the position of the target: x, y and z",
+                seen.measurement.function().name
+            ));
+        };
+        Ok(TestRow {
+            commanded: wanted[row],
+            calibrated: calibrated.as_ref().map(|it| it[row]),
+            position_m,
+            rotation: seen.measurement.orientation(),
+            noise: [
+                seen.stated.get(Quantity::Position).or(options.sigma_position_m),
+                seen.stated.get(Quantity::Rotation).or(options.sigma_rotation_rad),
+            ],
+            labels: words.map(|it| labelled(it)).unwrap_or_default(),
+            place,
+        })
+    });
+    let mut rows = rows.collect::<Result<Vec<TestRow>>>()?;
+    let warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
+    let speed = rows.first().map(|it| it.labels.speed.clone()).unwrap_or_default();
+    Ok(TestFile { rows, base_from_device, speed, warnings, read })
+}
+
+/// The calibration of a model.
+fn calibration(model: &Model) -> Option<&CalibrationFile> {
+    match &model.source {
+        ModelSource::Calibration(file) => Some(file),
+        ModelSource::Urdf(_) | ModelSource::Toml => None,
+    }
+}
+
+/// The model by which a controller commands: the nominal one.
+fn nominal(model: &Model) -> Result<Model> {
+    let robot = match calibration(model) {
+        Some(file) => file.nominal_robot().map_err(|error| error.in_file(&model.path))?,
+        None => model.robot.clone(),
+    };
+    Ok(Model { robot, ..model.clone() })
+}
+
+/// Whose tip is at the pose that it reads: sliding axes x, y, z, and turning ones if a file has orientations.
+fn gantry(paths: &[PathBuf], options: &TestOptions, is_needed: bool) -> Result<Robot> {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let slides = COMMANDED.iter().zip(axes);
+    let mut joints: Vec<Joint> =
+        slides.map(|(name, axis)| Joint::prismatic(name, Screw::prismatic(&axis))).collect();
+    let of_positions = Robot::new("commanded", joints.clone(), Pose::identity())?;
+    let Some(path) = paths.first().filter(|_| is_needed) else { return Ok(of_positions) };
+    let names: Vec<&str> = COMMANDED.into_iter().chain(TURNED).collect();
+    let found = read_labels(path, &names, &of_positions, &options.reading)?;
+    if let Some((_, missing)) = found.has.iter().zip(&names).take(3).find(|(has, _)| !**has) {
+        let message = format!(
+            "found no column `{missing}`, expected commanded_x, commanded_y, commanded_z with their units, or the robot whose joint readings the file has: --robot MODEL"
+        );
+        return Err(ErrorKind::Measurement.error(message).in_file(path));
+    }
+    if found.has.iter().skip(3).any(|has| *has) {
+        let turns = TURNED.iter().zip(axes.into_iter().rev());
+        joints.extend(
+            turns.map(|(name, axis)| Joint::revolute(name, Screw::revolute(&axis, &Vector3::zeros()))),
+        );
+        return Robot::new("commanded", joints, Pose::identity());
+    }
+    Ok(of_positions)
+}
+
+/// Refuses rows of several targets, or of devices with frames of their own.
+fn refuse_several(data: &Dataset) -> Result<()> {
+    let refuse = |count: usize, what: &str, remedy: &str| {
+        let message = format!("found rows of {count} {what}, expected those of one: {remedy}");
+        let error = ErrorKind::Measurement.error(message);
+        Err(data.files.first().map_or(error.clone(), |path| error.in_file(path)))
+    };
+    if data.targets.len() > 1 {
+        return refuse(data.targets.len(), "targets", "test each by a file of its own");
+    }
+    if data.station_count() > 1 {
+        return refuse(data.station_count(), "device frames", "test each by a file of its own");
+    }
+    Ok(())
+}
+
+/// Pose of the device in the base, if it is stated.
+fn stated_frame(model: Option<&Model>, frame: TestFrame) -> Result<Option<Pose>> {
+    match frame {
+        TestFrame::Unknown => Ok(None),
+        TestFrame::Base => Ok(Some(Pose::identity())),
+        TestFrame::Calibration => {
+            let Some((model, file)) = model.and_then(|it| Some((it, calibration(it)?))) else {
+                return ErrorKind::Option.refuse(
+                    "found --device-frame calibration and no calibration, expected --robot calibration.json, or the frame unknown or base",
+                );
+            };
+            let corrected = file.corrected();
+            let own = corrected.as_ref().unwrap_or(file);
+            own.base_from_device().map(Some).map_err(|error| error.in_file(&model.path))
+        }
+    }
+}
+
+/// The target that rows are of, if the model knows it; else the tip.
+fn target_of(model: Option<&Model>, data: &Dataset) -> Option<String> {
+    let model = model?;
+    let named = data.targets.first().cloned().flatten();
+    let robot = &model.robot;
+    let knows = |name: &String| {
+        robot.targets.iter().any(|it| it.0 == *name) || robot.mounted.iter().any(|it| it.name == *name)
+    };
+    if let Some(name) = named {
+        return Some(name).filter(knows);
+    }
+    calibration(model)?;
+    default_target(model, PredictionFrame::Base, true).ok().flatten().map(str::to_owned)
+}
+
+/// File and line of a row.
+fn place(data: &Dataset, seen: &Observation) -> String {
+    let file = data.files.get(seen.source.file as usize).map(|it: &PathBuf| it.display().to_string());
+    format!("{}:{}", file.unwrap_or_default(), seen.source.line)
+}
+
+/// Words of each file's lines; none of files in another form.
+fn labels(paths: &[PathBuf], robot: &Robot, reading: &ReadOptions) -> Vec<LabelColumns> {
+    let of = |path: &PathBuf| read_labels(Path::new(path), &LABELS, robot, reading).unwrap_or_default();
+    paths.iter().map(of).collect()
+}
+
+/// LabelColumns of a row by its words.
+fn labelled(words: &[String]) -> TestLabels {
+    let of = |at: usize| words.get(at).cloned().unwrap_or_default();
+    TestLabels {
+        pose: of(0),
+        cycle: of(1),
+        approach: of(2),
+        series: of(3),
+        arm: of(4),
+        speed: of(5),
+        payload: of(6),
+    }
+}
+
+/// What makes accuracy doubtful, a sentence each; takes orientations away whose target is not known.
+fn doubts(
+    model: Option<&Model>,
+    rows: &mut [TestRow],
+    target: Option<&str>,
+    frame: TestFrame,
+) -> Vec<String> {
+    let mut said = Vec::new();
+    let Some(model) = model else { return said };
+    let first = rows.first().map(|it| it.commanded);
+    let turn_rad =
+        rows.iter().zip(first).map(|(row, first)| row.commanded.apart(&first).1).fold(0.0, f64::max);
+    if target.is_none() && turn_rad > SAME_RAD && calibration(model).is_none() {
+        said.push(format!(
+            "found commanded orientations that differ by up to {:.1} deg and a target whose place on the flange is not known, expected it in the model: \
+             AP contains its lever arm, if it is not at the tip",
+            turn_rad.to_degrees()
+        ));
+    }
+    let entry = calibration(model).zip(target).and_then(|(file, name)| file.targets.get(name));
+    if frame != TestFrame::Unknown && entry.is_some_and(|it| it.quaternion_xyzw.is_none()) {
+        rows.iter_mut().for_each(|row| row.rotation = None);
+    }
+    said
+}
