@@ -5,6 +5,7 @@
 mod arms;
 mod determinism;
 mod field;
+mod iso9283;
 mod programs;
 mod singular;
 mod taught;

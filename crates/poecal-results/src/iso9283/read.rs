@@ -68,7 +68,7 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
     };
     let reading = ReadOptions { ignore_sets: true, ..options.reading.clone() };
     let reading = model.map_or(reading.clone(), |model| model.reads(reading));
-    let read = read(paths, &commanded.robot, &reading)?;
+    let read = read(paths, &commanded.robot, &without_labels(&reading, &commanded.robot))?;
     let data = &read.data;
     refuse_several(data)?;
     let base_from_device = stated_frame(model, options.frame)?;
@@ -112,6 +112,15 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
     let warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
     let speed = rows.first().map(|it| it.labels.speed.clone()).unwrap_or_default();
     Ok(TestFile { rows, base_from_device, speed, warnings, read })
+}
+
+/// The same options for the measurements alone, beside which labels have no meaning but as factors of the robot.
+fn without_labels(reading: &ReadOptions, robot: &Robot) -> ReadOptions {
+    let mut reading = reading.clone();
+    let known = robot.reading_names();
+    let names = LABELS.iter().map(|it| (*it).to_owned()).filter(|it| !known.contains(it));
+    reading.mapping.get_or_insert_default().ignore_columns(names);
+    reading
 }
 
 /// The calibration of a model.

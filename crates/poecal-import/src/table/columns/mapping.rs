@@ -218,6 +218,11 @@ impl ColumnMap {
             || self.target.is_some()
     }
 
+    /// Reads columns of these names as if they were not there; a file need not have them.
+    pub fn ignore_columns(&mut self, names: impl IntoIterator<Item = String>) {
+        self.ignore.extend(names);
+    }
+
     /// Whether it names columns of joints.
     pub(crate) fn names_joints(&self) -> bool {
         self.joints.values().any(|spec| spec.column.is_some() || spec.columns.is_some())
