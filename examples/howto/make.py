@@ -357,6 +357,22 @@ def bag(robot, path):
         writer.finish()
 
 
+def iso9283(path):
+    """A test of ISO 9283: five poses of a cube of 0.6 m, 30 cycles, a tracker that stands anywhere."""
+    rng = np.random.default_rng(9283)
+    commanded = np.array([[0, 0, 0], [1, 1, 1], [-1, 1, 1], [-1, -1, -1], [1, -1, -1]]) * 0.24 + [0.9, 0, 0.6]
+    errors = np.array([[0.18, -0.22, 0.31], [0.42, 0.1, -0.2], [-0.3, 0.25, 0.1], [0.05, -0.4, 0.35], [-0.15, 0.2, -0.45]]) * 1e-3
+    device_from_base = rotation(np.array([0, 0, 0.7])) @ rotation(np.array([0, 0.02, 0]))
+    rows = ["pose,cycle,commanded_x[mm],commanded_y[mm],commanded_z[mm],x[mm],y[mm],z[mm],speed".split(",")]
+    for cycle in range(30):
+        for pose in (4, 3, 2, 1, 0):
+            reached = commanded[pose] + errors[pose] + rng.normal(size=3) * [2e-5, 1.2e-5, 1.5e-5]
+            seen = device_from_base @ reached + [2.1, -1.4, 0.3] + rng.normal(size=3) * 1e-5
+            cells = [f"{1e3 * value:.3f}" for value in commanded[pose]] + [f"{1e3 * value:.4f}" for value in seen]
+            rows.append([f"P{pose + 1}", cycle + 1, *cells, "100 %"])
+    write(path, rows)
+
+
 def write(path, rows):
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
@@ -374,6 +390,7 @@ def main(poecal, folder):
         corners(robot, folder)
         touches(robot, folder / "touches.csv")
         tracker_and_workbook(robot, folder / "points.txt", folder / "joints.xlsx")
+        iso9283(folder / "iso9283.csv")
         bag(robot, folder / "session.mcap")
         in_motion(robot, folder / "moving_joints.csv", folder / "moving_take.csv")
 

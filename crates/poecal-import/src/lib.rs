@@ -43,7 +43,7 @@ pub use crate::table::understanding::{ColumnUnderstanding, FileUnderstanding};
 pub use crate::write::growing::{GrowingFile, News};
 pub use crate::write::own_rows::imported_table;
 pub use crate::write::rewritten::{JointRow, RewrittenTable, rewrite_joints};
-pub use crate::write::template::{plan, planned_table, template};
+pub use crate::write::template::{plan, planned_table, template, test_table};
 pub use guess::{ColumnGuess, FoundColumn, MappedChoice, MappedField, guess_columns};
 pub use poecal_fit::start::MotionEntry;
 pub use poecal_model::measurement::InstrumentNoise;

@@ -13,6 +13,7 @@ mod convert;
 mod covariance;
 mod errors;
 mod hand_eye;
+mod iso9283;
 mod measurements;
 mod notebook;
 mod of_model;
@@ -89,6 +90,8 @@ mod _poecal {
     use crate::guess::guess_columns;
     #[pymodule_export]
     use crate::hand_eye::{hand_eye, tcp};
+    #[pymodule_export]
+    use crate::iso9283::iso9283;
     #[pymodule_export]
     use crate::measurements::Measurements;
     #[pymodule_export]

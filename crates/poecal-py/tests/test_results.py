@@ -5,6 +5,7 @@ import json
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pandas
@@ -42,6 +43,7 @@ def results(made, calibration, tmp_path_factory) -> dict[str, poecal.Findings]:
         "WatchedRow": poecal.Watch(made.nominal).add_all(made.measurements[:12])[-1],
         "HandEye": poecal.hand_eye(arm, seen, camera="in-hand"),
         "ToolTip": poecal.tcp(np.array([arm[k] for k in range(12)])),
+        "Iso9283": poecal.iso9283(Path(__file__).resolve().parents[3] / "examples/howto/iso9283.csv", accept="AP:1mm"),
         "Compensation": calibration.compensate(joints, summary=True, max_turn_deg=60)[1],
         "Reproduction": poecal.reproduce("lou2009", trials=2, starts=1),
     }
@@ -76,7 +78,7 @@ def test_each_is_pickled_and_copied(results):
 
 def test_each_is_a_table(results):
     counts = {"Check": 9, "Offsets": 6, "Comparison": 6, "Validation": 1, "Visit": 6, "VisitPlan": 6, "Identification": 6, "WatchedRow": 1}
-    counts |= {"ColumnGuess": len(results["ColumnGuess"]["fields"]), "HandEye": 2, "ToolTip": 1, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
+    counts |= {"ColumnGuess": len(results["ColumnGuess"]["fields"]), "HandEye": 2, "ToolTip": 1, "Iso9283": 12, "Compensation": 60, "Reproduction": len(results["Reproduction"]["claims"])}
     for name, found in results.items():
         frame = found.to_dataframe()
         print(name, list(frame.columns))

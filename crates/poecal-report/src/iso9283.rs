@@ -3,6 +3,10 @@
 use poecal_calibrate::{FigureName, STANDARD_CYCLES};
 use poecal_results::iso9283::{BoundsEntry, FigureEntry, TestFrame, TestResult};
 
+use poecal_arm::lie::Pose;
+use poecal_plan::plan::TestCube;
+use serde::Serialize;
+
 use super::table::{line, lines, number, row};
 
 /// Widths of the label and of each cell.
@@ -49,6 +53,18 @@ pub fn iso9283(test: &TestResult) -> String {
     out
 }
 
+/// The largest AP and RP of positions with their intervals, in a sentence.
+#[must_use]
+pub fn iso9283_answer(test: &TestResult) -> String {
+    let largest = |symbol: &str| {
+        let own = test.figures.iter().filter(|it| it.figure == symbol && it.unit == "mm");
+        let it = own.max_by(|a, b| a.measured.found.total_cmp(&b.measured.found))?;
+        Some(format!("{symbol} {} at {}", bounds_words(&it.measured, it.unit), it.pose))
+    };
+    let words: Vec<String> = ["AP", "RP"].into_iter().filter_map(largest).collect();
+    format!("{}; {} cycles", words.join(", "), test.cycles)
+}
+
 /// What is stated of the test.
 fn conditions(test: &TestResult) -> String {
     let entries = test.record.entries();
@@ -72,6 +88,66 @@ fn frame_words(test: &TestResult) -> String {
                 "fitted to the barycentres, which absorbs {absorbed} of their {all} coordinates and the mean orientation: in a stated frame AP is about {ratio:.2} times as large"
             )
         }
+    }
+}
+
+/// A planned test, for JSON and terminal.
+#[derive(Clone, Debug, Serialize)]
+pub struct TestPlan {
+    middle_mm: [f64; 3],
+    side_mm: f64,
+    cycles: usize,
+    poses: Vec<TestPlanPose>,
+}
+
+/// A pose of a planned test.
+#[derive(Clone, Debug, Serialize)]
+struct TestPlanPose {
+    pose: String,
+    position_mm: [f64; 3],
+    readings: Vec<f64>,
+}
+
+impl TestPlan {
+    /// A cube that is visited so often.
+    #[must_use]
+    pub fn new(cube: &TestCube, cycles: usize) -> Self {
+        let pose = |(at, (pose, readings)): (usize, &(Pose, Vec<f64>))| TestPlanPose {
+            pose: format!("P{}", at + 1),
+            position_mm: (1e3 * pose.translation).into(),
+            readings: readings.clone(),
+        };
+        TestPlan {
+            middle_mm: cube.middle_m.map(|it| 1e3 * it),
+            side_mm: 1e3 * cube.side_m,
+            cycles,
+            poses: cube.poses.iter().enumerate().map(pose).collect(),
+        }
+    }
+
+    /// The same as text of lines up to 80 characters.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let [x, y, z] = self.middle_mm;
+        let cube = format!(
+            "{:.0} mm along the base, middle at ({x:.0}, {y:.0}, {z:.0}) mm; all five poses within reach and limits (ISO 9283:1998, 6.8)",
+            self.side_mm
+        );
+        line(&mut out, "cube", &cube);
+        for it in &self.poses {
+            let [x, y, z] = it.position_mm;
+            line(&mut out, &it.pose, &format!("({x:.1}, {y:.1}, {z:.1}) mm, the tip"));
+        }
+        let order =
+            format!("{} cycles of P5, P4, P3, P2, P1, after warm-up, at one speed and load", self.cycles);
+        line(&mut out, "order", &order);
+        line(
+            &mut out,
+            "not checked",
+            "collisions, and the paths between the poses: see both at low speed first",
+        );
+        out
     }
 }
 

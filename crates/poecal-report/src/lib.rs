@@ -43,7 +43,7 @@ pub use fleet::{Figure, Line, PriorUse};
 pub use fleet_prior::fleet_prior;
 pub use hand_eye::{hand_eye, hand_eye_answer};
 pub use identify::Identify;
-pub use iso9283::iso9283;
+pub use iso9283::{TestPlan, iso9283, iso9283_answer};
 pub use judgement::{judged, judgement};
 pub use offsets::Offsets;
 pub use page::{

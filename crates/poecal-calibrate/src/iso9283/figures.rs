@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::figure::{FigureBounds, FigureName, TestFigure};
-use super::frame::{Registered, mean_and_covariance, register};
-use super::intervals::{self, VariancePart};
+use super::frame::{Registered, register};
+use super::intervals::{self, VariancePart, mean_and_covariance};
 use super::rows::{PoseCell, PoseCells, TestRow};
 use super::spread::{self, DEVIATIONS};
 use super::{STANDARD_CYCLES, faults};

@@ -12,16 +12,6 @@ use poecal_numerics::linalg;
 /// Least standard deviation (metres) of the barycentres across the line that fits them best, for a frame to be fitted.
 const FLAT_M: f64 = 1e-3;
 
-/// Mean of vectors, and their covariance with `n - 1` degrees of freedom.
-pub(super) fn mean_and_covariance(
-    of: impl Iterator<Item = Vector3<f64>> + Clone,
-) -> (Vector3<f64>, Matrix3<f64>) {
-    let count = of.clone().count().max(1) as f64;
-    let mean = of.clone().sum::<Vector3<f64>>() / count;
-    let squares: Matrix3<f64> = of.map(|it| (it - mean) * (it - mean).transpose()).sum();
-    (mean, squares / (count - 1.0).max(1.0))
-}
-
 /// Barycentres beside commanded positions, in the base frame.
 pub(super) struct Registered {
     pub(super) base_from_device: Pose,

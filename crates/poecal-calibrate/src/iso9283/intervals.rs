@@ -15,6 +15,16 @@ pub(super) struct VariancePart {
     pub(super) freedom: f64,
 }
 
+/// Mean of vectors, and their covariance with `n - 1` degrees of freedom.
+pub(super) fn mean_and_covariance(
+    of: impl Iterator<Item = Vector3<f64>> + Clone,
+) -> (Vector3<f64>, Matrix3<f64>) {
+    let count = of.clone().count().max(1) as f64;
+    let mean = of.clone().sum::<Vector3<f64>>() / count;
+    let squares: Matrix3<f64> = of.map(|it| (it - mean) * (it - mean).transpose()).sum();
+    (mean, squares / (count - 1.0).max(1.0))
+}
+
 /// Degrees of freedom of a sum of estimated variances (satterthwaite1946).
 fn freedom(variances: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (mut sum, mut squares) = (0.0, 0.0);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::frame::mean_and_covariance;
+use super::intervals::mean_and_covariance;
 use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::median;
 

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::figure::FigureBounds;
-use super::frame::mean_and_covariance;
+use super::intervals::mean_and_covariance;
 use poecal_model::simulate::random::normal;
 use poecal_numerics::linalg::symmetric_eigen;
 

@@ -32,8 +32,9 @@ pub(crate) struct Plan {
     #[command(flatten)]
     pub(crate) cameras: CameraArgs,
     /// Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose repeats
-    /// show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones
-    #[arg(long, value_name = "PURPOSE", value_parser = ["drift"])]
+    /// show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones. iso9283 lists P1 to P5 of the
+    /// largest cube within reach and limits, or of that of --workspace, in --count cycles, as a table to fill in
+    #[arg(long, value_name = "PURPOSE", value_parser = ["drift", "iso9283"])]
     pub(crate) purpose: Option<String>,
     #[command(flatten)]
     pub(crate) visits: VisitArgs,
@@ -103,8 +104,7 @@ pub(crate) struct Plan {
 /// Options of a list that is stated, and of visits: each purpose excludes all others.
 const OF_ROWS: &str = "rows camera markers base_link tip_link instrument target columns units kind sigma_position sigma_rotation robot_error \
                        device_frame json";
-const OF_VISITS: &str =
-    "purpose repeatability tool reference columns units count candidates device out force json";
+const OF_VISITS: &str = "purpose repeatability tool reference columns units count candidates device out force json base_link tip_link workspace program floor_height";
 /// Options that pictures replace.
 const NOT_OF_PICTURES: [&str; 4] = ["kind", "sigma_position", "sigma_rotation", "robot_error"];
 

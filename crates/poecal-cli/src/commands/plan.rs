@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_fit::analysis::PlannedSession;
-use poecal_import::{ReadOptions, planned_table, read_joints};
+use poecal_import::{ReadOptions, planned_table, read_joints, test_table};
 use poecal_model::measurement::Noise;
 use poecal_model::robot::Tolerance;
 use poecal_model::simulate::Kind;
 use poecal_numerics::error::{ErrorKind, Result};
-use poecal_plan::plan::{Conditions, PlanOptions, PlannedFit, Sight, plan as planned, workspace_in};
+use poecal_plan::plan::{
+    CYCLE, Conditions, PlanOptions, PlannedFit, PlannedRow, RowPart, Sight, plan as planned, test_cube,
+    workspace_in,
+};
 use poecal_report as report;
 use poecal_results::model::Model;
 use poecal_results::output::{Existing, FilePlace};
@@ -39,12 +42,14 @@ fn chosen(arguments: &Plan, console: &Console) -> Result<u8> {
     let files = files.chain(arguments.visits.reference.iter().map(PathBuf::as_path));
     let inputs: Vec<_> = std::iter::once(arguments.model.as_path()).chain(files).collect();
     let place = arguments.place.reserve(&inputs, console)?;
-    if arguments.purpose.is_some() {
-        return visits(arguments, place, console);
-    }
     let existing = Existing::forced(arguments.place.force);
     let reserved = |path: &PathBuf| FilePlace::reserve(path, existing, &inputs, &mut console.warner());
     let program = arguments.program.as_ref().map(reserved).transpose()?;
+    match arguments.purpose.as_deref() {
+        Some("iso9283") => return iso9283(arguments, place, program, console),
+        Some(_) => return visits(arguments, place, console),
+        None => {}
+    }
     let page = arguments.report.as_ref().map(reserved).transpose()?;
     let options = arguments.columns.options();
     let model = read_model(&arguments.model, &arguments.chain.selection(options.as_ref().ok())?, console)?;
@@ -111,8 +116,65 @@ fn replaced_rows(replace: &[u32], rows: usize) -> Result<Vec<usize>> {
     Ok(replace.iter().map(|&row| row as usize - 1).collect())
 }
 
+/// The poses of a test of ISO 9283.
+fn iso9283(
+    arguments: &Plan,
+    place: Option<FilePlace>,
+    program: Option<FilePlace>,
+    console: &Console,
+) -> Result<u8> {
+    let visits = &arguments.visits;
+    let is_of_visits =
+        !visits.reference.is_empty() || visits.tool.is_some() || visits.repeatability.is_some();
+    if is_of_visits || arguments.candidates.is_some() || arguments.conditions.device.is_some() {
+        return ErrorKind::Option.refuse(
+            "found --purpose iso9283 with an option of visits, expected --workspace, --floor-height, --count, --program, --out and links alone",
+        );
+    }
+    let stated = match &arguments.workspace {
+        Workspace::Limits => None,
+        Workspace::Box(corners) => Some(*corners),
+        Workspace::Tasks(_) => {
+            return ErrorKind::Option
+                .refuse("--workspace: found a file, expected a cube with --purpose iso9283, like 800,-200,300:1200,200,700mm");
+        }
+    };
+    let model = read_model(&arguments.model, &arguments.chain.selection(None)?, console)?;
+    console.warnings(&Vec::from_iter(model.robot.placeholder_limits()));
+    let cube = test_cube(&model.robot, stated, arguments.conditions.floor_height)?;
+    let cycles = arguments.count as usize;
+    let order = CYCLE.iter().filter_map(|&at| Some(cube.poses.get(at)?.1.clone()));
+    let part = RowPart::Fit;
+    let one: Vec<PlannedRow> =
+        order.map(|readings| PlannedRow { readings, part, returns: false, candidate: None }).collect();
+    let rows: Vec<PlannedRow> = (0..cycles).flat_map(|_| one.clone()).collect();
+    let as_program =
+        arguments.program.as_ref().map(|path| plan_program(path, &model.robot, &rows)).transpose()?;
+    if let Some((place, text)) = program.zip(as_program) {
+        place.write(vec![text.into()])?;
+    }
+    let told = report::TestPlan::new(&cube, cycles);
+    let text = if arguments.json { report::json(&told)? } else { told.text() };
+    deliver(
+        &arguments.place,
+        (test_table(&model.robot, &cube, cycles)?, place),
+        (text, arguments.json),
+        console,
+    )
+}
+
 /// Configurations of visits to a calibrated robot.
 fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Result<u8> {
+    let links = &arguments.chain.chain;
+    let has_links = links.base_link.is_some() || links.tip_link.is_some();
+    if has_links
+        || arguments.program.is_some()
+        || arguments.conditions.floor_height.is_some()
+        || !matches!(arguments.workspace, Workspace::Limits)
+    {
+        return ErrorKind::Option
+            .refuse("found --workspace, --program, --floor-height or links with --purpose drift, expected none of them: a calibration.json has its configurations");
+    }
     let device_is_known = match arguments.conditions.device {
         None => None,
         Some(PlannedDevice::IsKnown(is_known)) => Some(is_known),

@@ -11,7 +11,7 @@ use poecal_model::robot::Robot;
 use poecal_model::simulate::{Configurations, Kind};
 use poecal_numerics::error::Result;
 use poecal_numerics::text::visible;
-use poecal_plan::plan::{Plan, RETURN_EVERY, RowPart};
+use poecal_plan::plan::{CYCLE, Plan, RETURN_EVERY, RowPart, TestCube};
 
 /// A measurement file without rows: the columns for this robot, with instructions as comments.
 pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
@@ -133,6 +133,24 @@ pub fn planned_table(robot: &Robot, found: &Plan) -> Result<String> {
         let returns = if planned.returns { "1" } else { "" };
         let cells = planned.readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None));
         let _ = writeln!(text, "{},{set},{returns},{}", row + 1, cells.collect::<Vec<_>>().join(","));
+    }
+    Ok(text)
+}
+
+/// The table of a test of ISO 9283 to fill in: a row for each pose and cycle, in the order of the standard.
+///
+/// # Errors
+/// As [`planned_table`].
+pub fn test_table(robot: &Robot, cube: &TestCube, cycles: usize) -> Result<String> {
+    let names = robot.reading_names();
+    refuse_names(&names, &["pose", "cycle"])?;
+    let units = reading_units(&names, robot)?;
+    let mut text = format!("pose,cycle,{},x[mm],y[mm],z[mm]\n", reading_header(&names, &units));
+    for cycle in 1..=cycles {
+        for (at, (_, readings)) in CYCLE.iter().filter_map(|&at| Some((at, cube.poses.get(at)?))) {
+            let cells = readings.iter().zip(&units).map(|(&value, &unit)| decimal(value, unit, None));
+            let _ = writeln!(text, "P{},{cycle},{},,,", at + 1, cells.collect::<Vec<_>>().join(","));
+        }
     }
     Ok(text)
 }

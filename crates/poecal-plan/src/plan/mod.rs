@@ -26,6 +26,7 @@ mod search;
 mod sequence;
 mod skeleton;
 mod state;
+mod test_cube;
 mod watch;
 mod watched;
 
@@ -38,5 +39,6 @@ pub use options::{PlanCriterion, PlanOptions, PlannedFit, RobotError};
 pub use planned::Plan;
 pub use rows::{PlannedRow, RETURN_EVERY, RowPart, returns_of};
 pub use skeleton::skeleton;
+pub use test_cube::{CYCLE, TestCube, test_cube};
 pub use watch::Watch;
 pub use watched::{Mistake, WatchOptions, WatchedRow};

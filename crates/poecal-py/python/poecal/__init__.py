@@ -57,6 +57,7 @@ from ._poecal import (
     hand_eye,
     identify,
     init,
+    iso9283,
     offsets,
     plan,
     read_joints,
@@ -71,7 +72,7 @@ from ._poecal import (
     version,
 )
 from ._results import Check, ColumnGuess, Comparison, Offsets, Validation, Visit, VisitPlan
-from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
+from ._session_results import Compensation, HandEye, Identification, Iso9283, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
     "Accuracy",
@@ -88,6 +89,7 @@ __all__ = [
     "FormatError",
     "HandEye",
     "Identification",
+    "Iso9283",
     "InputError",
     "KeywordError",
     "MeasurementError",
@@ -126,6 +128,7 @@ __all__ = [
     "hand_eye",
     "identify",
     "init",
+    "iso9283",
     "offsets",
     "plan",
     "read_joints",

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure  # type: ignore[import-not-found, unused-ig
 from numpy.typing import ArrayLike, NDArray
 
 from ._results import Check, ColumnGuess, Comparison, Offsets, Validation, Visit, VisitPlan
-from ._session_results import Compensation, HandEye, Identification, Reproduction, ToolTip, WatchedRow
+from ._session_results import Compensation, HandEye, Identification, Iso9283, Reproduction, ToolTip, WatchedRow
 
 __all__ = [
     "Accuracy",
@@ -42,6 +42,7 @@ __all__ = [
     "hand_eye",
     "identify",
     "init",
+    "iso9283",
     "offsets",
     "plan",
     "read_joints",
@@ -1982,6 +1983,42 @@ def guess_columns(path: _Path, robot: Robot | _Path, *, columns: Mapping[str, st
     -------
     ColumnGuess
         The columns of the file, the fields of a mapping with what is chosen, columns that are left, and the mapping as a text (TOML).
+    """
+def iso9283(
+    measurements: _Path,
+    robot: Robot | _Path | None = None,
+    *,
+    device_frame: Literal["unknown", "base", "calibration"] = "unknown",
+    sigma_position_mm: _Number | None = None,
+    sigma_rotation_deg: _Number | None = None,
+    units: str | None = None,
+    accept: str | None = None,
+    record: Mapping[str, str] | None = None,
+) -> Iso9283:
+    """Accuracy and repeatability of a robot after ISO 9283:1998, each figure with its 95 % interval.
+
+    Parameters
+    ----------
+    measurements
+        Path of the rows: commanded and measured poses, and the columns pose, cycle, approach, series, arm, speed, payload as far as there are any.
+    robot
+        The robot whose joint readings the rows have instead of commanded_x, commanded_y, commanded_z, or the path of its model; of a calibration.json also
+        the accuracy of corrected commands is predicted.
+    device_frame
+        The measuring device's frame: "unknown", "base" or "calibration".
+    sigma_position_mm, sigma_rotation_deg
+        Standard deviation of the instrument in each component, for rows that state none.
+    units
+        Units of columns that state none, like "mm,deg".
+    accept
+        Limits that figures must keep, like "AP:0.5mm,RP:0.05mm".
+    record
+        What is stated of the test, by the keys of `poecal calibrate --record`.
+
+    Returns
+    -------
+    Iso9283
+        The "figures", each with "found", "from" and "to" in "unit", and the "decision" on the limits.
     """
 def hand_eye(
     base_from_flange: ArrayLike,

@@ -92,6 +92,34 @@ class WatchedRow(Findings):
         return None if found is None else imported("numpy").array(found, dtype=float)
 
 
+class Iso9283(Findings):
+    """A test after ISO 9283: the result of `iso9283`. Its data frame has a row for each figure and pose."""
+
+    __slots__ = ()
+
+    @property
+    def ap_mm(self) -> float:
+        """The largest pose accuracy of positions, millimetres."""
+        return self._largest("AP")
+
+    @property
+    def rp_mm(self) -> float:
+        """The largest pose repeatability of positions, millimetres."""
+        return self._largest("RP")
+
+    @property
+    def accepted(self) -> bool | None:
+        """Whether all limits are shown to be kept, with 95 % confidence; None without limits."""
+        decision = self._maybe(str, "decision")
+        return None if decision is None else decision == "pass"
+
+    def _largest(self, symbol: str) -> float:
+        return max(float(it["found"]) for it in self["figures"] if it["figure"] == symbol)
+
+    def _rows(self) -> list[dict[str, Any]]:
+        return list(self["figures"])
+
+
 class Judged(Findings):
     """A result with a verdict."""
 
