@@ -25,7 +25,7 @@ def page(program):
 
 def names(overview):
     """The commands that the program's help lists."""
-    return [name for name in re.findall(r"^  ([a-z-]+) ", overview, re.M) if name != "help"]
+    return [name for name in re.findall(r"^  ([a-z0-9-]+) ", overview, re.M) if name != "help"]
 
 
 def block(text):

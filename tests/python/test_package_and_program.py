@@ -198,7 +198,7 @@ def test_the_guide_has_a_place_for_every_option():
     named = [(option, row[1]) for row in rows for option in options_in(row[0])]
     table = dict(named)
     assert len(named) == len(table), "an option stands twice"
-    commands = re.findall(r"^  ([a-z-]+) ", program("--help").split("<COMMAND>")[1].split("Options:")[0], re.MULTILINE)
+    commands = re.findall(r"^  ([a-z0-9-]+) ", program("--help").split("<COMMAND>")[1].split("Options:")[0], re.MULTILINE)
     commands += ["schema", "reproduce", "completions", "man"]  # not on the first screen
     everywhere = {"--quiet", "--threads", "--limit", "--wait"}
     expected = {f"`{option}`" for option in everywhere}

@@ -31,6 +31,8 @@ const TRIES: usize = 300;
 /// Share of the reach at which cubes begin, and by which they grow.
 const FIRST: f64 = 0.05;
 const GROWTH: f64 = 1.05;
+/// Share of the reach that stays free beside the axis of the base.
+const BASE: f64 = 0.1;
 /// Remainder (m, rad) within which a pose is reached.
 const REACHED: f64 = 1e-9;
 /// A whole step of middles and sides, metres.
@@ -103,7 +105,7 @@ impl Reaching<'_> {
         };
         let beside = middle.translation.xy().abs().max();
         let is_above = middle.translation.z - 0.5 * side_m >= self.floor_m;
-        beside > 0.5 * side_m && is_above && vertices.into_iter().all(is_reached)
+        beside > 0.5 * side_m + BASE * self.arm.reach_m() && is_above && vertices.into_iter().all(is_reached)
     }
 
     /// All readings of the robot, those that do not move the tip zero.

@@ -109,7 +109,8 @@ pub fn read_test(paths: &[PathBuf], model: Option<&Model>, options: &TestOptions
         })
     });
     let mut rows = rows.collect::<Result<Vec<TestRow>>>()?;
-    let warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
+    let mut warnings = doubts(model, &mut rows, target.as_deref(), options.frame);
+    warnings.extend(model.and_then(|model| fitted(calibration(model)?, &read)));
     let speed = rows.first().map(|it| it.labels.speed.clone()).unwrap_or_default();
     Ok(TestFile { rows, base_from_device, speed, warnings, read })
 }
@@ -239,6 +240,16 @@ fn labelled(words: &[String]) -> TestLabels {
         speed: of(5),
         payload: of(6),
     }
+}
+
+/// Files of which the calibration was made, whose rows it predicts better than others.
+fn fitted(file: &CalibrationFile, read: &MeasurementFile) -> Option<String> {
+    let sums: Vec<&String> =
+        file.inputs.measurements.iter().filter_map(|name| file.inputs.sha256.get(name)).collect();
+    let (name, _) = read.sha256.iter().find(|(_, sum)| sums.contains(sum))?;
+    Some(format!(
+        "{name}: the calibration was made of this file, so the accuracy of corrected commands is better here than elsewhere: predict it from other rows"
+    ))
 }
 
 /// What makes accuracy doubtful, a sentence each; takes orientations away whose target is not known.
