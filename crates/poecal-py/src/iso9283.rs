@@ -56,7 +56,7 @@ pub(crate) fn iso9283(
     #[pyo3(from_py_with = arg::record)] record: Option<Record>,
 ) -> PyResult<Findings> {
     let robot = robot.map(paths::robot).transpose()?;
-    let model = robot.as_ref().map(|robot| &robot.get().model);
+    let model = robot.as_ref().map(|robot| &*robot.get().model);
     let frame = one_of("device_frame", device_frame, words::TEST_FRAME)?;
     let limits = accept.map_or(Ok(Vec::new()), |words| {
         words.split(',').map(str::parse).collect::<Result<Vec<FigureLimit>, _>>()

@@ -56,9 +56,8 @@ fn cycles(count: usize) -> String {
 
 /// Two speeds or loads in one figure.
 fn mixed(cells: &PoseCells<'_>) -> Result<()> {
-    let conditions: [(&str, fn(&TestLabels) -> &str); 2] =
-        [("speed", |it| &it.speed), ("payload", |it| &it.payload)];
-    for (word, of) in conditions {
+    for word in ["speed", "payload"] {
+        let of = |it: &TestLabels| if word == "speed" { it.speed.clone() } else { it.payload.clone() };
         let mut rows = cells.base.iter().flat_map(|it| &it.rows);
         let Some(first) = rows.next() else { continue };
         let own = of(&first.labels);
@@ -66,8 +65,8 @@ fn mixed(cells: &PoseCells<'_>) -> Result<()> {
             let shown = |text: &str| if text.is_empty() { "none".to_owned() } else { format!("`{text}`") };
             let message = format!(
                 "found the {word} {} beside {} of {}, expected one {word} in all rows: test each {word} by a file of its own",
-                shown(of(&other.labels)),
-                shown(own),
+                shown(&of(&other.labels)),
+                shown(&own),
                 named(first)
             );
             return refuse(other, &message);

@@ -75,9 +75,9 @@ pub fn iso9283(rows: &[TestRow], base_from_device: Option<Pose>) -> Result<Iso92
     let mut figures = positions(base, &found, corrected.as_ref());
     if cells.have_rotations() {
         let is_fitted = base_from_device.is_none();
-        figures.extend(orientations(base, &found, &commanded, is_fitted, None));
+        figures.extend(orientations(base, &found, &commanded, is_fitted));
         if let (Some(wanted), Some(corrected)) = (&calibrated, &corrected) {
-            let after = orientations(base, corrected, wanted, is_fitted, None);
+            let after = orientations(base, corrected, wanted, is_fitted);
             let mut own = figures.iter_mut().filter(|it| it.axis.is_some());
             after.iter().for_each(|after| {
                 if let Some(figure) = own.next().filter(|it| it.name == FigureName::Ap) {
@@ -136,7 +136,6 @@ fn orientations(
     found: &Registered,
     wanted: &[Pose],
     is_fitted: bool,
-    target: Option<Matrix3<f64>>,
 ) -> Vec<TestFigure> {
     let turn = found.base_from_device.rotation;
     let measured = |row: &TestRow| row.rotation.map_or(turn, |it| turn * it);
@@ -145,7 +144,7 @@ fn orientations(
         own.transpose() * wanted.rotation
     };
     let fitted = || mean_rotation(base.iter().zip(wanted).map(of_cell));
-    let target = target.unwrap_or_else(|| if is_fitted { fitted() } else { Matrix3::identity() });
+    let target = if is_fitted { fitted() } else { Matrix3::identity() };
     let errors = |(cell, wanted): (&PoseCell<'_>, &Pose)| {
         let error = |row: &&TestRow| rotation::log(&(measured(row) * target * wanted.rotation.transpose()));
         let errors: Vec<Vector3<f64>> = cell.rows.iter().map(error).collect();
@@ -297,9 +296,12 @@ fn drifts(cells: &PoseCells<'_>, found: &Registered) -> Vec<TestFigure> {
                     && own.series != other.series
             };
             let wanted = base.commanded().translation;
-            let of = |cell: &PoseCell<'_>| match name {
-                FigureName::Dap => accuracy(cell, &wanted),
-                _ => position_repeatability(cell).measured,
+            let of = |cell: &PoseCell<'_>| {
+                if name == FigureName::Dap {
+                    accuracy(cell, &wanted)
+                } else {
+                    position_repeatability(cell).measured
+                }
             };
             let first = of(base);
             let later = cells.others.iter().filter(is_later).map(|it| intervals::difference(&of(it), &first));
