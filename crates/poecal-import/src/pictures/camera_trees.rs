@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::stated::{Stated, are_places};
+use super::mrcal::{OF_MRCAL, of_mrcal};
+use super::stated::{Stated, are_places, exact, listed_size, refuse};
 use crate::pictures::lens_checks::{EXPECTED, OTHERWISE, distortion};
 use poecal_model::camera::{Camera, Distortion, Lens, REGION_KEYS, Region, size_of_pictures};
 use poecal_numerics::error::{Error, ErrorKind, Result};
@@ -11,11 +12,6 @@ use poecal_storage::yaml::Leaf;
 
 /// Keys of Kalibr's cameras that are read, or say nothing of a lens.
 const OF_KALIBR: &str = "camera_model intrinsics distortion_model distortion_coeffs resolution t_cn_cnm1 t_cam_imu cam_overlaps timeshift_cam_imu";
-/// The same of mrcal.
-const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref extrinsics valid_intrinsics_region optimization_inputs \
-                        icam_intrinsics";
-/// Models of mrcal that are OpenCV's, in its order of coefficients, each with the count of them.
-const MRCAL_MODELS: [(&str, usize); 4] = [("PINHOLE", 0), ("OPENCV4", 4), ("OPENCV5", 5), ("OPENCV8", 8)];
 /// Keys of the matrix, row by row or, as Open3D has it, column by column.
 const MATRIX: &str = "camera_matrix.data cameraMatrix.data Camera_Matrix.data K.data M1.data K k camera_matrix cameraMatrix intrinsicMatrix \
                       intrinsic_matrix intrinsics mtx camera_intrinsics";
@@ -64,10 +60,6 @@ pub(crate) fn read_trees(mut documents: Vec<Vec<Leaf>>, path: &Path) -> Result<R
         said.push(format!("took the first of {count} documents with the same camera"));
     }
     Ok((cameras, said))
-}
-
-fn refuse<T>(path: &Path, message: impl Into<String>) -> Result<T> {
-    Err(ErrorKind::Measurement.error(message).in_file(path))
 }
 
 /// The cameras of a document.
@@ -173,42 +165,6 @@ fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
     names.into_iter().map(camera).collect()
 }
 
-/// The size of pictures as a list of two numbers.
-fn listed_size(stated: &Stated<'_>, key: &str) -> Result<Option<[u32; 2]>> {
-    let size = <[f64; 2]>::try_from(stated.list(key)?).ok();
-    let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
-    size_px.map_err(|error| error.in_file(stated.path))
-}
-
-/// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
-fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
-    let Some(model) = stated.word("lensmodel") else { return Ok(None) };
-    let known = MRCAL_MODELS.iter().find(|it| model.strip_prefix("LENSMODEL_") == Some(it.0));
-    let Some((_, count)) = known else {
-        return refuse(
-            stated.path,
-            format!(
-                "found the lens model `{model}` of mrcal, expected LENSMODEL_OPENCV8, 5 or 4, or LENSMODEL_PINHOLE: \
-                 `mrcal-convert-lensmodel LENSMODEL_OPENCV8` writes one"
-            ),
-        );
-    };
-    let mut numbers = stated.list("intrinsics")?;
-    if numbers.len() != 4 + count {
-        let message =
-            format!("found {} numbers of `intrinsics`, expected {} of {model}", numbers.len(), 4 + count);
-        return refuse(stated.path, message);
-    }
-    let bent = numbers.split_off(numbers.len().min(4));
-    let [fx, fy, cx, cy] = exact(numbers, "intrinsics", stated.path)?;
-    let size_px = listed_size(stated, "imagersize")?;
-    let distortion = distortion("opencv", &bent, stated.path)?;
-    Ok(Some(Camera::new(
-        String::new(),
-        Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, size_px },
-    )))
-}
-
 /// Words of lenses that are not OpenCV's usual one.
 const OTHER_LENSES: [&str; 6] = ["fisheye", "kannala", "equidistant", "mei", "omni", "division"];
 
@@ -312,11 +268,4 @@ fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
         }
     }
     Ok(None)
-}
-
-/// As many numbers as a key must have.
-fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f64; N]> {
-    numbers.try_into().or_else(|numbers: Vec<f64>| {
-        refuse(path, format!("found {} numbers of `{key}`, expected {N}: {EXPECTED}", numbers.len()))
-    })
 }

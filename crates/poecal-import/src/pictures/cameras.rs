@@ -1,6 +1,5 @@
 //! Files of cameras: CSV, and what OpenCV, ROS, Kalibr, ViSP, HALCON and makers of cameras write.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use roxmltree::Node;
@@ -8,6 +7,7 @@ use roxmltree::Node;
 use super::camera_tables::read_table;
 use super::camera_trees::read_trees;
 use super::halcon::read_halcon;
+use super::mrcal::without_inputs;
 use super::stated::of_xml;
 use super::stored_pictures::stored_cameras;
 use crate::pictures::lens_checks::{EXPECTED, check};
@@ -90,20 +90,6 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     }
     let said = said.into_iter().map(|it| format!("{}: {it}", path.display())).collect();
     Ok(CameraFile { cameras, said })
-}
-
-/// The text of a camera of mrcal without the inputs of its optimization, which are bytes as Python writes them and no YAML.
-fn without_inputs(text: &str) -> Cow<'_, str> {
-    let cut = || {
-        let (before, rest) = text.split_once("optimization_inputs")?;
-        let (between, rest) = rest.split_once("b'")?;
-        let (_, after) = rest.split_once('\'')?;
-        between
-            .chars()
-            .all(|it| matches!(it, '\'' | '"' | ':' | ' '))
-            .then(|| Cow::Owned(format!("{before}optimization_inputs{between}''{after}")))
-    };
-    cut().unwrap_or(Cow::Borrowed(text))
 }
 
 /// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::lens_checks::EXPECTED;
+use poecal_model::camera::size_of_pictures;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::xml::parsed;
@@ -120,4 +122,23 @@ impl Stated<'_> {
         };
         other_keys(&own, at, |key| known().any(|known| is_it(known, key)), (of, self.path))
     }
+}
+
+/// Refuses a file of cameras.
+pub(crate) fn refuse<T>(path: &Path, message: impl Into<String>) -> Result<T> {
+    Err(ErrorKind::Measurement.error(message).in_file(path))
+}
+
+/// The size of pictures as a list of two numbers.
+pub(crate) fn listed_size(stated: &Stated<'_>, key: &str) -> Result<Option<[u32; 2]>> {
+    let size = <[f64; 2]>::try_from(stated.list(key)?).ok();
+    let size_px = size_of_pictures(size.map_or([None; 2], |it| it.map(Some)));
+    size_px.map_err(|error| error.in_file(stated.path))
+}
+
+/// As many numbers as a key must have.
+pub(crate) fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f64; N]> {
+    numbers.try_into().or_else(|numbers: Vec<f64>| {
+        refuse(path, format!("found {} numbers of `{key}`, expected {N}: {EXPECTED}", numbers.len()))
+    })
 }
