@@ -112,7 +112,7 @@ impl Known {
     }
 }
 
-fn of<'a>(found: &'a Iso9283, name: FigureName, is_of_angles: bool) -> Vec<&'a TestFigure> {
+fn figures(found: &Iso9283, name: FigureName, is_of_angles: bool) -> Vec<&TestFigure> {
     found.of_name(name, is_of_angles).collect()
 }
 
@@ -151,28 +151,28 @@ fn intervals_hold_as_often_as_they_say() {
         let stated = known.device_from_base.inverse();
         let found = iso9283(&rows, (!is_fitted).then_some(stated)).unwrap();
         let truth = known.accuracy(is_fitted);
-        for (figure, truth) in of(&found, FigureName::Ap, false).into_iter().zip(truth) {
+        for (figure, truth) in figures(&found, FigureName::Ap, false).into_iter().zip(truth) {
             let it = figure.measured;
             shares[if it.from > 0.0 { 0 } else { 1 }].add(it.from, it.to, truth);
             shares[if is_fitted { 8 } else { 9 }].add(it.from, it.to, truth);
         }
         let [raw, free] = [true, false].map(|noise| known.repeatability(noise, &mut random));
-        for figure in of(&found, FigureName::Rp, false) {
+        for figure in figures(&found, FigureName::Rp, false) {
             shares[2].add(figure.measured.from, figure.measured.to, raw);
             let it = figure.without_noise.unwrap();
             shares[3].add(it.from, it.to, free);
         }
         let mean = known.turns.iter().sum::<Vector3<f64>>() / 5.0;
-        for (k, figure) in of(&found, FigureName::Ap, true).into_iter().enumerate() {
+        for (k, figure) in figures(&found, FigureName::Ap, true).into_iter().enumerate() {
             let turn = known.turns[k / 3] - if is_fitted { mean } else { Vector3::zeros() };
             // The second order of mean turns of a thousandth.
             shares[4].add(figure.measured.from - 1e-6, figure.measured.to + 1e-6, turn[k % 3]);
         }
-        for figure in of(&found, FigureName::Rp, true) {
+        for figure in figures(&found, FigureName::Rp, true) {
             let truth = 3.0 * known.turning.hypot(known.noise_rad);
             shares[5].add(figure.measured.from, figure.measured.to, truth);
         }
-        let (ad, rd) = (of(&found, FigureName::Ad, false)[0], of(&found, FigureName::Rd, false)[0]);
+        let (ad, rd) = (figures(&found, FigureName::Ad, false)[0], figures(&found, FigureName::Rd, false)[0]);
         shares[6].add(ad.measured.from, ad.measured.to, known.distance_error());
         shares[7].add(rd.measured.from, rd.measured.to, known.distance_repeatability(true));
     }
@@ -200,21 +200,21 @@ fn figures_are_unbiased_at_thirty_cycles() {
             sums[at][1] += 1.0;
         };
         let [raw, free] = [true, false].map(|noise| known.repeatability(noise, &mut random));
-        for figure in of(&found, FigureName::Rp, false) {
+        for figure in figures(&found, FigureName::Rp, false) {
             add(0, figure.measured.found, raw);
             add(1, figure.without_noise.unwrap().found, free);
         }
-        for figure in of(&found, FigureName::Rp, true) {
+        for figure in figures(&found, FigureName::Rp, true) {
             add(2, figure.measured.found, 3.0 * known.turning.hypot(known.noise_rad));
             add(3, figure.without_noise.unwrap().found, 3.0 * known.turning);
         }
-        let rd = of(&found, FigureName::Rd, false)[0];
+        let rd = figures(&found, FigureName::Rd, false)[0];
         add(4, rd.measured.found, known.distance_repeatability(true));
         add(5, rd.without_noise.unwrap().found, known.distance_repeatability(false));
-        for (figure, truth) in of(&found, FigureName::Ap, false).into_iter().zip(known.accuracy(false)) {
+        for (figure, truth) in figures(&found, FigureName::Ap, false).into_iter().zip(known.accuracy(false)) {
             add(6, figure.measured.found, truth);
         }
-        add(7, 1.0 + of(&found, FigureName::Ad, false)[0].measured.found - known.distance_error(), 1.0);
+        add(7, 1.0 + figures(&found, FigureName::Ad, false)[0].measured.found - known.distance_error(), 1.0);
     }
     for (name, [sum, count]) in names.iter().zip(sums) {
         let bias = sum / count - 1.0;
@@ -305,7 +305,7 @@ fn figures_follow_their_definitions() {
     let mut rows = known.rows(30, &mut random);
     let shift = Vector3::new(3e-5, 0.0, -4e-5);
     for (label, by) in [("approach", 1.0), ("series", 2.0), ("arm", 3.0)] {
-        let more = rows[..150].to_vec().into_iter().map(|mut row| {
+        let more = rows[..150].iter().cloned().map(|mut row| {
             let to = match label {
                 "approach" => &mut row.labels.approach,
                 "series" => &mut row.labels.series,
@@ -319,18 +319,18 @@ fn figures_follow_their_definitions() {
     }
     let found = iso9283(&rows, Some(Pose::identity())).unwrap();
     for (name, by) in [(FigureName::Vap, 1.0), (FigureName::E, 3.0)] {
-        let all = of(&found, name, false);
+        let all = figures(&found, name, false);
         assert_eq!(all.len(), 5);
         assert!(all.iter().all(|it| (it.measured.found - by * 5e-5).abs() < 1e-15 && it.measured.from > 0.0));
     }
     let own: Vec<Vector3<f64>> = rows[..150].iter().skip(1).step_by(5).map(|row| row.position_m).collect();
     let mean: Vector3<f64> = own.iter().sum::<Vector3<f64>>() / 30.0;
-    let (ap, dap) = (of(&found, FigureName::Ap, false)[1], of(&found, FigureName::Dap, false)[1]);
+    let (ap, dap) = (figures(&found, FigureName::Ap, false)[1], figures(&found, FigureName::Dap, false)[1]);
     assert!((ap.measured.found - (mean - commands()[1]).norm()).abs() < 1e-15);
     let later: Vector3<f64> = mean + shift * 2.0 - commands()[1];
     let later = later.norm();
     assert!((dap.measured.found - (later - ap.measured.found).abs()).abs() < 1e-15);
-    assert!(of(&found, FigureName::Drp, false)[1].measured.found < 1e-15);
+    assert!(figures(&found, FigureName::Drp, false)[1].measured.found < 1e-15);
     for row in &mut rows {
         row.labels.pose.clear();
     }
@@ -341,7 +341,7 @@ fn figures_follow_their_definitions() {
 #[test]
 fn limits_are_decided_by_the_worst_pose() {
     let found = iso9283(&some_rows(), None).unwrap();
-    let worst = of(&found, FigureName::Ap, false).iter().map(|it| it.measured.to).fold(0.0, f64::max);
+    let worst = figures(&found, FigureName::Ap, false).iter().map(|it| it.measured.to).fold(0.0, f64::max);
     let judged = |factor: f64| {
         let limit: FigureLimit = format!("AP:{}mm", 1e3 * factor * worst).parse().unwrap();
         limit.judge(&found.figures).unwrap().decision.word()
