@@ -162,7 +162,9 @@ impl<'t> Sets<'t> {
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {
     Sets::of_text(text).is_some_and(|it| {
         let has = |name: &String| it.head.names.iter().any(|cell| parts(cell).0 == name);
-        !opening.robot.reading_names().iter().any(has)
+        let names = opening.robot.reading_names();
+        let is_bare = |name: &String| PLACE.contains(&name.as_str());
+        names.is_empty() || names.iter().any(is_bare) || !names.iter().all(has)
     })
 }
 
