@@ -19,8 +19,8 @@ const FOLDER = profile === "web" ? "dist" : `dist-${profile}`;
 const MODULE = new URL(`../npm/${FOLDER}/poecal.wasm`, HERE);
 const OUT = new URL(`${FOLDER}/poecal.html`, HERE);
 const TARGETS = ["chrome103", "firefox113", "safari16.4"];
-/** Beyond this something is wrong: a page is mailed, and kept on sticks. 5.62 MB with plans, watching and tracking. */
-const MOST_BYTES = 6e6;
+/** Beyond this something is wrong: a page is mailed, and kept on sticks. 6.05 MB with the files of other tools, before the test of ISO 9283. */
+const MOST_BYTES = 6.3e6;
 const EXAMPLE = ["robot.urdf", "points.csv"];
 
 /** `inline:FILE` is the bundled script of that file, as a text. */
