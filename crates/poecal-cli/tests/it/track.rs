@@ -101,7 +101,7 @@ fn visits_are_planned_by_plan_for_drift() {
         ("poecal-out/calibration.json --purpose drift --device 1,2,3mm", "known or refit"),
         ("robot.urdf --device known", "expected a place"),
         ("robot.urdf --purpose drift", "calibration.json"),
-        ("poecal-out/calibration.json --purpose drift --floor-height 20mm", "cannot be used with"),
+        ("poecal-out/calibration.json --purpose drift --floor-height 20mm", "expected none of them"),
     ] {
         let run = folder.run(&format!("plan {words}"));
         assert!(run.code == 2 && run.err.contains(expected), "{words}: {}", run.err);

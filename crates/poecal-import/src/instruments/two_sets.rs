@@ -158,14 +158,12 @@ impl<'t> Sets<'t> {
     }
 }
 
-/// Not of a table whose commanded set is what the robot reads.
+/// Not of a table in which one of the sets is what the robot reads, as of a test of commanded poses.
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {
-    Sets::of_text(text).is_some_and(|it| {
-        let has = |name: &String| it.head.names.iter().any(|cell| parts(cell).0 == name);
-        let names = opening.robot.reading_names();
-        let is_bare = |name: &String| PLACE.contains(&name.as_str());
-        names.is_empty() || names.iter().any(is_bare) || !names.iter().all(has)
-    })
+    let names = opening.robot.reading_names();
+    let is_of_set = |name: &String| coordinate(&plain(name)).is_some_and(|it| it.1.is_some());
+    let is_read = !names.is_empty() && names.iter().all(is_of_set);
+    !is_read && Sets::of_text(text).is_some()
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
