@@ -57,7 +57,15 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
     };
     let small = kind.to_ascii_lowercase();
     match small.strip_prefix("distortion.").unwrap_or(&small) {
-        "" | "none" | "plumb_bob" | "radtan" | "rational_polynomial" | "brown_conrady" | "opencv" => {
+        // RealSense's inverse model bends as the plain one, to some hundredths of a pixel: realsense_lenses_by_name of the findings.
+        ""
+        | "none"
+        | "plumb_bob"
+        | "radtan"
+        | "rational_polynomial"
+        | "brown_conrady"
+        | "inverse_brown_conrady"
+        | "opencv" => {
             // OpenCV writes up to 14, of which those of thin prisms and tilts are mostly 0.
             if numbers.iter().skip(8).any(|it| *it != 0.0) {
                 return refuse("none of a thin prism or a tilted sensor");

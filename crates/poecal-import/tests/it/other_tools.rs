@@ -84,7 +84,7 @@ fn a_lens_is_the_same_in_every_form() {
         (
             "device.json",
             "{\"model\": \"D435\", \"color\": {\"width\": 1920, \"height\": 1200, \"ppx\": 959.5, \"ppy\": 599.5, \"fx\": 1400.0, \"fy\": 1410.0, \
-             \"distortion_model\": \"plumb_bob\", \"coeffs\": [-0.12, 0.03, 0.0001, -0.0002, 0.0]}, \"depth_scale\": 0.001, \"crop\": false}"
+             \"distortion_model\": \"inverse_brown_conrady\", \"coeffs\": [-0.12, 0.03, 0.0001, -0.0002, 0.0]}, \"depth_scale\": 0.001, \"crop\": false}"
                 .to_owned(),
         ),
     ] {
@@ -147,8 +147,8 @@ fn lenses_of_other_models_are_named() {
     for (name, text, part) in [
         (
             "realsense.json",
-            "{\"fx\": 600, \"fy\": 600, \"ppx\": 320, \"ppy\": 240, \"model\": \"distortion.inverse_brown_conrady\", \"coeffs\": [-0.05, 0.06, 0, 0, 0]}",
-            "found the distortion `distortion.inverse_brown_conrady` with 5 coefficients, expected plumb_bob, radtan",
+            "{\"fx\": 600, \"fy\": 600, \"ppx\": 320, \"ppy\": 240, \"model\": \"distortion.modified_brown_conrady\", \"coeffs\": [-0.05, 0.06, 0, 0, 0]}",
+            "found the distortion `distortion.modified_brown_conrady` with 5 coefficients, expected plumb_bob, radtan",
         ),
         ("prism.json", oak, "expected none of a thin prism"),
         (
@@ -186,7 +186,7 @@ fn lenses_of_other_models_are_named() {
         assert!(error.contains(part), "{error}");
     }
     // Without coefficients that bend, a model of another name is a pinhole.
-    let straight = "{\"fx\": 600, \"fy\": 600, \"ppx\": 320, \"ppy\": 240, \"model\": \"inverse_brown_conrady\", \"coeffs\": [0, 0, 0, 0, 0]}";
+    let straight = "{\"fx\": 600, \"fy\": 600, \"ppx\": 320, \"ppy\": 240, \"model\": \"modified_brown_conrady\", \"coeffs\": [0, 0, 0, 0, 0]}";
     assert!(cameras("straight.json", straight).is_ok());
     let poly = halcon("Poly1:poly1: -1.2e3;\n  DOUBLE::;\n\n");
     let error = cameras("camera.dat", &poly).unwrap_err();
