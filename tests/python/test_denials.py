@@ -35,7 +35,6 @@ SHOWN = {
     "An existing file is replaced only with `--force`": PLACES + "a_file_that_exists_is_replaced_only_with_force",
     "`force = true` replaces only results of poecal": PLACES + "settings_lead_nowhere_else_and_let_only_results_go",
     "the report is put in place just before the results": "crates/poecal-cli/tests/it/simulated_disk/mod.rs::whatever_fails_a_place_is_old_or_new_or_completed_by_the_next_run",
-    "they have no quantities beside position and rotation": "crates/poecal-results/tests/it/calibration_file.rs",
     "the page has no address to send anything to": "web/test/app.test.mjs",
     "What has no control in the page": "web/test/app.test.mjs",
     "It passes only if the rows show that": "crates/poecal-cli/tests/it/acceptance.rs::limits_are_kept_exceeded_or_neither",
