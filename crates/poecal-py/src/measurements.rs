@@ -5,6 +5,7 @@ pub(crate) mod from_dataframe;
 pub(crate) mod guess;
 
 mod content;
+mod contents;
 mod db3;
 mod sources;
 

@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pandas
@@ -202,3 +204,44 @@ def test_each_instrument_has_a_frame_of_its_own(tmp_path):
     of_files = poecal.Measurements.from_csv(files, elbow(), device_frames="per-file")
     assert of_files.instruments == [str(files[0])] * 40 + [str(files[1])] * 40
     assert poecal.calibrate(elbow(), of_files).accuracy == calibration.accuracy
+
+
+ROOT = Path(__file__).resolve().parents[3]
+FILES = [path for folder in ("fuzz/seeds/measurements", "fuzz/seeds/recorded", "examples/elbow", "examples/howto") for path in sorted((ROOT / folder).iterdir()) if path.is_file()]
+
+
+def understood(read):
+    """What is read, with its warnings, or the error."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        try:
+            found = read()
+            rows = [found.joints.tolist(), found.positions.tolist()]
+        except poecal.PoecalError as error:
+            rows = [type(error).__name__, str(error)]
+    return rows, [str(it.message) for it in said]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.name}")
+def test_contents_are_read_as_their_file(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    content = path.read_bytes()
+    Path(path.name).write_bytes(content)
+    of_file = understood(lambda: poecal.Measurements.from_files(path.name, elbow()))
+    Path(path.name).unlink()
+    assert understood(lambda: poecal.Measurements.from_contents({path.name: content}, elbow())) == of_file
+    try:
+        text = content.decode()
+    except UnicodeDecodeError:
+        return
+    assert understood(lambda: poecal.Measurements.from_contents({path.name: text}, elbow())) == of_file
+
+
+def test_contents_of_two_files_are_joined_and_others_are_refused():
+    folder = ROOT / "examples/howto"
+    names = ["joints.csv", "take.csv"]
+    joined = poecal.Measurements.from_contents({name: (folder / name).read_bytes() for name in names}, elbow())
+    assert len(joined) == len(poecal.Measurements.from_files([folder / name for name in names], elbow()))
+    for contents, words in [({"a.csv": 3}, "contents: found a int for `a.csv`"), ({1: "x"}, "contents: found a name that is no text"), ({}, "paths")]:
+        with pytest.raises(poecal.PoecalError, match=words):
+            poecal.Measurements.from_contents(contents, elbow())

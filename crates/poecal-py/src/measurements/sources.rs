@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::content::{MeasurementSource, Measurements};
+use super::contents::with_contents;
 use super::db3;
 use crate::arguments::{self as arg, Paths};
 use crate::errors::raise;
@@ -204,6 +205,38 @@ impl Measurements {
     ) -> PyResult<Py<PyAny>> {
         let found = py.get_type::<Self>().call_method("from_csv", (paths, robot), options)?;
         Ok(found.unbind())
+    }
+
+    /// Reads files whose contents are here, as from a database or an upload: what `from_files` reads, with all of its options.
+    ///
+    /// Parameters
+    /// ----------
+    /// contents
+    ///     Names of the files, of which the endings count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite
+    ///     (`.db3`) is read as a file alone.
+    /// robot
+    ///     The robot whose joints the columns name.
+    ///
+    /// Returns
+    /// -------
+    /// Measurements
+    ///     The rows of all files.
+    ///
+    /// Raises
+    /// ------
+    /// MeasurementError
+    ///     They hold no measurements of this robot; the error tells the line and the column.
+    #[staticmethod]
+    #[pyo3(signature = (contents, robot, **options))]
+    fn from_contents(
+        py: Python<'_>,
+        contents: &Bound<'_, PyDict>,
+        robot: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<PyAny>> {
+        with_contents(contents, |names| {
+            Ok(py.get_type::<Self>().call_method("from_csv", (names, robot), options)?.unbind())
+        })
     }
 
     /// Measurements of arrays: positions, with orientations or without, or poses.
