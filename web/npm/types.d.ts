@@ -350,8 +350,9 @@ export interface PlanOptions {
   markers?: Value | readonly Value[];
   /**
    * Plan for something else than a calibration: drift chooses, of the configurations that a calibration.json was made of, those whose
-   * repeats show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones [possible
-   * values: drift]
+   * repeats show the smallest shift of the worst joint, and prints what each joint would show; with --candidates among new ones. iso9283
+   * lists P1 to P5 of the largest cube within reach and limits, or of that of --workspace, in --count cycles, as a table to fill in
+   * [possible values: drift, iso9283]
    */
   purpose?: Value | readonly Value[];
   /** Standard deviation of one visit and coordinate, like 0.03mm, as measured by repeats [default: the noise of the calibration] */

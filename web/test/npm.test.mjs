@@ -26,7 +26,7 @@ const NEAR = 1e-9;
 
 /** Largest size of the module, MB: as it is, and compressed as servers send it. It has the whole program, with a megabyte of the report's script and texts. */
 const MOST_RAW = 12.5;
-const MOST_SMALL = 4.5;
+const MOST_SMALL = 4.7;
 
 const folder = mkdtempSync(join(tmpdir(), "poecal-npm-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
