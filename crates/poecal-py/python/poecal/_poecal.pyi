@@ -499,6 +499,28 @@ class Measurements:
             It holds no measurements of this robot; the error tells the line and the column.
         """
     @staticmethod
+    def from_contents(contents: Mapping[str, str | bytes], robot: Robot, **options: Any) -> Measurements:
+        """Reads files whose contents are here, as from a database or an upload: what `from_files` reads, with all of its options.
+
+        Parameters
+        ----------
+        contents
+            Names of the files, of which the endings count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite
+            (`.db3`) is read as a file alone.
+        robot
+            The robot whose joints the columns name.
+
+        Returns
+        -------
+        Measurements
+            The rows of all files.
+
+        Raises
+        ------
+        MeasurementError
+            They hold no measurements of this robot; the error tells the line and the column.
+        """
+    @staticmethod
     def from_arrays(
         robot: Robot,
         *,
