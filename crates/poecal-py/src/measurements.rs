@@ -7,6 +7,7 @@ pub(crate) mod guess;
 mod content;
 mod contents;
 mod db3;
+mod read_options;
 mod sources;
 
 use content::MeasurementState;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use poecal_cli::words;
 use poecal_import as measurements;
-use poecal_import::{ColumnMap, Frames, Join, PlaneContact, ReadOptions};
+use poecal_import::{Frames, ReadOptions};
 use poecal_results::calibration_file::Inputs;
 use poecal_storage::named_files::refuse_repeats;
 use pyo3::prelude::*;
@@ -13,54 +13,13 @@ use pyo3::types::PyDict;
 use super::content::{MeasurementSource, Measurements};
 use super::contents::with_contents;
 use super::db3;
+use super::read_options::options;
 use crate::arguments::{self as arg, Paths};
 use crate::errors::raise;
 use crate::from_arrays::{ArrayColumns, dataset};
 use crate::from_dataframe;
 use crate::robot::Robot;
 use crate::words::one_of;
-
-/// Options of a reader, from the arguments of the same names.
-fn options(
-    columns: Option<&PathBuf>,
-    train_where: Option<&str>,
-    [ignore_sets, strict]: [bool; 2],
-    (frames, join, lag): (Frames, Option<Join>, Option<&str>),
-    (socket_distance, contact): (Option<&str>, PlaneContact),
-    [units, sheet, body]: [Option<&str>; 3],
-    [instrument_noise, cameras, markers, topics]: [Option<&[String]>; 4],
-) -> poecal_numerics::error::Result<ReadOptions> {
-    let mut options = ReadOptions {
-        frames,
-        join,
-        lag: lag.map(str::parse).transpose()?,
-        sheet: sheet.map(str::to_owned),
-        body: body.map(str::to_owned),
-        topics: topics.unwrap_or_default().to_vec(),
-        mapping: columns.map(ColumnMap::read).transpose()?,
-        train_where: train_where.map(str::parse).transpose()?,
-        ignore_sets,
-        strict,
-        socket_distances: socket_distance.map(str::parse).transpose()?,
-        contact,
-        instrument_noise: instrument_noise
-            .into_iter()
-            .flatten()
-            .map(|it| it.parse())
-            .collect::<Result<_, _>>()?,
-        ..ReadOptions::default()
-    };
-    if let Some(units) = units {
-        options.state_units(units)?;
-    }
-    for typed in cameras.unwrap_or_default() {
-        options.add_cameras(typed)?;
-    }
-    for typed in markers.unwrap_or_default() {
-        options.add_boards(typed)?;
-    }
-    Ok(options)
-}
 
 #[pymethods]
 impl Measurements {
