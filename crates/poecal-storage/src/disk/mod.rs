@@ -6,6 +6,7 @@
 //! [`Disk`] has some twenty operations, each one step. [`here`] is the disk of the thread: the machine's, unless [`on`] names another; in WebAssembly a
 //! disk in memory (`crates/poecal-wasm`). It is not an argument of the public functions because only that and tests need another disk.
 
+mod given;
 mod system;
 
 use std::any::Any;
@@ -15,6 +16,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub use given::GivenFiles;
 pub use system::SystemDisk;
 
 /// Kind of a path's object.

@@ -1,0 +1,133 @@
+//! A disk that is only read: files whose bytes are given, and those of another disk.
+
+use std::ffi::OsString;
+use std::io::{self, Cursor, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::{Disk, Lock, Object, ObjectKind, Output};
+
+/// Files by their paths, before those of another disk, if there is one.
+pub struct GivenFiles {
+    files: Vec<(PathBuf, Vec<u8>)>,
+    others: Option<Arc<dyn Disk>>,
+}
+
+impl GivenFiles {
+    /// A disk of these files, and of the `others`.
+    #[must_use]
+    pub fn new(files: Vec<(PathBuf, Vec<u8>)>, others: Option<Arc<dyn Disk>>) -> Self {
+        GivenFiles { files, others }
+    }
+
+    fn file(&self, path: &Path) -> Option<&[u8]> {
+        self.files.iter().find(|it| it.0 == path).map(|it| it.1.as_slice())
+    }
+
+    /// The answer for a file that is given, else that of the other disk.
+    fn answer<T>(
+        &self,
+        path: &Path,
+        own: impl FnOnce(&[u8]) -> T,
+        other: impl FnOnce(&dyn Disk) -> io::Result<T>,
+    ) -> io::Result<T> {
+        match (self.file(path), &self.others) {
+            (Some(bytes), _) => Ok(own(bytes)),
+            (None, Some(disk)) => other(disk.as_ref()),
+            (None, None) => Err(ErrorKind::NotFound.into()),
+        }
+    }
+}
+
+/// An object that is a given file.
+const FILE: Object = Object { kind: ObjectKind::File, identity: None, is_mine: true };
+
+fn refused<T>() -> io::Result<T> {
+    Err(ErrorKind::Unsupported.into())
+}
+
+impl Disk for GivenFiles {
+    fn look(&self, path: &Path) -> io::Result<Object> {
+        self.answer(path, |_| FILE, |disk| disk.look(path))
+    }
+
+    fn follow(&self, path: &Path) -> io::Result<Object> {
+        self.answer(path, |_| FILE, |disk| disk.follow(path))
+    }
+
+    fn actual(&self, path: &Path) -> io::Result<PathBuf> {
+        self.answer(path, |_| path.to_owned(), |disk| disk.actual(path))
+    }
+
+    fn names(&self, folder: &Path) -> io::Result<Vec<OsString>> {
+        match &self.others {
+            Some(disk) => disk.names(folder),
+            None => Ok(self.files.iter().map(|it| it.0.clone().into_os_string()).collect()),
+        }
+    }
+
+    fn open(&self, path: &Path) -> io::Result<Box<dyn Read + Send>> {
+        let own = |bytes: &[u8]| Box::new(Cursor::new(bytes.to_vec())) as Box<dyn Read + Send>;
+        self.answer(path, own, |disk| disk.open(path))
+    }
+
+    fn standard_input(&self) -> io::Result<Box<dyn Read + Send>> {
+        refused()
+    }
+
+    fn create(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        refused()
+    }
+
+    fn append(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        refused()
+    }
+
+    fn stream(&self, _: &Path) -> io::Result<Box<dyn Output>> {
+        refused()
+    }
+
+    fn create_folder(&self, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn remove_file(&self, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn remove_folder(&self, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn rename(&self, _: &Path, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn rename_new(&self, _: &Path, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn exchange(&self, _: &Path, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn link(&self, _: &Path, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn copy_access(&self, _: &Path, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn sync_folder(&self, _: &Path) -> io::Result<()> {
+        refused()
+    }
+
+    fn lock(&self, _: &Path) -> io::Result<Option<Lock>> {
+        refused()
+    }
+
+    fn lock_folder(&self, _: &Path) -> io::Result<Lock> {
+        refused()
+    }
+}
