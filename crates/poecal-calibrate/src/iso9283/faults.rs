@@ -11,8 +11,9 @@ const FEWEST: usize = 3;
 /// Median distances from the middle of its pose beyond which a row is no scatter, and metres.
 const BEYOND: f64 = 30.0;
 const BEYOND_M: f64 = 5e-4;
-/// Share of the distance between poses beyond which an error is no accuracy.
+/// Share of the distance between poses beyond which an error is no accuracy, and metres.
 const GROSS: f64 = 0.05;
+const GROSS_M: f64 = 0.02;
 
 /// A row as messages name it.
 fn named(row: &TestRow) -> &str {
@@ -214,7 +215,8 @@ pub(super) fn refuse_gross(cells: &[PoseCell<'_>], errors: &[Vector3<f64>], is_f
     let apart = |a: &Vector3<f64>| places.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
     let size = places.iter().map(apart).fold(0.0, f64::max);
     let worst = errors.iter().enumerate().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm()));
-    let Some((at, error)) = worst.filter(|it| it.1.norm() > (GROSS * size).max(0.02)) else { return Ok(()) };
+    let limit = (GROSS * size).max(GROSS_M);
+    let Some((at, error)) = worst.filter(|it| it.1.norm() > limit) else { return Ok(()) };
     let (frame, remedy) = if is_fitted {
         ("the fitted frame", "correct the names of poses, the unit, or the commands")
     } else {
@@ -224,7 +226,7 @@ pub(super) fn refuse_gross(cells: &[PoseCell<'_>], errors: &[Vector3<f64>], is_f
         "found the barycentre of pose {} {:.1} mm from its command in {frame}, expected one within {:.1} mm: {remedy}",
         cells[at].pose,
         1e3 * error.norm(),
-        1e3 * (GROSS * size).max(0.02)
+        1e3 * limit
     );
     match cells[at].rows.first() {
         Some(row) => refuse(row, &message),

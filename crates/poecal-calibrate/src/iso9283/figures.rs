@@ -2,12 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::faults;
 use super::figure::{FigureBounds, FigureName, TestFigure};
 use super::frame::{Registered, register};
 use super::intervals::{self, VariancePart, mean_and_covariance};
 use super::rows::{PoseCell, PoseCells, TestRow};
 use super::spread::{self, DEVIATIONS};
-use super::{STANDARD_CYCLES, faults};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_fit::start::mean_rotation;
 use poecal_numerics::error::{ErrorKind, Result};
@@ -32,19 +32,6 @@ pub struct Iso9283 {
 }
 
 impl Iso9283 {
-    /// Expected ratio of position errors without a fitted frame to those beside it, if errors are independent: `√(3m / (3m - 6))`.
-    #[must_use]
-    pub fn absorbed_ratio(&self) -> f64 {
-        let [all, absorbed] = self.coordinates.map(|it| it as f64);
-        (all / (all - absorbed).max(1.0)).sqrt()
-    }
-
-    /// Whether all poses have the cycles of the standard.
-    #[must_use]
-    pub fn has_standard_cycles(&self) -> bool {
-        self.cycles >= STANDARD_CYCLES
-    }
-
     /// Figures of a name, of lengths or of angles.
     pub fn of_name(&self, name: FigureName, is_of_angles: bool) -> impl Iterator<Item = &TestFigure> {
         self.figures.iter().filter(move |it| it.name == name && it.axis.is_some() == is_of_angles)

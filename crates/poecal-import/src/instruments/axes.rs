@@ -14,12 +14,12 @@ pub(super) struct Axis<'t> {
     pub(super) unit: Option<&'t str>,
 }
 
-/// A configuration: its line, its name, and its axes by their numbers.
+/// A configuration: its line, its name, and its axes by their numbers, which are small since tables have as many columns.
 pub(super) struct Listed<'t> {
     pub(super) line: usize,
     pub(super) name: String,
-    pub(super) own: BTreeMap<usize, Axis<'t>>,
-    pub(super) external: BTreeMap<usize, Axis<'t>>,
+    pub(super) own: BTreeMap<u8, Axis<'t>>,
+    pub(super) external: BTreeMap<u8, Axis<'t>>,
 }
 
 /// Names of axes before their number, and of configurations.
@@ -32,8 +32,8 @@ pub(super) struct Words {
 /// An axis by its number.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
-    Own(usize),
-    External(usize),
+    Own(u8),
+    External(u8),
 }
 
 impl<'t> Listed<'t> {
@@ -66,19 +66,19 @@ impl Axis<'_> {
 struct Axes<'a, 't> {
     listed: &'a [Listed<'t>],
     words: &'a Words,
-    own: usize,
-    external: Vec<usize>,
+    own: u8,
+    external: Vec<u8>,
     slides: Vec<bool>,
 }
 
 impl<'a, 't> Axes<'a, 't> {
     fn new(listed: &'a [Listed<'t>], words: &'a Words, slides: Vec<bool>) -> Self {
         let last = listed.iter().filter_map(|it| it.own.keys().max()).max();
-        let external: BTreeSet<usize> = listed.iter().flat_map(|it| it.external.keys().copied()).collect();
+        let external: BTreeSet<u8> = listed.iter().flat_map(|it| it.external.keys().copied()).collect();
         let mut own = last.copied().unwrap_or_default();
         // Telegrams have six axes of arms with four.
-        let is_unused = |own: usize| listed.iter().all(|it| it.own.get(&own).is_none_or(Axis::is_zero));
-        while own > slides.len() && is_unused(own) {
+        let is_unused = |own: u8| listed.iter().all(|it| it.own.get(&own).is_none_or(Axis::is_zero));
+        while usize::from(own) > slides.len() && is_unused(own) {
             own -= 1;
         }
         Axes { listed, words, own, external: external.into_iter().collect(), slides }
@@ -102,8 +102,8 @@ impl<'a, 't> Axes<'a, 't> {
         // A slide at an end of the chain may be a rail, which has no number of the arm's.
         let ends = self.slides.first() == Some(&true) || self.slides.last() == Some(&true);
         let is_stated = (1..=self.own).all(|at| self.unit(Place::Own(at)).is_some());
-        let is_all = self.own == self.slides.len() && (is_stated || !ends);
-        if !is_all && self.own != turning {
+        let is_all = usize::from(self.own) == self.slides.len() && (is_stated || !ends);
+        if !is_all && usize::from(self.own) != turning {
             return None;
         }
         let mut own = (1..=self.own).map(Place::Own);

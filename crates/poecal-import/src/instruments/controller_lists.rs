@@ -21,7 +21,7 @@ pub(crate) const ECHO: Form =
 /// Lines in which a form is sought.
 const FIRST: usize = 60;
 /// Most axes that angles are filled in for.
-const MOST_AXES: usize = 64;
+const MOST_AXES: u8 = 64;
 /// Names of axes, and of what has them.
 const FANUC_WORDS: Words = Words { own: "J", external: "EXT", all: "configurations" };
 const STAUBLI_WORDS: Words = Words { own: "j", external: "", all: "configurations" };
@@ -58,7 +58,7 @@ fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         poses += usize::from(trimmed.starts_with("X:"));
         let mut words = trimmed.split([' ', '=', ':']).filter(|it| !it.is_empty());
         while let Some(word) = words.next().filter(|_| !trimmed.starts_with('[')) {
-            let numbered = |before: &str| word.strip_prefix(before).and_then(|it| it.parse::<u8>().ok());
+            let numbered = |before: &str| word.strip_prefix(before).and_then(|it| it.parse().ok());
             let Some((of, axis)) = (numbered("J").map(|it| (&mut last.own, it)))
                 .or_else(|| numbered("EXT").map(|it| (&mut last.external, it)))
             else {
@@ -70,7 +70,7 @@ fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
                     last.name
                 ));
             };
-            of.insert(axis.into(), Axis { value, unit: Some(unit) });
+            of.insert(axis, Axis { value, unit: Some(unit) });
         }
     }
     // A pose has no angle of a joint, but may have external axes.
@@ -83,14 +83,12 @@ fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
 }
 
 /// The values of attributes with this letter and a number of an element's text, by their number.
-fn numbered(element: &str, letter: char) -> BTreeMap<usize, Axis<'_>> {
+fn numbered(element: &str, letter: char) -> BTreeMap<u8, Axis<'_>> {
     let attributes = element.split_whitespace().filter_map(|it| it.split_once('='));
     attributes
         .filter_map(|(name, value)| {
             let value = value.trim_matches(['"', '\'', '/', '>']);
-            // No controller has more: tables are made by the largest number.
-            let number: u8 = name.strip_prefix(letter)?.parse().ok()?;
-            Some((number.into(), Axis { value, unit: None }))
+            Some((name.strip_prefix(letter)?.parse().ok()?, Axis { value, unit: None }))
         })
         .collect()
 }

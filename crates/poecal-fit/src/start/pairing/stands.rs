@@ -132,8 +132,9 @@ impl Stream {
         let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
         let mut found = self.stands_by(0.5 * SHORTEST_S);
         // A row at an end may be lost in the noise.
-        found.retain(|it| it.span_s.1 - it.span_s.0 + step >= SHORT * SHORTEST_S);
-        let still: f64 = found.iter().map(|it| it.span_s.1 - it.span_s.0 + step).sum();
+        let lasts = |it: &Stand| it.span_s.1 - it.span_s.0 + step;
+        found.retain(|it| lasts(it) >= SHORT * SHORTEST_S);
+        let still: f64 = found.iter().map(lasts).sum();
         let all = self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first);
         if still >= MOSTLY_STILL * all { found } else { Vec::new() }
     }
