@@ -150,7 +150,7 @@ fn misplaced(cells: &PoseCells<'_>) -> Result<()> {
     Ok(())
 }
 
-/// What is missing, a sentence each.
+/// Missing rows, a sentence each.
 fn missing(cells: &PoseCells<'_>) -> Vec<String> {
     let mut said = Vec::new();
     let most = cells.base.iter().map(PoseCell::count).max().unwrap_or(0);

@@ -180,7 +180,7 @@ impl FigureLimit {
 }
 
 impl FigureName {
-    /// What rows must have to show it.
+    /// Requirements on rows that show it.
     fn needs(self) -> &'static str {
         match self {
             FigureName::Ap | FigureName::Rp => "orientations for angles",

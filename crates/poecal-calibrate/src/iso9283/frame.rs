@@ -17,7 +17,7 @@ pub(super) struct Registered {
     pub(super) base_from_device: Pose,
     /// Barycentre less command of each pose, metres.
     pub(super) errors: Vec<Vector3<f64>>,
-    /// What each cell's scatter adds to the covariance of each error.
+    /// Part of each cell's scatter in the covariance of each error.
     pub(super) parts: Vec<Vec<VariancePart>>,
 }
 

@@ -40,14 +40,14 @@ fn student(risk: f64, freedom: f64) -> f64 {
     f_quantile(risk, 1.0, freedom).sqrt()
 }
 
-/// Of a mean whose variance has several parts: variance and degrees of freedom each.
+/// Interval of a mean whose variance has several parts: variance and degrees of freedom each.
 pub(super) fn mean(found: f64, variances: &[(f64, f64)]) -> FigureBounds {
     let sum: f64 = variances.iter().map(|it| it.0).sum();
     let half = student(0.05, freedom(variances.iter().copied())) * sum.sqrt();
     FigureBounds { found, from: found - half, to: found + half }
 }
 
-/// Of a standard deviation, times `factor`.
+/// Interval of a standard deviation, times `factor`.
 pub(super) fn deviation(found: f64, count: usize, factor: f64) -> FigureBounds {
     let freedom = (count as f64 - 1.0).max(1.0);
     let upper = f_quantile(0.025, freedom, INFINITE);
@@ -56,7 +56,7 @@ pub(super) fn deviation(found: f64, count: usize, factor: f64) -> FigureBounds {
     FigureBounds { found, from: found / upper.sqrt(), to: found / lower.sqrt() }
 }
 
-/// Of the length of an error, whose estimate is too long by its scatter across: `E|e|² = |ε|² + tr C`. If the error is not shown to differ from
+/// Interval of the length of an error, whose estimate is too long by its scatter across: `E|e|² = |ε|² + tr C`. If the error is not shown to differ from
 /// zero, the interval is one-sided, from zero.
 pub(super) fn length(error: &Vector3<f64>, parts: &[VariancePart]) -> FigureBounds {
     let found = error.norm();
@@ -80,7 +80,7 @@ pub(super) fn length(error: &Vector3<f64>, parts: &[VariancePart]) -> FigureBoun
     FigureBounds { found, from: 0.0, to: (middle + student(0.10, all) * widest.sqrt()).max(found) }
 }
 
-/// Of the size of a difference of two figures, by their own intervals.
+/// Interval of the size of a difference of two figures, by their own intervals.
 pub(super) fn difference(first: &FigureBounds, second: &FigureBounds) -> FigureBounds {
     let found = (first.found - second.found).abs();
     let half = |it: &FigureBounds| 0.5 * (it.to - it.from);

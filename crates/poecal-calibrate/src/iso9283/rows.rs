@@ -91,14 +91,14 @@ impl<'a> PoseCells<'a> {
         PoseCells { base, others }
     }
 
-    /// Whether the base rows have orientations, all of them.
+    /// True if all base rows have orientations.
     pub(super) fn have_rotations(&self) -> bool {
         self.base.iter().flat_map(|it| &it.rows).all(|row| row.rotation.is_some())
     }
 }
 
 impl PoseCell<'_> {
-    /// Whether rows with these labels are of the same arm, approach and series.
+    /// True if rows with these labels are of the same arm, approach and series.
     fn is_like(&self, labels: &TestLabels) -> bool {
         let of = |it: &TestLabels| [it.arm.clone(), it.approach.clone(), it.series.clone()];
         of(self.labels) == of(labels)

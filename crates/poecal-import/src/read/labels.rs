@@ -14,7 +14,7 @@ use poecal_storage::document;
 /// Words of some columns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LabelColumns {
-    /// Whether the file has each of the columns.
+    /// True for each of the columns that the file has.
     pub has: Vec<bool>,
     /// Words of each line, from 1; empty of a column that the file does not have.
     pub lines: BTreeMap<usize, Vec<String>>,

@@ -97,7 +97,7 @@ impl Reaching<'_> {
         POSES.iter().enumerate().map(pose).collect()
     }
 
-    /// Whether all vertices of a cube are reached from its middle, and the base is outside.
+    /// True if all vertices of a cube are reached from its middle, and the base is outside.
     fn is_whole(&self, middle: &Pose, side_m: f64, first: &[f64]) -> bool {
         let vertices = POSES.iter().skip(1).chain(&OTHERS);
         let is_reached = |vertex: &[f64; 3]| {

@@ -27,7 +27,7 @@ const WORST: usize = 40;
 const DIGITS: i32 = 6;
 /// The largest power of ten that is exact.
 const EXACT: i32 = 22;
-/// What stands for no number in three bytes.
+/// Three bytes that stand for no number.
 const NONE: u32 = 0xff_ffff;
 
 #[derive(Serialize)]
@@ -90,9 +90,9 @@ pub(crate) struct Drawn {
     pub(crate) index: usize,
     pub(crate) held_out: bool,
     pub(crate) suspected: bool,
-    /// Whether it is one of the evenly chosen, which stand for all.
+    /// True of one of the evenly chosen, which stand for all.
     pub(crate) even: bool,
-    /// Whether it is drawn in small charts.
+    /// True if it is drawn in small charts.
     pub(crate) few: bool,
 }
 
@@ -135,7 +135,7 @@ struct RowData {
     /// Number in the order read, from 1; none if all are drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     number: Option<Column>,
-    /// What stands before the line of each file, and the lines; none of which file it is if there is only one.
+    /// Words before the line of each file, and the lines; none of which file it is if there is only one.
     files: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<Vec<usize>>,
@@ -225,7 +225,7 @@ pub(crate) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut
     }
 }
 
-/// Of some rows those that are drawn, and whether each is one of the evenly chosen: all, or a tenth for being suspected, a fortieth for being
+/// Rows that are drawn, and whether each is one of the evenly chosen: all, or a tenth for being suspected, a fortieth for being
 /// far off, and the others at equal distances.
 fn thinned(residuals: &Residuals, rows: &[usize], most: usize) -> Vec<(usize, bool)> {
     let count = rows.len();

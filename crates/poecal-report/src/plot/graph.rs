@@ -1,6 +1,6 @@
 //! Charts of many rows: dots, lines and areas as wide as their place, with text of one size at any width.
 //!
-//! What is drawn lies in a view of whole numbers, two to the px, which is stretched to its place; strokes and text are not. A series of dots is
+//! Drawings lie in a view of whole numbers, two to the px, which is stretched to its place; strokes and text are not. A series of dots is
 //! one path of lines without length, whose round ends are seen (of square ones half a px, since paper shows none without length): `m12 -7h0` is a dot, from the one before, and `m0 0` a row without one, so that
 //! a script finds the row of each dot by counting; a series of none has an empty path.
 
@@ -24,7 +24,7 @@ pub struct Spots {
 }
 
 impl Spots {
-    /// Whether its dots are squares: beside its colour a series has a shape.
+    /// True if its dots are squares: beside its colour a series has a shape.
     fn is_square(&self) -> bool {
         self.class == "s1"
     }
@@ -39,7 +39,7 @@ pub struct Shape {
 /// A vertical axis with what belongs to it. Of several the first is shown, until a script shows another.
 pub struct Side {
     pub y: Axis,
-    /// What is said instead of the picture.
+    /// Words instead of the picture.
     pub spoken: String,
     pub shapes: Vec<Shape>,
 }
@@ -62,7 +62,7 @@ struct View {
 }
 
 impl View {
-    /// Where a point lies; nowhere if it is beyond the axes.
+    /// Place of a point; none if it is beyond the axes.
     fn place(&self, y: &Ruler, point: [f64; 2]) -> Option<[i32; 2]> {
         let [across, up] = [self.x.place(point[0])?, y.place(point[1])?];
         (across.inside && up.inside).then(|| self.rounded(across.share, up.share))

@@ -1,4 +1,4 @@
-//! What charts need of statistics: quantiles, and a smooth curve through dots.
+//! Statistics of charts: quantiles, and a smooth curve through dots.
 
 /// Points that make a value of a curve, and those that it has at least.
 const NEAR: f64 = 30.0;
@@ -69,7 +69,7 @@ pub fn normal_quantile(p: f64) -> f64 {
 pub struct Curve {
     /// Place, value and its standard deviation by the scatter of the points about the curve.
     pub points: Vec<[f64; 3]>,
-    /// How far apart neighbours are at least where the curve is broken.
+    /// Least distance of neighbours where the curve is broken.
     gap: f64,
     /// Places of the points.
     xs: Vec<f64>,

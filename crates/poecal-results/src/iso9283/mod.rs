@@ -83,13 +83,13 @@ pub struct FigureLimitEntry {
 /// The frame of the device, and what its fit absorbed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TestFrameEntry {
-    /// Whether it was fitted or stated.
+    /// Source of the frame: fitted or stated.
     pub known: TestFrame,
     /// Pose of the device in the robot's base.
     pub base_from_device: PoseEntry,
     /// Coordinates of all barycentres.
     pub coordinates: usize,
-    /// How many of them the fit absorbed.
+    /// Number of them that the fit absorbed.
     pub absorbed: usize,
 }
 
@@ -102,7 +102,7 @@ pub struct TestResult {
     pub poecal_version: &'static str,
     /// The files. The calibration is empty if there is none.
     pub inputs: ValidationInputs,
-    /// What is stated of the test: payload, instrument and so on.
+    /// Statements about the test: payload, instrument and so on.
     #[serde(skip_serializing_if = "Record::is_empty")]
     pub record: Record,
     /// Speed of the rows, as they state it; empty if they do not.

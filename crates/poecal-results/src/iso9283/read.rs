@@ -26,10 +26,10 @@ const TURNED: [&str; 3] = ["commanded_yaw", "commanded_pitch", "commanded_roll"]
 /// Commanded orientations (radians) within this are one.
 const SAME_RAD: f64 = 0.01;
 
-/// How the rows of a test are read.
+/// Options of reading the rows of a test.
 #[derive(Clone, Debug, Default)]
 pub struct TestOptions {
-    /// How measurement files are read.
+    /// Options of reading measurement files.
     pub reading: ReadOptions,
     /// The device's frame.
     pub frame: TestFrame,
@@ -46,7 +46,7 @@ pub struct TestFile {
     pub rows: Vec<TestRow>,
     /// Pose of the device in the base, if it is stated.
     pub base_from_device: Option<Pose>,
-    /// How the files were read.
+    /// Result of reading the files.
     pub read: MeasurementFile,
     /// Speed, as the rows state it.
     pub speed: String,
@@ -252,7 +252,7 @@ fn fitted(file: &CalibrationFile, read: &MeasurementFile) -> Option<String> {
     ))
 }
 
-/// What makes accuracy doubtful, a sentence each; takes orientations away whose target is not known.
+/// Doubts about accuracy, a sentence each; takes orientations away whose target is not known.
 fn doubts(
     model: Option<&Model>,
     rows: &mut [TestRow],

@@ -10,10 +10,10 @@ use crate::plot::{Axis, Curve, Graph, Scale, Shape, Side, quantile};
 use poecal_numerics::error::Result;
 use poecal_results::calibration_file::CalibrationFile;
 
-/// What the residual is called that is shown first, where there is one.
+/// Name of the residual that is shown first, if there is one.
 const OWN: &str = "along the joint's own motion";
 
-/// What is drawn over joint values.
+/// Residual that is drawn over joint values.
 struct Residual {
     name: String,
     unit: &'static str,
@@ -69,7 +69,7 @@ impl Residual {
     }
 }
 
-/// What can be drawn over joint values, the first of which is shown.
+/// Residuals that can be drawn over joint values, the first of which is shown.
 fn residuals(charts: &Charts<'_>, file: &CalibrationFile) -> Result<Vec<Residual>> {
     let motions = Motions::new(file, charts.residuals)?;
     let by_row: Vec<Vec<Option<f64>>> = charts.rows.iter().map(|row| motions.along(row.index)).collect();

@@ -47,7 +47,7 @@ pub(crate) fn keys(keys: &[Key]) -> Markup {
     }
 }
 
-/// Where a script says what the cursor is on. A screen reader has the tables.
+/// Line in which a script names the dot under the cursor. A screen reader has the tables.
 pub(crate) fn readout() -> Markup {
     html! { p.readout aria-hidden="true" {} }
 }
@@ -192,7 +192,7 @@ impl<'a> Charts<'a> {
         html! { (keys(&all_keys)) div.cells { @for cell in &cells { (cell) } } (readout()) }
     }
 
-    /// How the errors of fitted and of held-out rows are spread.
+    /// Histogram of the errors of fitted and of held-out rows.
     pub(crate) fn histogram(&self) -> Markup {
         let errors = |held_out: bool| -> Vec<f64> {
             let rows = self.rows.iter().filter(|row| row.even && row.held_out == held_out);
