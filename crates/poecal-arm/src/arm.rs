@@ -59,7 +59,7 @@ impl Arm {
     /// The arm of a model; `None` if it has no joint, more than [`MOST_JOINTS`] readings, a reading that moves nothing, numbers that are not
     /// finite, or indices of what is not there.
     #[must_use]
-    pub fn of(model: &Model) -> Option<Self> {
+    pub fn from_model(model: &Model) -> Option<Self> {
         if !model.is_whole() {
             return None;
         }
@@ -105,7 +105,7 @@ impl Arm {
     /// The arm of the numbers of a model ([`Model::numbers`]); `None` if they are none.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
-        Arm::of(&Model::from_numbers(numbers)?)
+        Arm::from_model(&Model::from_numbers(numbers)?)
     }
 
     /// Number of readings: of the joints that are moved.

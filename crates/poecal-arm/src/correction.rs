@@ -296,7 +296,7 @@ impl Corrections {
             );
         let at = |q: &[f64]| {
             let placed = self.actual.placed(q);
-            let ways = Ways::of(&placed, n, |joint| if slides[joint] { 1.0 } else { 1.0 / reach });
+            let ways = Ways::from_placement(&placed, n, |joint| if slides[joint] { 1.0 } else { 1.0 / reach });
             (Left::new(&placed.tip, target), ways)
         };
         for step in 0..MOST_STEPS {

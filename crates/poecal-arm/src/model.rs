@@ -68,7 +68,7 @@ pub struct JointValue {
 impl JointValue {
     /// The value of a joint that turns by its reading.
     #[must_use]
-    pub fn of(reading: usize) -> Self {
+    pub fn from_reading(reading: usize) -> Self {
         JointValue { linear: [(reading, 1.0)].to_vec(), ..JointValue::default() }
     }
 

@@ -19,7 +19,7 @@ pub(crate) struct Ways {
 }
 
 impl Ways {
-    pub(crate) fn of(placed: &Placed<MOST_JOINTS>, n: usize, scale: impl Fn(usize) -> f64) -> Self {
+    pub(crate) fn from_placement(placed: &Placed<MOST_JOINTS>, n: usize, scale: impl Fn(usize) -> f64) -> Self {
         let columns = core::array::from_fn(|joint| {
             let (v, w) = placed.column(joint);
             if joint < n { (v * scale(joint), w) } else { (Vector3::zeros(), Vector3::zeros()) }

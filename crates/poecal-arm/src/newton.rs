@@ -66,7 +66,7 @@ pub(crate) struct Six<'a> {
 
 impl<'a> Six<'a> {
     /// All joints of an arm of six.
-    pub(crate) fn of(arm: &'a Arm) -> Self {
+    pub(crate) fn from_arm(arm: &'a Arm) -> Self {
         Six { arm, held: None }
     }
 
@@ -323,7 +323,7 @@ impl Arm {
             && self.joints() == 6
         {
             let mut undamped = *six;
-            let left = newton(&Six::of(self), target, &mut undamped, MOST_STEPS);
+            let left = newton(&Six::from_arm(self), target, &mut undamped, MOST_STEPS);
             if left < REACHED {
                 *six = undamped;
                 return left;

@@ -227,7 +227,7 @@ mod tests {
     fn a_model_comes_back_from_its_numbers() {
         let screw = Screw::revolute(&Vector3::z(), &Vector3::x());
         let mut model = Model::new(1, &Pose::identity());
-        model.joints.push(Joint { screw, value: JointValue::of(0) });
+        model.joints.push(Joint { screw, value: JointValue::from_reading(0) });
         let numbers = model.numbers();
         assert_eq!(numbers[..4], [1.0, 1.0, 1.0, 0.0]);
         assert_eq!(Model::from_numbers(&numbers).unwrap().numbers(), numbers);

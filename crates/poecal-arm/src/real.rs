@@ -44,8 +44,8 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    fn of(constant: f64, linear: &[(usize, f64)], pull: Option<&Pull>, from_base: &[Pose]) -> Self {
-        let moment = pull.map(|pull| Moment::of(pull, from_base));
+    fn new(constant: f64, linear: &[(usize, f64)], pull: Option<&Pull>, from_base: &[Pose]) -> Self {
+        let moment = pull.map(|pull| Moment::new(pull, from_base));
         Sum { constant, linear: linear.to_vec(), moment }
     }
 }
@@ -62,7 +62,7 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    fn of(pull: &Pull, from_base: &[Pose]) -> Self {
+    fn new(pull: &Pull, from_base: &[Pose]) -> Self {
         let mut weights: Vec<(usize, f64, Vector3<f64>)> = Vec::new();
         for weight in &pull.weights {
             let place = from_base[weight.after].act(&weight.place) * weight.size;
@@ -121,12 +121,12 @@ impl Real {
             let frame = along(&joint.screw, &before.translation);
             let JointValue { constant, linear, waves, pull, curves } = &joint.value;
             let curve = |it: &Curve| {
-                (it.term, it.coefficient, Sum::of(it.constant, &it.linear, it.pull.as_ref(), &from_base))
+                (it.term, it.coefficient, Sum::new(it.constant, &it.linear, it.pull.as_ref(), &from_base))
             };
             links.push(Link {
                 frame: before.inverse() * frame,
                 slides: joint.screw.is_prismatic(),
-                own: Sum::of(*constant, linear, pull.as_ref(), &from_base),
+                own: Sum::new(*constant, linear, pull.as_ref(), &from_base),
                 waves: waves.clone(),
                 curves: curves.iter().map(curve).collect(),
             });

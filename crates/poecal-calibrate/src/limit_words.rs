@@ -29,7 +29,7 @@ impl FromStr for Limit {
             return Err(bad(text, "a unit behind the number"));
         }
         let typed = NamedUnit::parse_any(symbol.trim())?;
-        Ok(Limit { statistic, unit: typed.of(), most: typed.to_si(value) })
+        Ok(Limit { statistic, unit: typed.si_unit(), most: typed.to_si(value) })
     }
 }
 

@@ -83,7 +83,7 @@ impl FromStr for LengthAndAngle {
         for part in text.split(',').map(str::trim) {
             let (value, symbol) = value_and_symbol(part, "2mm or 1deg")?;
             let unit = NamedUnit::parse_any(symbol)?;
-            let place = if unit.of() == Unit::Radian { &mut angle_rad } else { &mut length_m };
+            let place = if unit.si_unit() == Unit::Radian { &mut angle_rad } else { &mut length_m };
             if place.replace(unit.to_si(value)).is_some() {
                 return ErrorKind::Option
                     .refuse(format!("found `{text}`, expected one length and one angle, like 2mm,1deg"));

@@ -21,7 +21,7 @@ pub struct Difference {
 impl Difference {
     /// Compares forward kinematics, of instruments and targets by their names, on `count` random configurations within the first robot's limits.
     #[must_use]
-    pub fn of(robot: &Robot, other: &Robot, count: usize) -> Self {
+    pub fn from_robots(robot: &Robot, other: &Robot, count: usize) -> Self {
         Reference::new(robot, count).difference(other)
     }
 

@@ -141,7 +141,7 @@ fn main() {
         }
         let calibration = calibrate(&robot, &made.data, &CalibrationOptions::default()).unwrap();
         let json = CalibrationFile::new(&calibration, &made.data, Inputs::default()).to_text().unwrap();
-        let residuals = Residuals::of(&made.data, &calibration).text();
+        let residuals = Residuals::from_calibration(&made.data, &calibration).text();
         put("calibration", name, &json);
         put("residuals", name, &residuals);
         put("report", name, &both(&json, &residuals));

@@ -87,7 +87,7 @@ pub(crate) fn alike(robot: &Robot, again: &Robot, tolerance: f64, what: &str) {
     };
     assert_eq!(names(robot), names(again), "{what}: joints");
     let size = size_m(robot);
-    let found = Difference::of(robot, again, 20);
+    let found = Difference::from_robots(robot, again, 20);
     assert!(
         found.is_within(tolerance * size * size, tolerance * size),
         "{what}: {found:?} of a robot of {size} m"

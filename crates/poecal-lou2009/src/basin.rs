@@ -94,7 +94,7 @@ fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Resu
     for (reached, (formulation, method)) in reached.iter_mut().zip(WAYS) {
         let data = session.data(residual(seen, method), &exact)?;
         let free = session.free(formulation);
-        let problem = Problem::new(session.of(&data, LENGTH_M), session.rows(), free, noise);
+        let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, noise);
         let options = Options { iterations: LIMIT, ..Options::default() };
         let (found, _, _) = (method.minimize())(&problem, session.start(), &options);
         *reached = session.held_out_rms_m(&found) < REACHED_M;

@@ -121,7 +121,7 @@ fn session(robot: &Robot, kind: Kind, seed: u64) -> Result<Vec<Outcome>> {
 
 /// Root mean square position error on rows free of noise.
 fn held_out_m(robot: &Robot, judging: &Dataset, models: &Models) -> f64 {
-    let packed = Packed::of(robot, judging);
+    let packed = Packed::from_dataset(robot, judging);
     let rows: Vec<u32> = (0..u32::try_from(judging.len()).unwrap_or(u32::MAX)).collect();
     let errors = Session::new(robot, judging, &packed, true).errors(&rows, &models.calibrated);
     (errors.iter().map(|e| e.position_m().norm_squared()).sum::<f64>() / errors.len().max(1) as f64).sqrt()

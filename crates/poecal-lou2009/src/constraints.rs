@@ -18,7 +18,7 @@ pub(super) struct Miss {
 }
 
 impl Miss {
-    fn of(screw: &Twist) -> Self {
+    fn from_screw(screw: &Twist) -> Self {
         Miss { pitch_m: screw.v.dot(&screw.w).abs(), length: (screw.w.norm() - 1.0).abs() }
     }
 
@@ -75,7 +75,7 @@ impl LeastSquares for Watched<'_> {
                     if let (JointKind::Revolute, &[vx, vy, vz, wx, wy, wz]) = (free.kind, own.as_slice()) {
                         // In the axis frame: length and pitch are the same in every frame.
                         let freed = Twist::new(Vector3::new(vx, vy, vz), Vector3::new(wx, wy, 1.0 + wz));
-                        miss = miss.or_larger(Miss::of(&freed));
+                        miss = miss.or_larger(Miss::from_screw(&freed));
                     }
                 }
                 Parameter::ScrewAxis(axis) => {
@@ -83,7 +83,7 @@ impl LeastSquares for Watched<'_> {
                         let local = Twist::new(Vector3::new(vx, vy, 0.0), Vector3::new(wx, wy, 0.0));
                         let eta = state.estimate.base_from_axis[axis.joint].transform(&local);
                         screws[axis.joint] = Pose::exp(&eta).transform(&screws[axis.joint]);
-                        miss = miss.or_larger(Miss::of(&screws[axis.joint]));
+                        miss = miss.or_larger(Miss::from_screw(&screws[axis.joint]));
                     }
                 }
                 Parameter::ValueTerm(_)
@@ -111,7 +111,7 @@ mod tests {
         let data = session.data(Residual::Spatial, &session.exact()).unwrap();
         let noise = Noise::new(1.0, 1.0);
         let free = session.free(formulation);
-        let problem = Problem::new(session.of(&data, 1.0), session.rows(), free, noise);
+        let problem = Problem::new(session.session_with_data(&data, 1.0), session.rows(), free, noise);
         Watched(&problem).retract(&WatchedState::new(session.start()), &vec![1e-2; problem.dim()])
     }
 

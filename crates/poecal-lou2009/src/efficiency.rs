@@ -64,7 +64,7 @@ fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f6
     let fit = |&(formulation, residual, method): &Way| {
         let data = if residual == Residual::Tool { &tool } else { &spatial };
         let free = session.free(formulation);
-        let problem = Problem::new(session.of(data, LENGTH_M), session.rows(), free, NOISE);
+        let problem = Problem::new(session.session_with_data(data, LENGTH_M), session.rows(), free, NOISE);
         let options = Options { iterations: LIMIT, ..Options::default() };
         let (found, _, summary) = (method.minimize())(&problem, session.start(), &options);
         summary.termination.is_success().then(|| session.held_out_rms_m(&found).powi(2))
@@ -108,7 +108,7 @@ fn summary(
 fn bound(session: &PaperSession) -> Result<(f64, usize)> {
     let data = session.data(Residual::Tool, &session.exact())?;
     let free = session.free(Formulation::Adjoint);
-    let problem = Problem::new(session.of(&data, LENGTH_M), session.rows(), free, NOISE);
+    let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, NOISE);
     let n = problem.dim();
     let upper = problem.normal(&session.truth).gram;
     let gram = DMatrix::from_fn(n, n, |a, b| upper[a.min(b) * n + a.max(b)]);

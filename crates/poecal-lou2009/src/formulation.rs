@@ -47,7 +47,7 @@ impl Formulation {
         let mut parameters = Vec::with_capacity(2 * kinds.len());
         for (joint, &kind) in kinds.iter().enumerate() {
             parameters.push(if self.has_free_screws() {
-                FreeScrew::of(joint, kind)
+                FreeScrew::parameter(joint, kind)
             } else {
                 Parameter::ScrewAxis(ScrewAxis { joint, kind })
             });

@@ -19,7 +19,7 @@ pub struct FreeScrew;
 impl FreeScrew {
     /// That of a joint as a parameter.
     #[must_use]
-    pub fn of(joint: usize, kind: JointKind) -> Parameter {
+    pub fn parameter(joint: usize, kind: JointKind) -> Parameter {
         Parameter::OtherScrew(OtherScrew { joint, kind, model: &FreeScrew })
     }
 }

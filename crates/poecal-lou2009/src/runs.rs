@@ -82,7 +82,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
     let data = session.data(Residual::Spatial, &measured)?;
     let sigma = if plan.noise { NOISE } else { Noise::new(1.0, 1.0) };
     let free = session.free(plan.formulation);
-    let problem = Problem::new(session.of(&data, LENGTH_M), session.rows(), free, sigma);
+    let problem = Problem::new(session.session_with_data(&data, LENGTH_M), session.rows(), free, sigma);
     let once = Options { iterations: 1, ..Options::default() };
 
     let mut state = WatchedState::new(session.start());
@@ -114,8 +114,8 @@ fn measures(
     let held_out_rms_m = session.held_out_rms_m(estimate);
     let most = if plan.noise { NOISY_FACTOR * NOISE[Quantity::Position] } else { REACHED_M };
     let matrix = matrix(session, estimate, plan.formulation);
-    let error = ScrewError::of(estimate, &session.truth);
-    let equivalent = ScrewError::of(&estimate.without_offsets(), &session.truth.without_offsets());
+    let error = ScrewError::from_estimates(estimate, &session.truth);
+    let equivalent = ScrewError::from_estimates(&estimate.without_offsets(), &session.truth.without_offsets());
     Run {
         formulation: plan.formulation,
         measurement: plan.seen,
@@ -146,11 +146,11 @@ fn measures(
 
 /// Residual and parameter error of an estimate.
 fn iteration(session: &PaperSession, data: &Dataset, estimate: &Estimate) -> Iteration {
-    let errors = session.of(data, LENGTH_M).errors(&session.rows(), estimate);
+    let errors = session.session_with_data(data, LENGTH_M).errors(&session.rows(), estimate);
     let squares: f64 = errors.iter().map(|error| error.position_m().norm_squared()).sum();
     Iteration {
         residual_rms_m: (squares / errors.len() as f64).sqrt(),
-        screw_error_max: ScrewError::of(estimate, &session.truth).largest(),
+        screw_error_max: ScrewError::from_estimates(estimate, &session.truth).largest(),
     }
 }
 
@@ -162,7 +162,7 @@ struct ScrewError {
 }
 
 impl ScrewError {
-    fn of(found: &Estimate, truth: &Estimate) -> Self {
+    fn from_estimates(found: &Estimate, truth: &Estimate) -> Self {
         let pairs = found.screws().into_iter().zip(truth.screws());
         pairs.fold(ScrewError::default(), |worst, (a, b)| ScrewError {
             v_m: worst.v_m.max((a.v() - b.v()).amax()),

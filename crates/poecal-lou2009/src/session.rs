@@ -86,7 +86,7 @@ impl PaperSession {
     }
 
     /// The session of such data, with a length that a radian counts, metres.
-    pub(super) fn of<'a>(&'a self, data: &'a Dataset, length_m: f64) -> Session<'a> {
+    pub(super) fn session_with_data<'a>(&'a self, data: &'a Dataset, length_m: f64) -> Session<'a> {
         Session::new(&self.nominal, data, &self.packed, false).with_length(length_m)
     }
 

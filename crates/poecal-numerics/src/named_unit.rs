@@ -149,7 +149,7 @@ impl NamedUnit {
 
     /// The SI unit of the same quantity.
     #[must_use]
-    pub fn of(self) -> Unit {
+    pub fn si_unit(self) -> Unit {
         self.of
     }
 }

@@ -20,7 +20,7 @@ pub struct Axes {
 
 impl Axes {
     /// Those of a robot; factors are none.
-    pub fn of(robot: &Robot) -> Self {
+    pub fn from_robot(robot: &Robot) -> Self {
         let slides = |name: &String| {
             let joint = robot.joints.iter().find(|it| it.reading.name == *name);
             joint.is_some_and(|it| it.kind == JointKind::Prismatic)

@@ -24,7 +24,7 @@ const MM: f64 = 1e-3;
 
 impl PoseForm {
     /// The form of a language.
-    pub(crate) fn of(language: Language) -> Self {
+    pub(crate) fn from_language(language: Language) -> Self {
         match language {
             Language::UrScript => PoseForm::RotationVector,
             Language::Rapid => PoseForm::Quaternion,

@@ -127,7 +127,7 @@ fn numbers(words: &str) -> Option<Vec<f64>> {
 }
 
 fn plain_pose(words: &str, language: Language, option: &str) -> Result<Pose> {
-    let form = PoseForm::of(language);
+    let form = PoseForm::from_language(language);
     let expected = form.names();
     numbers(words).filter(|it| it.len() == expected.len()).and_then(|it| form.pose(&it)).ok_or_else(|| {
         ErrorKind::Option.error(format!(

@@ -34,7 +34,7 @@ const OTHERS: [(&[&str], &str); 7] = [
 impl Language {
     /// The language of a file by the end of its name, in letters of either case.
     #[must_use]
-    pub fn of(path: impl AsRef<Path>) -> Option<Self> {
+    pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         let end = path.as_ref().extension()?.to_str()?.to_ascii_lowercase();
         match end.as_str() {
             "script" => Some(Language::UrScript),
@@ -59,7 +59,7 @@ impl Language {
                      (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC as text (.ls)"
                 )).in_file(path))
             }
-            None => Ok(Self::of(path)),
+            None => Ok(Self::from_path(path)),
         }
     }
 
@@ -91,8 +91,8 @@ mod tests {
 
     #[test]
     fn the_end_of_a_name_tells_the_language() {
-        assert_eq!(Language::of("cell/weld.SRC"), Some(Language::Krl));
-        assert_eq!(Language::of("rows.csv"), None);
+        assert_eq!(Language::from_path("cell/weld.SRC"), Some(Language::Krl));
+        assert_eq!(Language::from_path("rows.csv"), None);
         assert_eq!(Language::of_name("rows.csv").unwrap(), None);
         assert!(
             Language::of_name("cell/WELD.JBI")

@@ -80,7 +80,7 @@ pub struct JointTargets {
 /// # Errors
 /// As [`parse`].
 pub fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<JointTargets> {
-    let parsed = parse(language, text, &Given::default(), &Axes::of(robot))?;
+    let parsed = parse(language, text, &Given::default(), &Axes::from_robot(robot))?;
     let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == Meant::Joints);
     let moved: Vec<usize> = parsed.motions.iter().map(|it| it.target).filter(is_joints).collect();
     let all: Vec<usize> = (0..parsed.targets.len()).filter(is_joints).collect();

@@ -23,7 +23,7 @@ use crate::words::{from_mm, one_of, shortened};
 /// What an argument can be read as.
 pub(crate) trait Argument<'a, 'py>: Sized {
     /// The argument `name`.
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self>;
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self>;
 }
 
 /// A function for each name of an argument, for `#[pyo3(from_py_with = …)]`, which tells no names.
@@ -101,35 +101,35 @@ macro_rules! whole_numbers {
 whole_numbers! { u32 u64 usize }
 
 impl<'a, 'py> Argument<'a, 'py> for f64 {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if let (Some(unit), true) = (units::of_name(name), value.is_instance_of::<PyString>()) {
-            return units::in_unit(<&str>::of(value, name)?, unit, name);
+            return units::in_unit(<&str>::from_argument(value, name)?, unit, name);
         }
         value.extract().map_err(|_| unexpected(name, value, "a number"))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for bool {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         value.extract().map_err(|_| unexpected(name, value, "True or False"))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for &'a str {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let text = value.cast::<PyString>().map_err(|_| unexpected(name, value, "a text"))?;
         text.to_str().map_err(|_| unexpected(name, value, "a text of Unicode characters"))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for String {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        <&str>::of(value, name).map(str::to_owned)
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        <&str>::from_argument(value, name).map(str::to_owned)
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for PathBuf {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let path: PathBuf =
             value.extract().map_err(|_| unexpected(name, value, "a path: a text, or an os.PathLike"))?;
         if path.as_os_str().is_empty() {
@@ -145,16 +145,16 @@ impl<'a, 'py> Argument<'a, 'py> for PathBuf {
 }
 
 impl<'a, 'py, T: Argument<'a, 'py>> Argument<'a, 'py> for Option<T> {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        if value.is_none() { Ok(None) } else { T::of(value, name).map(Some) }
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        if value.is_none() { Ok(None) } else { T::from_argument(value, name).map(Some) }
     }
 }
 
 impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries: Vec<Bound<'py, PyAny>> =
             value.extract().map_err(|_| unexpected(name, value, "a list"))?;
-        let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::of(entry, &format!("{name}[{at}]"));
+        let entry = |(at, entry): (usize, &Bound<'py, PyAny>)| T::from_argument(entry, &format!("{name}[{at}]"));
         entries.iter().enumerate().map(entry).collect()
     }
 }
@@ -170,23 +170,23 @@ impl Words {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Words {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyString>() {
             return Ok(Words(
-                <&str>::of(value, name)?.split(',').map(|word| word.trim().to_owned()).collect(),
+                <&str>::from_argument(value, name)?.split(',').map(|word| word.trim().to_owned()).collect(),
             ));
         }
-        Vec::of(value, name).map(Words)
+        Vec::from_argument(value, name).map(Words)
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let value = &units::listed(value, name)?;
         if value.len().is_ok_and(|length| length != 2) || value.try_iter().is_err() {
             return Err(unexpected(name, value, "two numbers"));
         }
-        match Vec::<f64>::of(value, name)?.as_slice() {
+        match Vec::<f64>::from_argument(value, name)?.as_slice() {
             [first, second] => Ok((*first, *second)),
             _ => Err(unexpected(name, value, "two numbers")),
         }
@@ -194,12 +194,12 @@ impl<'a, 'py> Argument<'a, 'py> for (f64, f64) {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let value = &units::listed(value, name)?;
         if value.try_iter().is_err() {
             return Err(unexpected(name, value, "three numbers"));
         }
-        match Vec::<f64>::of(value, name)?.as_slice() {
+        match Vec::<f64>::from_argument(value, name)?.as_slice() {
             [x, y, z] => Ok([*x, *y, *z]),
             found => Err(argument(name, format!("found {} numbers, expected three", found.len()))),
         }
@@ -207,13 +207,13 @@ impl<'a, 'py> Argument<'a, 'py> for [f64; 3] {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for RobotError {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let value = &units::listed(value, name)?;
         let (calibrated_mm, corrected_mm) = match value.try_iter() {
             Ok(_) if !value.is_instance_of::<PyString>() => {
-                <(f64, f64)>::of(value, name).map(|it| (it.0, Some(it.1)))?
+                <(f64, f64)>::from_argument(value, name).map(|it| (it.0, Some(it.1)))?
             }
-            _ => (f64::of(value, name)?, None),
+            _ => (f64::from_argument(value, name)?, None),
         };
         let calibrated_m = crate::words::size(name, calibrated_mm, from_mm)?;
         let corrected_m = corrected_mm.map(|it| crate::words::size(name, it, from_mm)).transpose()?;
@@ -238,37 +238,37 @@ pub(crate) enum Believed {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Believed {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         match value.cast::<PyString>().ok().map(|text| text.to_string_lossy().into_owned()) {
             Some(text) if text == "auto" => Ok(Believed::Auto),
             Some(text) if text.to_ascii_lowercase().ends_with(".cfg") => Ok(Believed::Of(text.into())),
-            Some(text) if text.contains(',') => <(f64, f64)>::of(value, name).map(Believed::Given),
+            Some(text) if text.contains(',') => <(f64, f64)>::from_argument(value, name).map(Believed::Given),
             Some(_) => Err(unexpected(
                 name,
                 value,
                 "two numbers, a text like \"0.5deg,5mm\", \"auto\", the path of a MOC.cfg, or None",
             )),
             None if value.is_none() => Ok(Believed::None),
-            None => <(f64, f64)>::of(value, name).map(Believed::Given),
+            None => <(f64, f64)>::from_argument(value, name).map(Believed::Given),
         }
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for GravityDirection {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyString>() {
-            return String::of(value, name)?.parse().map_err(|message: String| argument(name, message));
+            return String::from_argument(value, name)?.parse().map_err(|message: String| argument(name, message));
         }
-        crate::words::direction(<[f64; 3]>::of(value, name)?).map(GravityDirection::Known)
+        crate::words::direction(<[f64; 3]>::from_argument(value, name)?).map(GravityDirection::Known)
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Corrections {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let words = if value.is_instance_of::<PyString>() {
-            String::of(value, name)?
+            String::from_argument(value, name)?
         } else if value.is_instance_of::<PyDict>() {
-            let sizes = BTreeMap::<String, f64>::of(value, name)?;
+            let sizes = BTreeMap::<String, f64>::from_argument(value, name)?;
             sizes.iter().map(|(group, size)| format!("{group}={size:e}")).collect::<Vec<_>>().join(",")
         } else {
             return Err(unexpected(name, value, "a text, or a dict of groups of terms and their sizes"));
@@ -278,15 +278,15 @@ impl<'a, 'py> Argument<'a, 'py> for Corrections {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "a dict of names and numbers";
         let entries = value.cast::<PyDict>().map_err(|_| unexpected(name, value, expected))?;
         let entry = |(key, number): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
-            let key = String::of(&key, &format!("{name}, a key"))?;
+            let key = String::from_argument(&key, &format!("{name}, a key"))?;
             let name = format!("{name}[\"{key}\"]");
             let number = match number.cast::<PyString>() {
                 Ok(text) => units::in_si(&text.to_string_lossy(), &name)?,
-                Err(_) => f64::of(&number, &name)?,
+                Err(_) => f64::from_argument(&number, &name)?,
             };
             Ok((key, number))
         };
@@ -299,33 +299,33 @@ fn parsed<T: FromStr<Err = Error>>(value: &Bound<'_, PyAny>, name: &str, expecte
     if !value.is_instance_of::<PyString>() {
         return Err(unexpected(name, value, expected));
     }
-    String::of(value, name)?.parse().map_err(|error: Error| argument(name, error.message()))
+    String::from_argument(value, name)?.parse().map_err(|error: Error| argument(name, error.message()))
 }
 
 impl<'a, 'py> Argument<'a, 'py> for AcceptanceLimits {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         parsed(value, name, "a text, like \"0.2mm\" or \"0.2mm,max:0.5mm\"")
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for RepairLimits {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         parsed(value, name, "a text, like \"device=100mm\" or \"tool=30mm,zero=10deg\"")
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Record {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries =
             value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of keys and texts"))?;
         let entry = |(key, text): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
-            let key = String::of(&key, &format!("{name}, a key"))?;
-            let text = String::of(&text, &format!("{name}[\"{key}\"]"))?;
+            let key = String::from_argument(&key, &format!("{name}, a key"))?;
+            let text = String::from_argument(&text, &format!("{name}[\"{key}\"]"))?;
             Ok((key, text))
         };
         let entries: Vec<(String, String)> = entries.iter().map(entry).collect::<PyResult<_>>()?;
         let pairs = entries.iter().map(|(key, text)| (key.as_str(), text.as_str()));
-        Record::of(pairs).map_err(|error| argument(name, error.message()))
+        Record::from_pairs(pairs).map_err(|error| argument(name, error.message()))
     }
 }
 
@@ -333,12 +333,12 @@ impl<'a, 'py> Argument<'a, 'py> for Record {
 pub(crate) struct Links(pub(crate) Vec<(String, String)>);
 
 impl<'a, 'py> Argument<'a, 'py> for Links {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let entries =
             value.cast::<PyDict>().map_err(|_| unexpected(name, value, "a dict of names and links"))?;
         let entry = |(key, link): (Bound<'py, PyAny>, Bound<'py, PyAny>)| {
-            let key = String::of(&key, &format!("{name}, a key"))?;
-            let link = String::of(&link, &format!("{name}[\"{key}\"]"))?;
+            let key = String::from_argument(&key, &format!("{name}, a key"))?;
+            let link = String::from_argument(&link, &format!("{name}[\"{key}\"]"))?;
             Ok((key, link))
         };
         entries.iter().map(entry).collect::<PyResult<_>>().map(Links)
@@ -360,15 +360,15 @@ pub(crate) fn selection(
 pub(crate) struct Paths(pub(crate) Vec<PathBuf>);
 
 impl<'a, 'py> Argument<'a, 'py> for Paths {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let is_list = || value.extract::<Vec<Bound<'py, PyAny>>>().is_ok();
         if !value.is_instance_of::<PyString>() && is_list() {
-            return Vec::of(value, name).map(Paths);
+            return Vec::from_argument(value, name).map(Paths);
         }
         if value.extract::<PathBuf>().is_err() {
             return Err(unexpected(name, value, "a path, or a list of paths"));
         }
-        PathBuf::of(value, name).map(|path| Paths(vec![path]))
+        PathBuf::from_argument(value, name).map(|path| Paths(vec![path]))
     }
 }
 
@@ -376,7 +376,7 @@ impl<'a, 'py> Argument<'a, 'py> for Paths {
 pub(crate) struct Function(pub(crate) Py<PyAny>);
 
 impl<'a, 'py> Argument<'a, 'py> for Function {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         if value.is_instance_of::<PyBool>() && value.is_truthy()? {
             let bar = value.py().import("poecal._progress")?.getattr("Bar")?;
             return Ok(Function(bar.call0()?.unbind()));

@@ -25,7 +25,7 @@ pub(crate) struct Numbers {
 impl Numbers {
     /// The numbers of `value`, the argument `name`: float32, integers, lists and arrays of any layout become float64, and masked
     /// numbers NaN.
-    pub(crate) fn of(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
+    pub(crate) fn from_argument(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
         let unmasked = unmasked(value, name, expected)?;
         let (value, masked) = (unmasked.as_ref().unwrap_or(value), unmasked.is_some());
         let array = match value.extract::<PyReadonlyArrayDyn<'_, f64>>() {
@@ -42,7 +42,7 @@ impl Numbers {
 
     /// The same, refused if a number is not finite.
     pub(crate) fn finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
-        let numbers = Numbers::of(value, name, expected)?;
+        let numbers = Numbers::from_argument(value, name, expected)?;
         let row_length: usize = numbers.shape.iter().skip(1).product::<usize>().max(1);
         match numbers.values.iter().enumerate().find(|(_, number)| !number.is_finite()) {
             Some((at, number)) => {
@@ -222,7 +222,7 @@ pub(crate) struct Joints {
 
 impl Joints {
     /// From the argument `joints`.
-    pub(crate) fn of(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
+    pub(crate) fn from_argument(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();
         let expected = format!(

@@ -36,7 +36,7 @@ impl Naming<'_, '_> {
         let Some(limits) = self.limits else { return Ok(vec![String::new(); count]) };
         let expected = format!("shape ({count}, 2): lower and upper limit of each joint, radians or metres");
         let limits =
-            Numbers::of(limits, "limits", &expected)?.shaped(&[Some(count), Some(2)], "limits", &expected)?;
+            Numbers::from_argument(limits, "limits", &expected)?.shaped(&[Some(count), Some(2)], "limits", &expected)?;
         let key = |row: &[f64]| match row {
             [lower, upper] if lower.is_finite() && upper.is_finite() => {
                 format!(", limits = [{lower:?}, {upper:?}]")

@@ -177,13 +177,13 @@ impl Calibration {
     /// Residuals of each row, fitted or held out; an error if the calibration was read without its residuals.csv.
     #[getter]
     fn residuals(slf: &Bound<'_, Self>) -> PyResult<Residuals> {
-        Residuals::of(slf)
+        Residuals::from_calibration(slf)
     }
 
     /// Covariance of the unknowns; an error if there are no more residuals than unknowns.
     #[getter]
     fn covariance(&self) -> PyResult<Covariance> {
-        Covariance::of(self.file())
+        Covariance::from_file(self.file())
     }
 
     /// Draws the errors before and after, and those of each row: of position, if it was measured. Needs matplotlib.

@@ -23,7 +23,7 @@ pub(crate) struct Covariance {
 }
 
 impl Covariance {
-    pub(crate) fn of(file: &CalibrationFile) -> PyResult<Self> {
+    pub(crate) fn from_file(file: &CalibrationFile) -> PyResult<Self> {
         let (found, _) = file.uncertainty(&[]).map_err(raise)?;
         let names = file.unknowns().map_err(raise)?;
         let (mut unknowns, mut places) = (Vec::new(), Vec::new());

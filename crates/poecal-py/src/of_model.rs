@@ -32,7 +32,7 @@ impl OfModel {
     }
 
     /// Its error of those of all models; NaN without such a model.
-    pub(crate) fn of(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
+    pub(crate) fn select_error(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
         match self {
             OfModel::Nominal => nominal,
             OfModel::Registered => registered,

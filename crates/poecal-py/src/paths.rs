@@ -20,7 +20,7 @@ pub(crate) fn robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot
         let read = value.py().get_type::<Robot>().call_method1("read", (value,))?;
         return Ok(read.cast_into::<Robot>()?);
     }
-    <&Robot>::of(value, "robot")?;
+    <&Robot>::from_argument(value, "robot")?;
     Ok(value.cast::<Robot>()?.clone())
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn measurements<'py>(
         let read = value.py().get_type::<Measurements>().call_method1("from_csv", (value, robot))?;
         return Ok(read.cast_into::<Measurements>()?);
     }
-    <&Measurements>::of(value, name)?;
+    <&Measurements>::from_argument(value, name)?;
     Ok(value.cast::<Measurements>()?.clone())
 }
 

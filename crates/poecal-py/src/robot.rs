@@ -43,7 +43,7 @@ impl Robot {
         joints: &Bound<'py, PyAny>,
         #[pyo3(from_py_with = arg::target)] target: Option<&str>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let joints = Joints::of(joints, self.robot())?;
+        let joints = Joints::from_argument(joints, self.robot())?;
         let model = &self.model;
         let found = py
             .detach(|| predicted(model, &joints.readings, PredictionFrame::Base, target, false))
@@ -64,7 +64,7 @@ impl Robot {
     ///     Poses of shape (m, n, 4, 4), or (n, 4, 4) for one configuration.
     fn joint_poses<'py>(&self, py: Python<'py>, joints: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.robot();
-        let joints = Joints::of(joints, robot)?;
+        let joints = Joints::from_argument(joints, robot)?;
         let configurations = joints.readings.chunks_exact(robot.reading_names().len().max(1));
         let rows = configurations.len();
         let frames: Vec<_> = configurations.flat_map(|readings| robot.joint_poses(readings)).collect();

@@ -28,7 +28,7 @@ pub(crate) fn of_name(name: &str) -> Option<NamedUnit> {
 /// A text with a unit as a number in the unit of the argument.
 pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> {
     let (value, symbol) = parted(text, name, unit.symbol())?;
-    let typed = NamedUnit::parse(symbol, unit.of()).map_err(|error| {
+    let typed = NamedUnit::parse(symbol, unit.si_unit()).map_err(|error| {
         raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
     })?;
     // A number in the same unit stays as it is, to the last digit.

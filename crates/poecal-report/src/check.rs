@@ -113,21 +113,21 @@ impl Check {
                 name: robot.name.clone(),
                 base: robot.base_name.clone(),
                 tip: robot.tip_name.clone(),
-                joints: robot.joints.iter().map(|joint| JointCheck::of(robot, joint)).collect(),
+                joints: robot.joints.iter().map(|joint| JointCheck::from_joint(robot, joint)).collect(),
                 base_from_tip_at_zero: (&robot.home).into(),
                 targets: robot
                     .targets
                     .iter()
                     .map(|(name, pose)| TargetCheck { name: name.clone(), tip_from_target: pose.into() })
                     .collect(),
-                mounted: MountCheck::of(robot, &robot.mounted),
-                instruments: MountCheck::of(robot, &robot.instruments),
-                masses: MassEntry::of(robot),
+                mounted: MountCheck::all_from_mounts(robot, &robot.mounted),
+                instruments: MountCheck::all_from_mounts(robot, &robot.instruments),
+                masses: MassEntry::all_from_robot(robot),
             },
             files: measurements.map_or_else(Vec::new, |file| file.understood.clone()),
             joins: measurements.map_or_else(Vec::new, |file| file.joins.clone()),
-            sets: measurements.map(SetCounts::of),
-            sight: SightCheck::of(robot, measurements.map(|file| &file.data)),
+            sets: measurements.map(SetCounts::from_measurements),
+            sight: SightCheck::from_robot(robot, measurements.map(|file| &file.data)),
             notes: measurements.map_or_else(Vec::new, |file| file.notes.clone()),
             warnings: {
                 let doubts = model.doubts().into_iter().chain(robot.placeholder_limits());
@@ -204,10 +204,10 @@ struct MountCheck {
 }
 
 impl MountCheck {
-    fn of(robot: &Robot, mounts: &[Mount]) -> Vec<Self> {
+    fn all_from_mounts(robot: &Robot, mounts: &[Mount]) -> Vec<Self> {
         let of = |mount: &Mount| MountCheck {
             name: mount.name.clone(),
-            on: BodyEntry::of(robot, mount.body),
+            on: BodyEntry::from_body(robot, mount.body),
             base_from_frame_at_zero: (&robot.base_from(mount)).into(),
         };
         mounts.iter().map(of).collect()
@@ -232,7 +232,7 @@ fn body_words(body: &BodyEntry) -> String {
 }
 
 impl JointCheck {
-    fn of(robot: &Robot, joint: &Joint) -> Self {
+    fn from_joint(robot: &Robot, joint: &Joint) -> Self {
         let point = match joint.kind {
             JointKind::Revolute => Some(joint.screw.nearest_point(&joint.frame.translation).into()),
             JointKind::Prismatic => None,
@@ -246,7 +246,7 @@ impl JointCheck {
             reading: joint.reading.name.clone(),
             multiplier: joint.reading.multiplier,
             offset: joint.reading.offset,
-            on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
+            on: joint.stands_on.map(|body| BodyEntry::from_body(robot, body)),
         }
     }
 
@@ -290,7 +290,7 @@ fn pose_words(pose: &PoseEntry) -> String {
 }
 
 impl SetCounts {
-    fn of(file: &MeasurementFile) -> Self {
+    fn from_measurements(file: &MeasurementFile) -> Self {
         let count = |set| file.data.observations.iter().filter(|row| row.set == set).count();
         SetCounts { fit: count(Some(Set::Fit)), held_out: count(Some(Set::HeldOut)), unstated: count(None) }
     }
@@ -382,7 +382,7 @@ fn unit_words(column: &ColumnUnderstanding) -> String {
 /// Smallest and largest value, in millimetres or degrees.
 fn range_words(column: &ColumnUnderstanding) -> String {
     let (Some(min), Some(max)) = (column.min, column.max) else { return String::new() };
-    let quantity = column.unit.and_then(|unit| NamedUnit::parse_any(unit).ok()).map(NamedUnit::of);
+    let quantity = column.unit.and_then(|unit| NamedUnit::parse_any(unit).ok()).map(NamedUnit::si_unit);
     let (factor, unit) = match quantity {
         Some(Unit::Metre) => (1e3, " mm"),
         Some(Unit::Radian) => (1f64.to_degrees(), " deg"),

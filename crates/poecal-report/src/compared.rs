@@ -108,7 +108,7 @@ impl From<ChiSquare> for TestEntry {
 
 impl SideEntry {
     fn new((name, file): (&str, &CalibrationFile)) -> Self {
-        let leading = Leading::of(file);
+        let leading = Leading::from_calibration(file);
         let set = leading.set;
         let quantity = set.calibrated.leading().map(|(quantity, _)| quantity);
         let rms = leading

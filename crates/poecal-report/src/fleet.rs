@@ -38,7 +38,7 @@ pub struct PriorUse {
 }
 
 impl PriorUse {
-    fn of(rows: &[&LedgerRow]) -> Option<Self> {
+    fn from_rows(rows: &[&LedgerRow]) -> Option<Self> {
         let done: Vec<&LedgerRow> = rows.iter().copied().filter(|row| row.verdict.is_some()).collect();
         let first = done.iter().position(|row| row.by_prior)?;
         let (own, others): (Vec<&LedgerRow>, Vec<&LedgerRow>) =
@@ -109,7 +109,7 @@ impl Line {
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if a limit is of no figure.
-    pub fn of(
+    pub fn from_rows(
         rows: Vec<LedgerRow>,
         reference: Option<&str>,
         limits: &BTreeMap<String, [Option<f64>; 2]>,
@@ -126,7 +126,7 @@ impl Line {
                 name: it.name.clone(),
                 unit: it.unit,
                 spread: Series { is_size: false, ..it.clone() }.spread().filter(|_| it.is_enough())?,
-                capability: Capability::of(it, limits[0], limits[1]),
+                capability: Capability::from_series(it, limits[0], limits[1]),
             })
         };
         let of_reference = steps(&series(&of_reference));
@@ -140,7 +140,7 @@ impl Line {
         Ok(Line {
             first: first.len(),
             first_passed: first.iter().filter(|row| row.is_passed()).count(),
-            prior: PriorUse::of(&of_line),
+            prior: PriorUse::from_rows(&of_line),
             is_few: of_line.len() < FEWEST,
             outliers: outliers(&all),
             steps: found.iter().map(|step| (step.clone(), is_station(step))).collect(),

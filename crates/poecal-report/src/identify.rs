@@ -61,7 +61,7 @@ struct PicturesEntry {
 }
 
 impl PicturesEntry {
-    fn of(found: &MeasuredPictures) -> Self {
+    fn from_pictures(found: &MeasuredPictures) -> Self {
         let MeasuredPictures { count, corners, sigma_px, shared: [shift_m, turn_rad] } = *found;
         let (common_shift_mm, common_turn_deg) = (1e3 * shift_m, turn_rad.to_degrees());
         PicturesEntry { count, corners, sigma_px, common_shift_mm, common_turn_deg }
@@ -79,7 +79,7 @@ impl Identify {
     ) -> Self {
         let sigma = |quantity: Quantity| quantity.unit().shown(session.noise[quantity]);
         let is_stated = |quantity: Quantity| found.pictures.is_none() && session.kind.has(quantity);
-        let sigma = Measured::of(|quantity| is_stated(quantity).then(|| sigma(quantity)));
+        let sigma = Measured::from_fn(|quantity| is_stated(quantity).then(|| sigma(quantity)));
         Identify {
             model: model.path.display().to_string(),
             files: files.to_vec(),
@@ -87,8 +87,8 @@ impl Identify {
             frame: if session.device_free { "unknown" } else { "base" },
             configurations: found.count,
             noise: sigma,
-            pictures: found.pictures.as_ref().map(PicturesEntry::of),
-            identifiability: IdentifiabilityEntry::of(&found.identifiability),
+            pictures: found.pictures.as_ref().map(PicturesEntry::from_pictures),
+            identifiability: IdentifiabilityEntry::from_identifiability(&found.identifiability),
             expected_error: ExpectedEntry {
                 configurations: found.expected.configurations,
                 told: found.expected.determined,

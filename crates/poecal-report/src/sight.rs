@@ -17,7 +17,7 @@ pub(crate) struct SightCheck {
 
 impl SightCheck {
     /// Those of measurements, else of everything that the model names. Nothing for a chain from base to tip alone.
-    pub(crate) fn of(robot: &Robot, data: Option<&Dataset>) -> Option<Self> {
+    pub(crate) fn from_robot(robot: &Robot, data: Option<&Dataset>) -> Option<Self> {
         if robot.is_serial() && robot.instruments.is_empty() && robot.mounted.is_empty() {
             return None;
         }

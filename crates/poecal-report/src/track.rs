@@ -72,8 +72,8 @@ impl WitnessPlan {
             configurations: found.configurations.len(),
             are_new,
             noise_mm: 1e3 * found.sigma_m,
-            joints: found.joints.iter().map(|it| SightEntry::of(it, &[])).collect(),
-            invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
+            joints: found.joints.iter().map(|it| SightEntry::from_sight(it, &[])).collect(),
+            invisible: found.joints.iter().filter_map(InvisibleEntry::from_sight).collect(),
         }
     }
 
@@ -146,10 +146,10 @@ impl Track {
             tool: if found.options.tool_is_anew { "refit" } else { "same" },
             rows: found.rows,
             repeated: found.repeated,
-            explanation: found.explanation.as_ref().map(ExplanationEntry::of),
-            alternatives: found.alternatives.iter().map(ExplanationEntry::of).collect(),
-            invisible: found.joints.iter().filter_map(InvisibleEntry::of).collect(),
-            joints: found.joints.iter().map(|it| SightEntry::of(it, &found.ranges)).collect(),
+            explanation: found.explanation.as_ref().map(ExplanationEntry::from_explanation),
+            alternatives: found.alternatives.iter().map(ExplanationEntry::from_explanation).collect(),
+            invisible: found.joints.iter().filter_map(InvisibleEntry::from_sight).collect(),
+            joints: found.joints.iter().map(|it| SightEntry::from_sight(it, &found.ranges)).collect(),
             change_mm: 1e3 * found.change_m,
             left_mm: 1e3 * found.left_m,
             noise_mm: 1e3 * found.noise_m,

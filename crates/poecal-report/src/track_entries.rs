@@ -131,7 +131,7 @@ pub(crate) fn sampled(found: &JointCoverage, slides: bool) -> [f64; 2] {
 }
 
 impl SightEntry {
-    pub(crate) fn of(it: &JointSight, ranges: &[JointCoverage]) -> Self {
+    pub(crate) fn from_sight(it: &JointSight, ranges: &[JointCoverage]) -> Self {
         let range = ranges.iter().find(|range| range.joint == it.joint);
         SightEntry {
             joint: it.joint.clone(),
@@ -146,14 +146,14 @@ impl SightEntry {
 }
 
 impl InvisibleEntry {
-    pub(crate) fn of(it: &JointSight) -> Option<Self> {
+    pub(crate) fn from_sight(it: &JointSight) -> Option<Self> {
         let (word, words) = because(it.unseen?);
         Some(InvisibleEntry { joint: it.joint.clone(), because: word, words: words.to_owned() })
     }
 }
 
 impl ExplanationEntry {
-    pub(crate) fn of(found: &Explanation) -> Self {
+    pub(crate) fn from_explanation(found: &Explanation) -> Self {
         let is_of_joint = matches!(found.kind, Kind::Zero | Kind::Axis | Kind::Give | Kind::TwoZeros);
         let name = |at: usize| found.names.get(at).filter(|it| !it.is_empty()).cloned();
         let is_pair = found.kind == Kind::TwoZeros;

@@ -24,7 +24,7 @@ fn fifty_rows_are_one_threads_work() {
         let made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), kind).unwrap();
         let geometry = CalibrationOptions { corrections: Corrections::Off, ..CalibrationOptions::default() };
         let calibration = calibrate(&made.nominal, &made.data, &geometry).unwrap();
-        let residuals = Residuals::of(&made.data, &calibration);
+        let residuals = Residuals::from_calibration(&made.data, &calibration);
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         let report = Some(calibration_page(&file, &residuals).unwrap());
         let model = Model { robot: made.nominal, source: ModelSource::Toml, path: "elbow.toml".into() };

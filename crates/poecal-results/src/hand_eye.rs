@@ -60,7 +60,7 @@ impl std::str::FromStr for FrameNames {
 impl FrameNames {
     /// With base and flange as a robot calls them.
     #[must_use]
-    pub fn of(robot: &Robot) -> Self {
+    pub fn from_robot(robot: &Robot) -> Self {
         FrameNames { base: robot.base_name.clone(), flange: robot.tip_name.clone(), ..FrameNames::default() }
     }
 }

@@ -132,7 +132,7 @@ impl Model {
     /// Compiled once, and not for each kind of path.
     fn read_at(path: &Path, selection: &ChainSelection) -> Result<Self> {
         let text = source_text::read(path, MODEL)?;
-        let beside = Form::of(&text, path).and_then(|form| form.sibling(&text, path));
+        let beside = Form::from_text(&text, path).and_then(|form| form.sibling(&text, path));
         let Some(beside) = beside else { return Model::parse(&text, path, selection) };
         let table = source_text::read(
             &beside,
@@ -155,7 +155,7 @@ impl Model {
         beside: Option<(&str, &Path)>,
         selection: &ChainSelection,
     ) -> Result<Self> {
-        if let Some(form) = Form::of(text, path) {
+        if let Some(form) = Form::from_text(text, path) {
             let document = form.read(text, path, beside, selection)?;
             let robot = document.robot().clone();
             return Ok(Model {
@@ -377,7 +377,7 @@ pub(crate) fn verify(model: &Model, robot: &Robot, again: &Robot) -> Result<()> 
     if !is_same {
         return Err(export(model, "the converted model has other joints, expected the same".to_owned()));
     }
-    let Difference { position_m, rotation_rad } = Difference::of(robot, again, 1000);
+    let Difference { position_m, rotation_rad } = Difference::from_robots(robot, again, 1000);
     let tolerance_m = 1e-12 * model.robot.reach_m().max(1.0);
     if position_m <= tolerance_m && rotation_rad <= 1e-12 {
         return Ok(());

@@ -82,7 +82,7 @@ impl Record {
     /// # Errors
     /// [`ErrorKind::Option`] for a key that is not known or stands twice, a text that is too long or has control characters, a date that
     /// is none, and a temperature that is none.
-    pub fn of<'a>(pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
+    pub fn from_pairs<'a>(pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let mut record = Record::default();
         for (key, text) in pairs {
             let text = Record::checked(key, text)?;

@@ -218,7 +218,7 @@ fn close(node: Node, open: &mut [Open], found: &mut Vec<Node>) {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Vec<Node> {
+    fn nodes_of_text(text: &str) -> Vec<Node> {
         documents(text, Path::new("x"), "a message").unwrap()
     }
 
@@ -229,13 +229,13 @@ mod tests {
             "{\"a\": {\"b\": [1,\n\t2.5]}, \"c\": \"d\"}\n{\"a\":{\"b\":[]}}\n",
             "{\n  \"a\": {\"b\": [1, 2.5]},\n  \"c\": \"d\"\n}{\"a\":{\"b\":[]}}",
         ] {
-            let found = of(text);
+            let found = nodes_of_text(text);
             let list = |at: usize| found[at].get("a").unwrap().get("b").unwrap().list().unwrap();
             assert_eq!(list(0)[1].text(), Some("2.5"), "{text}");
             assert_eq!(found[0].get("c").and_then(Node::text), Some("d"));
             assert!(list(1).is_empty());
         }
-        assert_eq!(of("{\"a\":1}\n\n{\"a\":[2]}")[1].get("a").map(|it| it.line), Some(3));
+        assert_eq!(nodes_of_text("{\"a\":1}\n\n{\"a\":[2]}")[1].get("a").map(|it| it.line), Some(3));
     }
 
     #[test]

@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let robot = (1..100).map(|seed| random_chain(7, seed)).find(turns).ok_or("found no arm")?;
     let made = session(&robot, pictures.parse()?, is_free)?;
     let start = start(&robot, &made);
-    let packed = Packed::of(&robot, &made.data);
+    let packed = Packed::from_dataset(&robot, &made.data);
     let session = Session::new(&robot, &made.data, &packed, true);
     let rows = made.data.all_rows();
     let both = [PictureUnknown::Lens(0), PictureUnknown::Markers(0)];

@@ -78,7 +78,7 @@ fn write(bencher: Bencher<'_, '_>, at_hand: bool) {
     let made = session();
     let calibration =
         calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).expect("a calibration");
-    let residuals = Residuals::of(&made.data, &calibration);
+    let residuals = Residuals::from_calibration(&made.data, &calibration);
     let rows =
         if at_hand { ResidualRows::AtHand(&residuals) } else { ResidualRows::Of(&made.data, &calibration) };
     bencher

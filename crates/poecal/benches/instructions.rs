@@ -35,7 +35,7 @@ fn main() {
     let options = CalibrationOptions::default();
     let prior = {
         let packed = Packed::new(&made.nominal, made.data.all_readings(), 6);
-        Prior::of(&Session::new(&made.nominal, &made.data, &packed, false), Tolerance::default())
+        Prior::from_session(&Session::new(&made.nominal, &made.data, &packed, false), Tolerance::default())
     };
     let prior = (!is_alone).then_some((&prior, 1.0));
     let fit = || {

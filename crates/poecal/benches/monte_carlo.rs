@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [cpu_ms, wall_ms] = [begin.elapsed(), wall.elapsed()].map(|time| time.as_secs_f64() * 1e3);
 
     let iterations: usize = found.iter().map(|(_, iterations)| iterations).sum();
-    let packed = Packed::of(&robot, &held_out);
+    let packed = Packed::from_dataset(&robot, &held_out);
     let session = Session::new(&robot, &held_out, &packed, false);
     let rows = held_out.all_rows();
     let squares: f64 = found
@@ -69,7 +69,7 @@ fn fit_all(robot: &Robot, data: &Dataset, trials: &[Vec<Measurement>]) -> Vec<(E
     let mut begun = data.clone();
     begun.observations.iter_mut().zip(first).for_each(|(row, seen)| row.measurement = *seen);
     let start = delivered(robot, &begun);
-    let packed = Packed::of(robot, &begun);
+    let packed = Packed::from_dataset(robot, &begun);
     let mut free = screw_axes(start.kinds());
     free.push(Parameter::TargetFrame(TargetFrame::new(0)));
     let session = Session::new(robot, &begun, &packed, false).with_length(robot.reach_m() / 3.0);

@@ -54,7 +54,7 @@ fn solve_session(bencher: Bencher<'_, '_>, made: &Simulated) {
     let all: Vec<u32> = (0..made.data.len() as u32).collect();
     let options = CalibrationOptions::default();
     bencher.bench_local(|| {
-        let packed = Packed::of(&made.nominal, &made.data);
+        let packed = Packed::from_dataset(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, false);
         let session = session.with_length(made.nominal.reach_m() / 3.0);
         black_box(fit_screws(session, &all, start.clone(), NOISE, None, &options))
@@ -79,7 +79,7 @@ const PASS: usize = 5_000;
 fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
     let made = session(PASS, kind);
     let (data, rows) = (&made.data, made.data.all_rows());
-    let packed = Packed::of(&made.nominal, data);
+    let packed = Packed::from_dataset(&made.nominal, data);
     let session = Session::new(&made.nominal, data, &packed, true);
     let session = session.with_length(made.nominal.reach_m() / 3.0);
     let start = delivered(&made.nominal, data);

@@ -17,7 +17,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    pub(crate) fn of(screw: &Screw) -> Self {
+    pub(crate) fn from_screw(screw: &Screw) -> Self {
         Axis { w: screw.w(), point: screw.nearest_point(&Vector3::zeros()) }
     }
 

@@ -64,14 +64,14 @@ impl AllBranches {
             return None;
         }
         let mut ways = Ways::new(screws, arm.home(), (arm.reach_m(), senses), None);
-        ways.keep(ways.ranked(&Six::of(arm)));
+        ways.keep(ways.ranked(&Six::from_arm(arm)));
         Some(AllBranches { arm: arm.clone(), ways })
     }
 
     /// The configurations that have the tip at a pose of the base.
     #[must_use]
     pub fn at(&self, target: &Pose) -> Branches {
-        self.ways.branches(&Six::of(&self.arm), target)
+        self.ways.branches(&Six::from_arm(&self.arm), target)
     }
 
     /// The configurations within the arm's limits ([`Arm::limits`]) that have the tip at a pose: of each branch that one whose joints are nearest
@@ -82,7 +82,7 @@ impl AllBranches {
         for branch in self.at(target).as_slice() {
             let Some(mut q) = turned(branch, near, self.arm.limits()) else { continue };
             if !self.arm.is_rigid() {
-                newton(&Six::of(&self.arm), target, &mut q, MOST_STEPS);
+                newton(&Six::from_arm(&self.arm), target, &mut q, MOST_STEPS);
             }
             found.add(&q, 0.0);
         }
@@ -109,7 +109,7 @@ impl AllBranches {
         for (here, there) in q.iter_mut().zip(best) {
             *here += wrapped(there - *here);
         }
-        newton(&Six::of(&self.arm), target, q, MOST_STEPS)
+        newton(&Six::from_arm(&self.arm), target, q, MOST_STEPS)
     }
 }
 

@@ -42,7 +42,7 @@ impl Parallel {
         }
         let bends = axes[0].w.cross(&along).norm() > 0.1 && axes[4].w.cross(&along).norm() > 0.1;
         bends.then_some((
-            Parallel { axes, wrist, along, care: Care::of(angle.max(apart / reach_m)) },
+            Parallel { axes, wrist, along, care: Care::from_deviation(angle.max(apart / reach_m)) },
             angle,
             apart,
         ))

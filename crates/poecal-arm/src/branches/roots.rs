@@ -35,7 +35,7 @@ impl Care {
     const MOST: Self = Care { almost: 0.15, apart: 0.06, beyond: 1.6 };
 
     /// For an arm that is so far (rad, lengths over reach) from its relative, which moves double roots by the square root of that.
-    pub(crate) fn of(off: f64) -> Self {
+    pub(crate) fn from_deviation(off: f64) -> Self {
         let share = (60.0 * off.sqrt()).min(1.0);
         let Care { almost, apart, beyond } = Self::MOST;
         Care { almost: share * almost, apart: share * apart, beyond: share * beyond }

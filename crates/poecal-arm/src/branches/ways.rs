@@ -86,7 +86,7 @@ impl Ways {
         (reach_m, senses): (f64, [f64; 6]),
         ranking: Option<Ranking>,
     ) -> Self {
-        let axes = screws.map(|screw| Axis::of(&screw));
+        let axes = screws.map(|screw| Axis::from_screw(&screw));
         let mut closed: Option<(f64, Closed, bool)> = None;
         for is_reversed in [false, true] {
             let axes = reversed(&axes, is_reversed);
@@ -118,11 +118,11 @@ impl Ways {
                 let order = Order { first, is_reversed };
                 let general = self.equations(order);
                 let starts = |target: &Pose| self.starts_of_equations(&general, order, target);
-                judged.push((Judged::of(arm, starts), order));
+                judged.push((Judged::from_samples(arm, starts), order));
             }
         }
         judged.sort_by(|(one, _), (other, _)| other.worth().total_cmp(&one.worth()));
-        let closed = Judged::of(arm, |target| self.closed_starts(target));
+        let closed = Judged::from_samples(arm, |target| self.closed_starts(target));
         let order = |at: usize| judged[at].1;
         Ranking { orders: [order(0), order(1), order(2)], is_whole: judged[0].0.count >= closed.count }
     }
@@ -269,7 +269,7 @@ struct Judged {
 }
 
 impl Judged {
-    fn of(arm: &Six<'_>, starts: impl Fn(&Pose) -> Starts) -> Self {
+    fn from_samples(arm: &Six<'_>, starts: impl Fn(&Pose) -> Starts) -> Self {
         let mut judged = Judged { count: 0, doubt: 0.0 };
         for sample in 1..=SAMPLES {
             // Irrational shares of a turn are spread evenly.

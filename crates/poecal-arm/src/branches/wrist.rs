@@ -54,7 +54,7 @@ impl Wrist {
         // Wrists whose axes are almost parallel turn in two directions only.
         let bends = |one: usize, other: usize| axes[one].w.cross(&axes[other].w).norm() > 0.1;
         (bends(3, 4) && bends(4, 5))
-            .then_some((Wrist { axes, centre, care: Care::of(apart / reach_m) }, apart))
+            .then_some((Wrist { axes, centre, care: Care::from_deviation(apart / reach_m) }, apart))
     }
 
     /// Joint values of the branches for a motion `exp(ξ₁q₁) … exp(ξ₆q₆)`.

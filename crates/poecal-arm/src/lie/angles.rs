@@ -63,7 +63,7 @@ pub struct MakersAngles {
     pub angles: Angles,
 }
 
-const fn of(maker: &'static str, names: [&'static str; 3], angles: Angles) -> MakersAngles {
+const fn makers_angles(maker: &'static str, names: [&'static str; 3], angles: Angles) -> MakersAngles {
     MakersAngles { maker, names, angles }
 }
 
@@ -74,14 +74,14 @@ const fn of(maker: &'static str, names: [&'static str; 3], angles: Angles) -> Ma
 /// assert!(MAKERS.iter().any(|it| it.maker == "KUKA" && it.angles == Angles::ZYX));
 /// ```
 pub const MAKERS: [MakersAngles; 8] = [
-    of("KUKA", ["A", "B", "C"], Angles::ZYX),
-    of("FANUC", ["W", "P", "R"], Angles::ROLL_PITCH_YAW),
-    of("Yaskawa", ["Rx", "Ry", "Rz"], Angles::ROLL_PITCH_YAW),
-    of("Kawasaki", ["O", "A", "T"], Angles::ZYZ),
-    of("Comau", ["A", "E", "R"], Angles::ZYZ),
-    of("Epson", ["U", "V", "W"], Angles::ZYX),
-    of("Universal Robots", ["Rx", "Ry", "Rz"], Angles::RotationVector),
-    of("Stäubli", ["Rx", "Ry", "Rz"], Angles::XYZ),
+    makers_angles("KUKA", ["A", "B", "C"], Angles::ZYX),
+    makers_angles("FANUC", ["W", "P", "R"], Angles::ROLL_PITCH_YAW),
+    makers_angles("Yaskawa", ["Rx", "Ry", "Rz"], Angles::ROLL_PITCH_YAW),
+    makers_angles("Kawasaki", ["O", "A", "T"], Angles::ZYZ),
+    makers_angles("Comau", ["A", "E", "R"], Angles::ZYZ),
+    makers_angles("Epson", ["U", "V", "W"], Angles::ZYX),
+    makers_angles("Universal Robots", ["Rx", "Ry", "Rz"], Angles::RotationVector),
+    makers_angles("Stäubli", ["Rx", "Ry", "Rz"], Angles::XYZ),
 ];
 
 impl Angles {
@@ -122,7 +122,7 @@ impl Angles {
 
     /// Three angles of a rotation, the middle one within ±90° (from 0 to 180° where the first axis is also the last).
     #[must_use]
-    pub fn of(self, r: &Matrix3<f64>) -> [f64; 3] {
+    pub fn decompose(self, r: &Matrix3<f64>) -> [f64; 3] {
         match self {
             Angles::Intrinsic(axes) => intrinsic(axes, r),
             Angles::Extrinsic([i, j, k]) => {
@@ -227,7 +227,7 @@ mod tests {
             for k in 0..50 {
                 let k = f64::from(k);
                 let r = rotation::exp(&Vector3::new((k * 1.3).sin() * 2.0, (k * 0.7).cos(), (k * 2.1).sin()));
-                let found = angles.of(&r);
+                let found = angles.decompose(&r);
                 for numbers in [found, angles.others(found)] {
                     let apart = (angles.rotation(numbers) - r).norm();
                     assert!(apart < 1e-13, "{angles:?}: {apart:e}");

@@ -59,7 +59,7 @@ impl Freedom {
 
     /// Of these motions.
     #[must_use]
-    pub fn of(motions: impl IntoIterator<Item = usize>) -> Freedom {
+    pub fn from_motions(motions: impl IntoIterator<Item = usize>) -> Freedom {
         Freedom(motions.into_iter().fold(0, |all, motion| all | 1 << motion))
     }
 

@@ -105,7 +105,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         for (found, angle) in self.found.iter_mut().zip(&angles).take(count) {
             *found = cosines_and_sines(angle);
         }
-        let mut frame = Frames::of(&chain.start);
+        let mut frame = Frames::from_pose(&chain.start);
         for (index, link) in chain.links.iter().enumerate().take(J) {
             frame.tilt(&link.origin, link.tilt);
             if matches!(wanted, Wanted::Motions | Wanted::Steps) {

@@ -69,7 +69,7 @@ impl<const N: usize> Frames<N> {
 
     /// A frame that is the same in all configurations.
     #[inline(always)]
-    pub(crate) fn of(pose: &Pose) -> Self {
+    pub(crate) fn from_pose(pose: &Pose) -> Self {
         let column = |k: usize| [0, 1, 2].map(|row| [pose.rotation[(row, k)]; N]);
         let at = [0, 1, 2].map(|row| [pose.translation[row]; N]);
         Frames { x: column(0), y: column(1), z: column(2), at }

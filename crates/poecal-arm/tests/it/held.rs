@@ -60,10 +60,10 @@ fn limits_are_kept_by_every_joint_also_the_one_that_is_held() {
         [2.9, 2.0, 2.9, 2.0, 2.9, 2.0, 3.0].map(|it| Some((-it, it))).to_vec();
     let joints = rigid.screws().iter().enumerate();
     let joints =
-        joints.map(|(at, screw)| poecal_arm::Joint { screw: *screw, value: poecal_arm::JointValue::of(at) });
+        joints.map(|(at, screw)| poecal_arm::Joint { screw: *screw, value: poecal_arm::JointValue::from_reading(at) });
     let model =
         poecal_arm::Model { joints: joints.collect(), limits, ..poecal_arm::Model::new(7, rigid.home()) };
-    let arm = Arm::of(&model).unwrap();
+    let arm = Arm::from_model(&model).unwrap();
     let held = HeldBranches::new(&arm, None).unwrap();
     let (mut numbers, mut found) = (Numbers(8), 0);
     for _ in 0..300 {

@@ -82,7 +82,7 @@ impl Errors {
         };
         let largest = sorted(|rows| rows.iter().map(|row| row.error).max_by(f64::total_cmp));
         let first = sorted(|rows| rows.first().map(|row| row.error));
-        let found = Statistic::of(self.configurations.iter().flatten().map(|row| row.error).collect())?.p95;
+        let found = Statistic::from_errors(self.configurations.iter().flatten().map(|row| row.error).collect())?.p95;
         let count = largest.len();
         // Fewer than k of the errors lie below the quantile with this probability.
         let fewer = |k: usize| k.checked_sub(1).map_or(0.0, |k| binomial_at_most(k, count, KEPT));
@@ -184,7 +184,7 @@ mod tests {
                             (0..count).map(|_| vec![measured(error(kind, &mut random), 0.0)]).collect();
                         let found =
                             Errors { configurations: rows, components: 3 }.bounded(statistic).unwrap();
-                        match Decision::of(limit, found.from, found.to) {
+                        match Decision::from_bounds(limit, found.from, found.to) {
                             Decision::Pass => passed += 1,
                             Decision::Fail => failed += 1,
                             Decision::NotShown => {}

@@ -48,7 +48,7 @@ impl Decision {
 
     /// Of a limit and the bounds of what it is for; without an upper bound nothing is passed.
     #[must_use]
-    pub fn of(limit: f64, from: f64, to: Option<f64>) -> Self {
+    pub fn from_bounds(limit: f64, from: f64, to: Option<f64>) -> Self {
         if to.is_some_and(|to| to <= limit) {
             Decision::Pass
         } else if from > limit {
@@ -143,7 +143,7 @@ impl AcceptedLimit {
             found: value,
             from,
             to,
-            decision: Decision::of(limit.most, found.from, found.to),
+            decision: Decision::from_bounds(limit.most, found.from, found.to),
             rows: counts[0],
             configurations: counts[1],
         }
@@ -156,8 +156,8 @@ mod tests {
 
     #[test]
     fn a_limit_is_kept_above_the_bounds_and_exceeded_below() {
-        assert_eq!(Decision::of(0.2, 0.08, Some(0.11)), Decision::Pass);
-        assert_eq!(Decision::of(0.1, 0.08, Some(0.11)), Decision::NotShown);
-        assert_eq!(Decision::of(0.07, 0.08, None), Decision::Fail);
+        assert_eq!(Decision::from_bounds(0.2, 0.08, Some(0.11)), Decision::Pass);
+        assert_eq!(Decision::from_bounds(0.1, 0.08, Some(0.11)), Decision::NotShown);
+        assert_eq!(Decision::from_bounds(0.07, 0.08, None), Decision::Fail);
     }
 }

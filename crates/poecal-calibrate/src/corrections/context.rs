@@ -102,7 +102,7 @@ impl<'g> CorrectionContext<'g> {
         let weights: Option<Vec<f64>> =
             self.weights.as_ref().map(|_| sample.iter().map(|&row| self.weight(row)).collect());
         let start = estimate(model, calibrated, &data);
-        let packed = Packed::of(&model.robot, &data);
+        let packed = Packed::from_dataset(&model.robot, &data);
         let unknowns = unknowns(model, of_geometry.unknowns, &sizes.unwrap_or(Sizes::ALL));
         let session =
             Session { data: &data, robot: &model.robot, packed: &packed, unknowns: &unknowns, ..of_geometry };

@@ -49,7 +49,7 @@ pub(crate) fn effects(
         let slides = model.robot.joints[joint].kind == JointKind::Prismatic;
         let name = model.robot.joints[joint].name.clone();
         for group in TermGroup::ALL {
-            let terms = gatherer.of(joint, group);
+            let terms = gatherer.terms_of_joint(joint, group);
             if let Some(effect) = gatherer.effect((&name, group), &terms, &rows, &motions) {
                 found.push(effect);
             }
@@ -158,7 +158,7 @@ impl<'a> Gatherer<'a> {
     }
 
     /// The terms of a group at a joint, those of each of its gives apart.
-    fn of(&self, joint: usize, group: TermGroup) -> Vec<Vec<(usize, Term, f64)>> {
+    fn terms_of_joint(&self, joint: usize, group: TermGroup) -> Vec<Vec<(usize, Term, f64)>> {
         let all = self.model.terms().zip(self.model.groups.iter().zip(self.deviations));
         let mut found: BTreeMap<usize, Vec<(usize, Term, f64)>> = BTreeMap::new();
         for ((at, term), ((own, _), deviation)) in all {
@@ -255,7 +255,7 @@ impl<'a> Gatherer<'a> {
         // The terms of its gives are at other joints.
         let own: Vec<(usize, Term, f64)> = TermGroup::ALL
             .into_iter()
-            .flat_map(|group| self.of(joint, group).concat())
+            .flat_map(|group| self.terms_of_joint(joint, group).concat())
             .filter(|(at, ..)| *at == joint)
             .collect();
         let (least, most) = rows.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &row| {

@@ -117,7 +117,7 @@ impl CorrectionContext<'_> {
             return Ok(self.without_terms(model, possible, choice.clone()));
         }
         let (of_geometry, options) = (self.session, &self.geometry.run.options);
-        let packed = Packed::of(&model.robot, of_geometry.data);
+        let packed = Packed::from_dataset(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &sizes);
         let session = self.session(model, &packed, &unknowns);
         let coefficient = |it: JointTerm| estimate.coefficient(it.joint, it.term);
@@ -147,7 +147,7 @@ impl CorrectionContext<'_> {
     /// Geometry alone, with the uncertainty that terms which may be there leave.
     fn without_terms(&self, model: &CorrectionModel, possible: &Sizes, choice: SizeChoice) -> CorrectedFit {
         let (of_geometry, noise) = (self.session, self.geometry.noise());
-        let packed = Packed::of(&model.robot, of_geometry.data);
+        let packed = Packed::from_dataset(&model.robot, of_geometry.data);
         let unknowns = unknowns(model, of_geometry.unknowns, &Sizes::NONE);
         let session = self.session(model, &packed, &unknowns);
         let predicted = Predicted::new(self, &session, &self.start(model), noise);

@@ -29,7 +29,7 @@ pub fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) 
 
 /// The estimate of a robot without gives, as one of this model.
 pub(crate) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset) -> Estimate {
-    let tree = Tree::of(&model.robot, data);
+    let tree = Tree::from_robot(&model.robot, data);
     let targets = found.base_from_target.clone();
     let mut estimate = Estimate::on(&model.robot, tree, targets, found.device_from_base);
     estimate.further_devices.clone_from(&found.further_devices);

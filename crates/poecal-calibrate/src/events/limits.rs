@@ -58,7 +58,7 @@ impl FromStr for RepairLimit {
         let (number, symbol) = size.split_at(at.ok_or_else(bad)?);
         let value = number.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value > 0.0);
         let typed = NamedUnit::parse_any(symbol.trim())?;
-        let value = value.filter(|_| typed.of() == unit).ok_or_else(bad)?;
+        let value = value.filter(|_| typed.si_unit() == unit).ok_or_else(bad)?;
         Ok(RepairLimit { thing, most: typed.to_si(value) })
     }
 }

@@ -153,7 +153,7 @@ fn error_of(found: &Found<'_>) -> f64 {
 fn kept_error(found: &Found<'_>, left_out: &[u32]) -> f64 {
     let kept = found.fit.run.fit_rows.iter().copied().filter(|row| left_out.binary_search(row).is_err());
     let errors = errors_of(found, &kept.collect::<Vec<u32>>());
-    Statistic::of(errors).map_or(f64::INFINITY, |it| it.rms)
+    Statistic::from_errors(errors).map_or(f64::INFINITY, |it| it.rms)
 }
 
 /// Errors of the delivered model on some rows, millimetres or degrees.

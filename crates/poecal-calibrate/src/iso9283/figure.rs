@@ -174,7 +174,7 @@ impl FigureLimit {
             from: most(|it| it.from.max(-it.to)),
             to: most(|it| it.to.abs().max(it.from.abs())),
         };
-        let decision = Decision::of(self.most, worst.from, Some(worst.to));
+        let decision = Decision::from_bounds(self.most, worst.from, Some(worst.to));
         Ok(JudgedFigure { limit: self, worst, decision })
     }
 }

@@ -58,9 +58,9 @@ pub(crate) fn image_maps(fit: &CalibratedFit<'_>, figures: &Figures) -> Vec<Imag
     if fit.run.data.pictures.is_empty() {
         return Vec::new();
     }
-    let Some(projection) = Projection::of(fit) else { return Vec::new() };
+    let Some(projection) = Projection::from_fit(fit) else { return Vec::new() };
     let of = |(at, camera): (usize, &Camera)| {
-        let map = Grid::of(camera)?;
+        let map = Grid::from_camera(camera)?;
         map.of_camera((at, camera), fit, (&projection, figures))
     };
     cameras.iter().enumerate().filter_map(of).collect()
@@ -73,7 +73,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn of(camera: &Camera) -> Option<Self> {
+    fn from_camera(camera: &Camera) -> Option<Self> {
         let [width, height] = camera.lens.size_px.filter(|size| !size.contains(&0))?.map(f64::from);
         let cell_px = (width.max(height) / ALONG / ROUND_PX).ceil() * ROUND_PX;
         Some(Grid { cell_px, size: [width, height].map(|it| (it / cell_px).ceil() as usize) })

@@ -77,7 +77,7 @@ impl Run<'_> {
             return None;
         }
         let weights = fit.weights();
-        let information = FitInformation::of(self, ratios, (fit, &weights));
+        let information = FitInformation::from_fit(self, ratios, (fit, &weights));
         let advance = |it: &mut Optics| it.advance(self, (information.as_ref()?, fit), CHANGE);
         let next = optics.as_mut().and_then(advance);
         let pictures = next.as_ref().map_or(&self.data.pictures, |(next, _)| &next.pictures);

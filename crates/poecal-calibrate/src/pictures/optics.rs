@@ -54,7 +54,7 @@ impl BestStep {
 
 impl Optics {
     /// Of the unknowns of a session with pictures, as they are given there.
-    pub(crate) fn of(run: &Run<'_>) -> Option<Self> {
+    pub(crate) fn from_run(run: &Run<'_>) -> Option<Self> {
         let pictures = &run.data.pictures;
         let has_any = !pictures.is_empty() && !run.unknowns.pictures.is_empty();
         has_any.then(|| Optics::from_here(pictures, &run.unknowns.pictures))

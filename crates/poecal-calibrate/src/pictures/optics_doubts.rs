@@ -42,7 +42,7 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     });
     let before = remaining(fit, (&pictures.cameras, &pictures.boards))?;
     let weights = fit.robust.weights();
-    let information = FitInformation::of(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
+    let information = FitInformation::from_fit(&fit.run, &fit.noise_ratios, (&fit.robust, &weights))?;
     let tried = lenses.chain(boards).filter(held).filter_map(|unknown| {
         let optics = Optics::from_here(pictures, &[unknown]);
         let best = optics.best_step(&fit.run, &information)?;

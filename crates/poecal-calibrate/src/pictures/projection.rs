@@ -31,10 +31,10 @@ pub(crate) struct Projection {
 }
 
 impl Projection {
-    pub(crate) fn of(fit: &CalibratedFit<'_>) -> Option<Self> {
+    pub(crate) fn from_fit(fit: &CalibratedFit<'_>) -> Option<Self> {
         let CalibratedFit { run, robust, noise_ratios, optics, .. } = fit;
         let weights = robust.weights();
-        let information = FitInformation::of(run, noise_ratios, (robust, &weights))?;
+        let information = FitInformation::from_fit(run, noise_ratios, (robust, &weights))?;
         let numbers = optics.as_ref().and_then(|it| Some((it.clone(), it.best_step(run, &information)?)));
         let motions = information.of_pictures(run);
         let cameras = 0..run.data.pictures.cameras.len();

@@ -19,7 +19,7 @@ pub fn row_influence(calibration: &Calibration, data: &Dataset, rows: &[u32]) ->
     if rows.is_empty() {
         return Vec::new();
     }
-    RowInfluence::new(calibration, data).of(rows)
+    RowInfluence::new(calibration, data).influence_of_rows(rows)
 }
 
 /// [`row_influence`] in parts.
@@ -75,7 +75,7 @@ impl<'a> RowInfluence<'a> {
     }
 
     /// Influence of these rows.
-    pub fn of(&self, rows: &[u32]) -> Vec<Influence> {
+    pub fn influence_of_rows(&self, rows: &[u32]) -> Vec<Influence> {
         let (Some(normal), false) = (&self.normal, rows.is_empty()) else { return Vec::new() };
         let Calibration { fit_rows, models, robustness, .. } = self.calibration;
         let weight = |row: &u32| fit_rows.binary_search(row).map_or(0.0, |_| self.weights[*row as usize]);

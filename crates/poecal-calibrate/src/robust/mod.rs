@@ -140,7 +140,7 @@ impl RobustFit {
             let squares = ByQuantity::from_fn(|quantity| own.square(quantity));
             let whitened = task.session.whitened(observation, squares, noise);
             let square: f64 = whitened.iter().map(|(_, square)| square).sum();
-            let ratio = square / bound.of(error.dim()).powi(2);
+            let ratio = square / bound.bound(error.dim()).powi(2);
             1.0 - (1.0 - ratio.min(1.0)).powi(3)
         })
     }
@@ -148,7 +148,7 @@ impl RobustFit {
     /// Whether the robust scale of position errors is larger than elastic gears and links explain.
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
         let parts = parts(&task.session, task.rows, &self.fitted.estimate, self.fitted.noise);
-        let scale = Scale::of(parts.iter(), self.fitted.normal.dim() as f64);
+        let scale = Scale::from_rows(parts.iter(), self.fitted.normal.dim() as f64);
         task.is_suspicious(3f64.sqrt() * scale.of_lengths(self.fitted.noise))
     }
 }
@@ -184,7 +184,7 @@ fn shows_outliers(
     let shares = configurations.shares(&task.session, &found.estimate);
     task.rows.iter().zip(&parts).any(|(&row, part)| {
         let (length, components) = scale.length(part);
-        shares[row as usize] * length > bounds.of(components)
+        shares[row as usize] * length > bounds.bound(components)
     })
 }
 
@@ -315,7 +315,7 @@ impl<'c> Reweighted<'c> {
                 .zip(&parts)
                 .filter(|(row, part)| {
                     let (length, components) = self.scale.length(part);
-                    shares[**row as usize] * length <= bounds.of(components)
+                    shares[**row as usize] * length <= bounds.bound(components)
                 })
                 .map(|(&row, _)| row)
                 .collect();
@@ -333,7 +333,7 @@ impl<'c> Reweighted<'c> {
                 parts = scale::parts(&task.session, task.rows, &self.estimate, self.noise);
             }
             let kept_parts = parts.iter().zip(task.rows).filter(|(_, row)| kept.binary_search(row).is_ok());
-            self.scale = Scale::of(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);
+            self.scale = Scale::from_rows(kept_parts.map(|(part, _)| part), unknowns).at_least_rounding(self.noise);
             let change = self.reweight(task, &parts, loss);
             if change < SETTLED && found.is_some() {
                 break;

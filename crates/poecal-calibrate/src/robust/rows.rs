@@ -136,7 +136,7 @@ impl Bounds {
         Bounds::new(rows, TAILS)
     }
 
-    pub(crate) fn of(&self, components: usize) -> f64 {
+    pub(crate) fn bound(&self, components: usize) -> f64 {
         self.0[components.clamp(1, 6) - 1]
     }
 }
@@ -184,7 +184,7 @@ pub(crate) fn judge_rows(
         Robustness { loss, rows, scale: scale.0, training_rest, held_out_rest }
     };
     let of_fit = || task.rows.iter().map(|&row| (row, &rows.parts[row as usize]));
-    let scale = Scale::of(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    let scale = Scale::from_rows(of_fit().map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     if !is_judgeable(of_fit().map(|(_, part)| part), unknowns) {
         let judged = weights.iter().map(|&weight| RowJudgement { weight, suspected: false }).collect();
         return robustness(rows.with_gross(judged, scale), scale);
@@ -195,7 +195,7 @@ pub(crate) fn judge_rows(
     }
     // Suspected rows widen their own scale: judge once more without them.
     let kept = of_fit().filter(|(row, _)| !judged[*row as usize].suspected);
-    let scale = Scale::of(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
+    let scale = Scale::from_rows(kept.map(|(_, part)| part), unknowns).at_least_rounding(fitted.noise);
     robustness(rows.judged(task, fitted, scale, loss), scale)
 }
 
@@ -246,7 +246,7 @@ impl Rows {
         // Influence is computed only where it may matter: rows with a leverage near 1 have no residual to judge them by.
         let is_near = |row: &u32| {
             let (length, components) = self.length(*row, scale);
-            length > 0.5 * self.bounds.of(components)
+            length > 0.5 * self.bounds.bound(components)
         };
         let near: Vec<u32> = self.all.iter().copied().filter(is_near).collect();
         let counted: Vec<f64> = near.iter().map(|&row| self.weights[row as usize].unwrap_or(0.0)).collect();
@@ -258,7 +258,7 @@ impl Rows {
         for (&row, influence) in near.iter().zip(&found) {
             let studentized = self.shares[row as usize] * influence.studentized;
             let (_, components) = self.length(row, scale);
-            rows[row as usize].suspected = studentized > self.bounds.of(components);
+            rows[row as usize].suspected = studentized > self.bounds.bound(components);
         }
         rows
     }

@@ -41,7 +41,7 @@ pub(crate) struct Scale(pub(crate) ByQuantity<f64>);
 
 impl Scale {
     /// Scale of these rows, corrected for the unknowns in proportion: theory.md §6 (34a). 1 for a quantity that no row has.
-    pub(crate) fn of<'a>(rows: impl Iterator<Item = &'a RowParts> + Clone, unknowns: f64) -> Self {
+    pub(crate) fn from_rows<'a>(rows: impl Iterator<Item = &'a RowParts> + Clone, unknowns: f64) -> Self {
         let left = (1.0 - unknowns / count(rows.clone()).max(1) as f64).max(0.05);
         Scale(ByQuantity::from_fn(|quantity| {
             median_scale(rows.clone().map(|row| &row[quantity]), left).unwrap_or(1.0)
@@ -90,7 +90,7 @@ pub(crate) fn settle(
             part.squares *= ratio * ratio;
         }
     }
-    (settled, Scale::of(parts.iter(), unknowns).at_least_rounding(settled))
+    (settled, Scale::from_rows(parts.iter(), unknowns).at_least_rounding(settled))
 }
 
 /// Root of the median of squares over the median of χ²; `left` is the redundant share of the rows.

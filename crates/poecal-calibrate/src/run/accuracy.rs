@@ -48,7 +48,7 @@ impl Statistic {
     /// Statistic of absolute errors, with the 95 % quantile by linear interpolation between order statistics: theory.md §9. `None` without
     /// errors.
     #[must_use]
-    pub fn of(mut errors: Vec<f64>) -> Option<Self> {
+    pub fn from_errors(mut errors: Vec<f64>) -> Option<Self> {
         if errors.is_empty() {
             return None;
         }
@@ -257,11 +257,11 @@ pub fn set_accuracy(session: &Session<'_>, rows: &[u32], models: &Models) -> Set
 
 /// Statistics of one model's row errors.
 pub(crate) fn model_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> ModelAccuracy {
-    let quantities = Measured::of(|quantity| {
+    let quantities = Measured::from_fn(|quantity| {
         let shown = |length: f64| quantity.unit().shown(length);
-        Statistic::of(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
+        Statistic::from_errors(errors.iter().filter_map(|error| error.length(quantity).map(shown)).collect())
     });
     let constrained = errors.iter().filter_map(RowError::constraint_m);
-    let residual_mm = Statistic::of(constrained.map(|it| 1e3 * it).collect());
+    let residual_mm = Statistic::from_errors(constrained.map(|it| 1e3 * it).collect());
     ModelAccuracy { quantities, residual_mm, pixels: pixel_accuracy(data, rows, errors) }
 }

@@ -220,16 +220,16 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
         ("joints", Block::Axis(_)) | ("targets", Block::Target(_)) | ("frames", Block::Frame(_)) => true,
         (_, Block::Axis(joint)) => {
             let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
-            is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.of(*block))
+            is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.name_of_block(*block))
         }
         // Of all instruments by the name of the term alone.
         (_, Block::Range(_, term)) => {
-            word == term.name() || word != "*" && pattern.matches(&names.of(*block))
+            word == term.name() || word != "*" && pattern.matches(&names.name_of_block(*block))
         }
         (_, Block::Clock(_, term)) => {
-            word == term.name() || word != "*" && pattern.matches(&names.of(*block))
+            word == term.name() || word != "*" && pattern.matches(&names.name_of_block(*block))
         }
-        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.of(*block)),
+        (_, Block::Term(..) | Block::Target(_) | Block::Frame(_)) => pattern.matches(&names.name_of_block(*block)),
     };
     blocks.iter().map(is_meant).collect()
 }
@@ -240,9 +240,9 @@ fn no_range(name: &str) -> Error {
 }
 
 fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
-    let mut listed: Vec<String> = blocks.iter().take(LISTED).map(|block| names.of(*block)).collect();
+    let mut listed: Vec<String> = blocks.iter().take(LISTED).map(|block| names.name_of_block(*block)).collect();
     if blocks.len() > LISTED {
-        let last = blocks.last().map(|block| names.of(*block));
+        let last = blocks.last().map(|block| names.name_of_block(*block));
         listed.push("…".to_owned());
         listed.extend(last);
     }
@@ -267,7 +267,7 @@ fn sort_blocks<'a>(
             Block::Term(joint, term) if *is_free => unknowns.terms.push((joint, term)),
             Block::Range(station, term) if *is_free => {
                 if !data.is_ranging(station) {
-                    return Err(no_range(&names.of(block)));
+                    return Err(no_range(&names.name_of_block(block)));
                 }
                 unknowns.ranges.push((station, term));
             }

@@ -89,7 +89,7 @@ impl<'a> Run<'a> {
         let data = written(data, options.formulation.pose_residual);
         let robot = about_mean_factors(robot, &data);
         let robot = options.blocks.with_terms(robot, &data, options.gravity)?;
-        let packed = Arc::new(threads::in_pool(data.len(), || Packed::of(&robot, &data)));
+        let packed = Arc::new(threads::in_pool(data.len(), || Packed::from_dataset(&robot, &data)));
         if options.frame == DeviceFrameKnowledge::Base {
             refuse_frames(&options.blocks, &robot, &data)?;
         }

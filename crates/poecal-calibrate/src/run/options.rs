@@ -125,12 +125,12 @@ impl CalibrationOptions {
     #[must_use]
     pub(crate) fn prior(&self, session: &Session<'_>) -> Option<Prior> {
         let tolerance = self.tolerance.filter(|_| self.formulation == Formulation::default());
-        tolerance.map(|tolerance| Prior::of(session, tolerance))
+        tolerance.map(|tolerance| Prior::from_session(session, tolerance))
     }
 
     /// Prior of a fit with terms, which has one in any case.
     #[must_use]
     pub(crate) fn prior_with_terms(&self, session: &Session<'_>) -> Prior {
-        Prior::of(session, self.tolerance.unwrap_or(Tolerance::WIDE))
+        Prior::from_session(session, self.tolerance.unwrap_or(Tolerance::WIDE))
     }
 }

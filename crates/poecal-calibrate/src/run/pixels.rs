@@ -51,7 +51,7 @@ pub(crate) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) 
     for (row, error) in rows.iter().zip(errors) {
         let Some((all, own)) = seen_corners(data, *row, error) else { continue };
         unseen += all - own.len();
-        let Some(picture) = CornerError::of(&own) else { continue };
+        let Some(picture) = CornerError::from_corners(&own) else { continue };
         of_pictures.push(picture.rms_px);
         across += own.iter().map(|(_, m)| m * m).sum::<f64>();
         lengths.extend(own.iter().map(|(px, _)| *px));
@@ -80,7 +80,7 @@ pub struct CornerError {
 }
 
 impl CornerError {
-    fn of(corners: &[(f64, f64)]) -> Option<Self> {
+    fn from_corners(corners: &[(f64, f64)]) -> Option<Self> {
         let mean = |of: fn(&(f64, f64)) -> f64| corners.iter().map(of).sum::<f64>() / corners.len() as f64;
         let [px, m] = [mean(|it| it.0 * it.0), mean(|it| it.1 * it.1)].map(f64::sqrt);
         (!corners.is_empty()).then_some(CornerError { rms_px: px, rms_mm: 1e3 * m })
@@ -89,7 +89,7 @@ impl CornerError {
 
 /// The error of the corners of a row by the error of the row; `None` of a row that is no picture, or none of whose corners the model sees.
 pub fn corner_error(data: &Dataset, row: u32, error: &RowError) -> Option<CornerError> {
-    CornerError::of(&seen_corners(data, row, error)?.1)
+    CornerError::from_corners(&seen_corners(data, row, error)?.1)
 }
 
 /// The picture of a row with the pose of its board in the camera's frame as the model predicts it, by the error of the row; `None` of a row that is

@@ -5,7 +5,7 @@ use poecal_numerics::error::first_few;
 
 /// That readings are rounded, and what that costs at the tip, where `left_m` (RMS) is no less than half of it.
 pub(crate) fn rounded(session: &Session<'_>, left_m: f64) -> Option<String> {
-    let Rounding { names, step, unit, place_m2, .. } = Rounding::of(session, left_m)?;
+    let Rounding { names, step, unit, place_m2, .. } = Rounding::from_session(session, left_m)?;
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     Some(format!(
         "the readings of {} are rounded to {step} {unit}, which alone makes {:.3} mm (RMS) at the tip: write them with more digits",

@@ -72,7 +72,7 @@ pub fn accepted_by(
     model: AcceptedModel,
 ) -> Result<Acceptance> {
     check_count(subject, data)?;
-    let packed = Packed::of(subject.calibrated, data);
+    let packed = Packed::from_dataset(subject.calibrated, data);
     let judged = judged_rows(subject, subject.calibrated, data, &packed);
     let numbers: usize = judged.errors.iter().map(RowError::dim).sum();
     let fitted: usize = judged.free.iter().map(|it| it.model().columns().len()).sum();
@@ -86,7 +86,7 @@ pub fn accepted_by(
 
 impl Rows<'_> {
     fn limits(&self, limits: &[Limit]) -> Result<Vec<AcceptedLimit>> {
-        let measured = Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity, self.of(quantity)?)));
+        let measured = Quantity::ALL.into_iter().filter_map(|quantity| Some((quantity, self.errors_of_quantity(quantity)?)));
         let measured: BTreeMap<Quantity, Errors> = measured.collect();
         let own = |limit: &Limit| {
             let of_it = measured.iter().filter(|(quantity, _)| quantity.unit() == limit.unit);
@@ -101,7 +101,7 @@ impl Rows<'_> {
     }
 
     /// The errors of a quantity by configuration; `None` if no row measured it.
-    fn of(&self, quantity: Quantity) -> Option<Errors> {
+    fn errors_of_quantity(&self, quantity: Quantity) -> Option<Errors> {
         let error = |row: &u32| {
             let error = self.errors.get(self.rows.binary_search(row).ok()?)?;
             let length = self.factor * error.length(quantity)?;

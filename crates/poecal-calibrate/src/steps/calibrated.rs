@@ -46,7 +46,7 @@ impl<'a> Run<'a> {
             fit = self.fit_with(&ratios, &again, self.options.robust)?;
         }
         // A loop where there are pictures: fit, what their corners share, fit.
-        let (mut optics, mut pace) = (Optics::of(&self), pictures::Pace::default());
+        let (mut optics, mut pace) = (Optics::from_run(&self), pictures::Pace::default());
         for _ in 0..pictures::ROUNDS {
             let Some(data) = self.renewed_pictures(&ratios, &fit, (&mut optics, &mut pace)) else { break };
             self.data = Cow::Owned(data);

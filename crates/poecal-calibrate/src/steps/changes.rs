@@ -47,7 +47,7 @@ pub(crate) fn joint_changes(
     let calibrated = view.estimate;
     let actual = Robot { terms: calibrated.terms.clone(), ..nominal.with_screws(&calibrated.screws()) };
     let base = if session.base_free() { End::Free } else { End::Kept };
-    let Ok(changes) = Changes::of(nominal, &actual, base) else {
+    let Ok(changes) = Changes::from_robots(nominal, &actual, base) else {
         let joints = nominal.joints.iter().zip(&actual.joints).zip(deviations);
         let of = |(pair, deviation): (_, &Deviation)| {
             let by_steps = ChangeBySteps {

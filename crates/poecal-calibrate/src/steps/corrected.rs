@@ -32,7 +32,7 @@ impl<'a> CalibratedFit<'a> {
             corrected = fit.corrected();
         }
         let (summary, cross_validation) = fit.run.in_pool(|| {
-            let summary = FitSummary::of(&fit);
+            let summary = FitSummary::from_fit(&fit);
             let cross_validation = summary.cross_validated(&fit);
             (summary, cross_validation)
         });

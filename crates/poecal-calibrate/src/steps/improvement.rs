@@ -30,7 +30,7 @@ pub(crate) fn paired(
     [before, after]: [&[RowError]; 2],
 ) -> Measured<Improvement> {
     let groups = data.configurations(rows);
-    Measured::of(|quantity| {
+    Measured::from_fn(|quantity| {
         let sums = groups.iter().map(|group| {
             let own = group.iter().filter_map(|row| rows.binary_search(row).ok());
             own.fold([0.0, 0.0], |[a, b], at| {

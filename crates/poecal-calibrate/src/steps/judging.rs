@@ -29,7 +29,7 @@ pub(crate) struct Judging {
 
 impl Judging {
     /// Of a fit. Suspected rows do not count.
-    pub(crate) fn of(fit: &CalibratedFit<'_>, figures: &Figures) -> Self {
+    pub(crate) fn from_fit(fit: &CalibratedFit<'_>, figures: &Figures) -> Self {
         let (run, session) = (&fit.run, fit.session());
         let suspected = |row: &u32| figures.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
         let kept = |rows: &[u32]| -> Vec<u32> {

@@ -112,7 +112,7 @@ impl Calibration {
         if self.packed.is_of(&self.nominal, data) {
             return Arc::clone(&self.packed);
         }
-        Arc::new(Packed::of(&self.nominal, data))
+        Arc::new(Packed::from_dataset(&self.nominal, data))
     }
 
     /// The session of these measurements and their joint values.
@@ -140,7 +140,7 @@ impl Calibration {
     }
 
     fn solved_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
-        let packed = Packed::of(&self.nominal, data);
+        let packed = Packed::from_dataset(&self.nominal, data);
         let session = self.session(data, &packed);
         let start = match self.frame {
             DeviceFrameKnowledge::Base => self.models.nominal.clone(),

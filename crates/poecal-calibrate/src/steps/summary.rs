@@ -72,7 +72,7 @@ impl FitSummary {
     }
 
     /// The summary of a fit.
-    pub(crate) fn of(fit: &CalibratedFit<'_>) -> Self {
+    pub(crate) fn from_fit(fit: &CalibratedFit<'_>) -> Self {
         let CalibratedFit { run, robust: RobustFit { fitted, robustness }, estimate, .. } = fit;
         let (session, is_robust) = (fit.session(), robustness.loss.is_some());
         let kept = if is_robust { robustness.registrable(&run.fit_rows) } else { run.fit_rows.clone() };

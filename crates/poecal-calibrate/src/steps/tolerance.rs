@@ -29,7 +29,7 @@ impl Run<'_> {
             let run = self.with_tolerance(tolerance);
             let start = run.register();
             let fit = run.fit(start)?;
-            let validated = fit.run.in_pool(|| FitSummary::of(&fit).cross_validated(&fit));
+            let validated = fit.run.in_pool(|| FitSummary::from_fit(&fit).cross_validated(&fit));
             // Too few rows for cross-validation choose nothing.
             let Some(validated) = validated else { return Ok(self.with_tolerance(Tolerance::default())) };
             let errors = std::iter::once(&validated.random).chain(&validated.blocked).map(|it| it.rms.lead());

@@ -207,7 +207,7 @@ pub(crate) struct Grounds<'a> {
 pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     let (run, reach_m) = (&grounds.fit.run, grounds.fit.reach_m());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
-    let judging = Judging::of(grounds.fit, grounds.figures);
+    let judging = Judging::from_fit(grounds.fit, grounds.figures);
     let [no_better, unclear] = if moves_joints { judging.no_better() } else { [None, None] };
     let Judging { place, errors: [before, after], .. } = judging;
     let too_large = is_too_large(&after, reach_m).then(|| {

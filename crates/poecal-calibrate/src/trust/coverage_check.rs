@@ -133,15 +133,15 @@ pub struct JudgedRow {
 
 impl JudgedRow {
     /// A row of which nothing was promised.
-    pub(crate) fn of(error: &RowError) -> Self {
-        let errors = Measured::of(|quantity| JudgedError::of(error, quantity, None));
+    pub(crate) fn from_error(error: &RowError) -> Self {
+        let errors = Measured::from_fn(|quantity| JudgedError::from_error(error, quantity, None));
         JudgedRow { errors, inside_sampled_range: true, corners: None }
     }
 }
 
 impl JudgedError {
     /// Of a quantity, if it was measured.
-    fn of(error: &RowError, quantity: Quantity, promised: Option<Promise>) -> Option<Self> {
+    fn from_error(error: &RowError, quantity: Quantity, promised: Option<Promise>) -> Option<Self> {
         let length = error.length(quantity)?;
         let (measured, vector) = (error.measured(quantity), error.vector(quantity));
         let residual = std::array::from_fn(|k| if measured[k] { vector[k] } else { f64::NAN });
@@ -151,7 +151,7 @@ impl JudgedError {
 
 impl CoverageCheck {
     /// Of some rows.
-    fn of<'a>(rows: impl Iterator<Item = &'a JudgedRow>) -> Self {
+    fn from_rows<'a>(rows: impl Iterator<Item = &'a JudgedRow>) -> Self {
         let mut sums: ByQuantity<CoverageSums> = ByQuantity::default();
         let (mut count, mut sampled) = (0_usize, 0_usize);
         for row in rows {
@@ -160,7 +160,7 @@ impl CoverageCheck {
             sampled += usize::from(row.inside_sampled_range);
         }
         CoverageCheck {
-            parts: Measured::of(|quantity| sums[quantity].part(quantity.unit())),
+            parts: Measured::from_fn(|quantity| sums[quantity].part(quantity.unit())),
             inside_sampled_range: sampled as f64 / count.max(1) as f64,
         }
     }
@@ -176,7 +176,7 @@ impl PredictedUncertainty<'_> {
         rows: &[u32],
         errors: &[RowError],
     ) -> CoverageCheck {
-        CoverageCheck::of(self.rows(session, estimate, rows, errors).iter())
+        CoverageCheck::from_rows(self.rows(session, estimate, rows, errors).iter())
     }
 
     /// The errors of some rows with what was promised of each.
@@ -199,7 +199,7 @@ impl PredictedUncertainty<'_> {
             Observed { session, estimate, linkage: Linkage::new(estimate), chain: Chain::default() };
         let all = predicted.into_iter().zip(errors).zip(rows).map(|((predicted, error), &row)| {
             let own = session.noise_of(session.observation(row), noise);
-            let errors = Measured::of(|quantity| {
+            let errors = Measured::from_fn(|quantity| {
                 error.length(quantity)?;
                 let of_robot = observed.covariance(&predicted, row, quantity);
                 // As many components as there are numbers.
@@ -210,7 +210,7 @@ impl PredictedUncertainty<'_> {
                 let covariance = of_robot + of_noise;
                 let bound = predicted.quantiles[quantity].bound(&covariance);
                 let promised = Some(Promise { variance: covariance.trace(), bound });
-                JudgedError::of(error, quantity, promised)
+                JudgedError::from_error(error, quantity, promised)
             });
             let inside_sampled_range = inside(robot, self.coverage, data.readings(row as usize));
             JudgedRow { errors, inside_sampled_range, corners: None }
@@ -349,9 +349,9 @@ pub(crate) fn coverage_checks(
     let some = (!errors.is_empty()).then(|| InSampledRange {
         count: errors.len(),
         calibrated: model_accuracy(data, &own, &errors),
-        promised: CoverageCheck::of(inside().map(|(row, _)| row)),
+        promised: CoverageCheck::from_rows(inside().map(|(row, _)| row)),
     });
-    (CoverageCheck::of(rows.iter()), some)
+    (CoverageCheck::from_rows(rows.iter()), some)
 }
 
 /// Uncertainty of the errors that remain after device frame or targets were refitted: theory.md §9, *Coverage*.
@@ -385,7 +385,7 @@ mod tests {
     fn the_least_share_inside_is_that_of_the_worst_quantity() {
         let inside = |quantity| if quantity == Quantity::Position { 0.97 } else { 0.93 };
         let part = |quantity| PartCoverage { expected_rms: 0.67, inside_bound95: inside(quantity) };
-        let parts = Measured::of(|quantity| quantity.is_of_pose().then(|| part(quantity)));
+        let parts = Measured::from_fn(|quantity| quantity.is_of_pose().then(|| part(quantity)));
         assert_eq!(CoverageCheck { parts, inside_sampled_range: 1.0 }.least_inside(), 0.93);
     }
 }

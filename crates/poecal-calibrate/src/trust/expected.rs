@@ -36,7 +36,7 @@ pub struct Expected {
 
 impl Expected {
     /// From covariances of positions, `sqrt(mean tr P_p)` and bounds: theory.md §9 (40).
-    fn of(errors: &[Matrix3<f64>], quantile: Quantile) -> Self {
+    fn from_covariances(errors: &[Matrix3<f64>], quantile: Quantile) -> Self {
         let count = errors.len().max(1) as f64;
         let bounds = errors.iter().map(|covariance| quantile.bound(covariance));
         Expected {
@@ -146,13 +146,13 @@ impl Domain<'_> {
             (0..targets).map(|target| uncertainty.positions(&packed, target)).collect()
         };
         let errors = of(&anywhere);
-        let sampled = Expected::of(&of(&inside).concat(), quantile);
-        let nominal = NominalError::of(self, (uncertainty, sampled.sigma_m), (&inside, targets));
+        let sampled = Expected::from_covariances(&of(&inside).concat(), quantile);
+        let nominal = NominalError::new(self, (uncertainty, sampled.sigma_m), (&inside, targets));
         Expectations {
-            measured: Some(Expected::of(&of(&measured).concat(), quantile)),
+            measured: Some(Expected::from_covariances(&of(&measured).concat(), quantile)),
             sampled: Some(sampled),
             nominal: Some(nominal),
-            range: Some(Expected::of(&errors.concat(), quantile)),
+            range: Some(Expected::from_covariances(&errors.concat(), quantile)),
             parts: range_parts(robot, &ranges, &anywhere, &errors),
         }
     }

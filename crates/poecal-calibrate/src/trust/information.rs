@@ -23,7 +23,7 @@ pub(crate) struct FitInformation<'a> {
 
 impl<'a> FitInformation<'a> {
     /// Of a fit with the weights that it gave; `None` where they are not positive definite.
-    pub(crate) fn of(
+    pub(crate) fn from_fit(
         run: &'a Run<'_>,
         ratios: &'a [Noise],
         (fit, weights): (&'a RobustFit, &'a [f64]),

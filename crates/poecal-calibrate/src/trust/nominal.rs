@@ -33,7 +33,7 @@ impl NominalError {
     }
 
     /// Over rows of joint values of the session's robot, of the first targets; the delivered model is expected to err by `expected_m` there (RMS).
-    pub(crate) fn of(
+    pub(crate) fn new(
         domain: &Domain<'_>,
         (uncertainty, expected_m): (&Uncertainty, f64),
         (values, targets): (&[f64], usize),

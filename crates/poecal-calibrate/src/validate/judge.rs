@@ -177,15 +177,15 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     }
     let frame_is_common = subject.refit_frame || subject.frame == DeviceFrameKnowledge::Base;
     let nominal = (frame_is_common && subject.refit_tool).then(|| {
-        let packed = Packed::of(subject.nominal, data);
+        let packed = Packed::from_dataset(subject.nominal, data);
         model_accuracy(data, &data.all_rows(), &judged_rows(subject, subject.nominal, data, &packed).errors)
     });
-    let packed = Packed::of(subject.calibrated, data);
+    let packed = Packed::from_dataset(subject.calibrated, data);
     let rows = judged_rows(subject, subject.calibrated, data, &packed);
     let promised =
         subject.uncertainty.and_then(|predicted| promised_rows(&predicted, subject.refit_tool, &rows));
     let (promised, in_sampled_range, mut each) = match promised {
-        None => (None, None, rows.errors.iter().map(JudgedRow::of).collect::<Vec<_>>()),
+        None => (None, None, rows.errors.iter().map(JudgedRow::from_error).collect::<Vec<_>>()),
         Some(each) => {
             let (all, some) = coverage_checks(data, &each, &rows.errors);
             (Some(all), some, each)
@@ -220,7 +220,7 @@ pub fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement>
         Subject { refit_frame: subject.frame != DeviceFrameKnowledge::Base, refit_tool: true, ..*subject };
     check_count(&both, data).ok()?;
     let [before, after] = [both.nominal, both.calibrated].map(|robot| {
-        let packed = Packed::of(robot, data);
+        let packed = Packed::from_dataset(robot, data);
         judged_rows(&both, robot, data, &packed).errors
     });
     let (_, found) = paired(data, &data.all_rows(), [&before, &after]).leading()?;

@@ -85,17 +85,17 @@ pub struct Spread {
 }
 
 impl Spread {
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+    fn from_values(values: impl Iterator<Item = f64> + Clone) -> Self {
         Spread { largest: values.clone().fold(0.0, f64::max), median: median(values).unwrap_or(0.0) }
     }
 }
 
 impl Displacements {
-    fn of<'a>(places: impl Iterator<Item = &'a Compared> + Clone) -> Self {
+    fn from_comparisons<'a>(places: impl Iterator<Item = &'a Compared> + Clone) -> Self {
         Displacements {
             configurations: places.clone().count(),
-            position_m: Spread::of(places.clone().map(|it| it.moved_m)),
-            rotation_rad: Spread::of(places.map(|it| it.turned_rad)),
+            position_m: Spread::from_values(places.clone().map(|it| it.moved_m)),
+            rotation_rad: Spread::from_values(places.map(|it| it.turned_rad)),
         }
     }
 }
@@ -124,7 +124,7 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
     let tips: Vec<(Pose, Pose)> = sample.iter().map(|q| arms.tips(q)).collect();
     let base_is_known = calibration.frame == DeviceFrameKnowledge::Base;
     let fitted: Vec<(Pose, Pose)> = tips.iter().step_by(FITTED).copied().collect();
-    let taught = Taught::of(&fitted, nominal.arm_m() / 3.0, base_is_known);
+    let taught = Taught::from_tips(&fitted, nominal.arm_m() / 3.0, base_is_known);
     let (axis, about) = axis_of(&nominal);
     let mut compared: Vec<Compared> = sample
         .iter()
@@ -144,13 +144,13 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
         let name = names.get(reading)?.clone();
         let kind = nominal.joints.iter().find(|joint| joint.reading.name == name)?.kind;
         let changes = compared.iter().filter_map(|it| it.mended.as_ref()?.get(index).copied());
-        Some((name, kind, Spread::of(changes)))
+        Some((name, kind, Spread::from_values(changes)))
     };
     Some(Workspace {
         about,
         cell_m,
         cells,
-        all: Displacements::of(compared.iter()),
+        all: Displacements::from_comparisons(compared.iter()),
         joints: readings.iter().enumerate().filter(|_| is_free).filter_map(of_joint).collect(),
         needless: compared.iter().filter(|it| it.moved_m <= expected_m).count(),
         beyond_limits: compared.iter().filter(|it| it.is_beyond_limits).count(),
@@ -168,7 +168,7 @@ fn cells(compared: &mut [Compared], cell_m: f64) -> Vec<WorkspaceCell> {
         Some(WorkspaceCell {
             radius_m: radius as f64 * cell_m,
             height_m: height as f64 * cell_m,
-            displaced: Displacements::of(own.iter()),
+            displaced: Displacements::from_comparisons(own.iter()),
             expected_m: squares.map(|sum| (sum / own.len() as f64).sqrt()),
         })
     };

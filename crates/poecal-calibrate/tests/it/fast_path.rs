@@ -123,7 +123,7 @@ impl Session {
             made.device_from_base * Pose::from_xyz_rpy([0.0, 0.1, 0.2], [0.1, station as f64, 0.0])
         };
         estimate = estimate.with_further_devices((1..=case.further).map(moved).collect());
-        let packed = Packed::of(robot, &data);
+        let packed = Packed::from_dataset(robot, &data);
         let weights = (0..case.rows).map(|row| [1.0, 0.3, 0.0, 2.5][row % 4]).collect();
         let free = parameters(robot, &data, case);
         Session { robot: robot.clone(), data, packed, estimate, free, weights }

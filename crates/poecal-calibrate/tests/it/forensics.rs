@@ -71,7 +71,7 @@ fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
 
 /// Root mean square position error of the nominal robot with device and targets found, metres.
 fn registered_m(session: &Session, data: &Dataset) -> f64 {
-    let packed = Packed::of(&session.robot, data);
+    let packed = Packed::from_dataset(&session.robot, data);
     let rows: Vec<u32> = data.all_rows();
     let registration = Registration {
         session: estimate::Session::new(&session.robot, data, &packed, session.device_free).with_length(0.33),

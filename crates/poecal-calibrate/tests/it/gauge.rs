@@ -36,7 +36,7 @@ fn calibrated(made: &Simulated) -> Calibration {
 }
 
 fn packed(robot: &Robot, data: &Dataset) -> Packed {
-    Packed::of(robot, data)
+    Packed::from_dataset(robot, data)
 }
 
 /// Largest distance and angle between predictions of two estimates.
@@ -86,7 +86,7 @@ fn gauge_brings_the_screws_nearest_to_nominal_once_and_for_all() {
     for robot in robots() {
         let made = simulated(&robot, Kind::POSE);
         let chosen = calibrated(&made).models.calibrated;
-        let packed = Packed::of(&robot, &made.data);
+        let packed = Packed::from_dataset(&robot, &made.data);
         let length_m = radian_m(&robot, &packed);
         let targets = delivered(&robot, &made.data).base_from_target;
         let again = base_motion(&chosen, &robot, &targets, length_m).log().to_vector().norm();

@@ -29,7 +29,7 @@ fn all_fitted() -> CalibrationOptions {
 fn unseen_m(simulation: &Simulation, made: &Simulated, found: &Calibration) -> [f64; 2] {
     let unseen = simulation.held_out(made, Kind::POINT, 200).unwrap();
     let rms = |robot: &Robot, estimate| {
-        let packed = Packed::of(robot, &unseen);
+        let packed = Packed::from_dataset(robot, &unseen);
         let session = Session::new(robot, &unseen, &packed, true);
         let squares =
             session.errors(&unseen.all_rows(), estimate).into_iter().map(|it| it.position_m().norm_squared());

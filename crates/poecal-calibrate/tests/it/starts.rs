@@ -187,7 +187,7 @@ fn excess(session: &Session, seed: u64) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let robot = (session.robots)(seed);
     let (data, truth) = measure(session, &robot, &mut generator);
-    let packed = Packed::of(&robot, &data);
+    let packed = Packed::from_dataset(&robot, &data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let session = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
     let problem = Registration { session, rows: &rows, noise: NOISE, targets_free: true, prior: None };
@@ -227,7 +227,7 @@ fn registration_from_the_truth_is_near_it() {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let robot = (session.robots)(seed);
         let (data, truth) = measure(session, &robot, &mut generator);
-        let packed = Packed::of(&robot, &data);
+        let packed = Packed::from_dataset(&robot, &data);
         let rows: Vec<u32> = (0..ROWS as u32).collect();
         let seen = estimate::Session::new(&robot, &data, &packed, true).with_length(LENGTH_M);
         let cost = cost_from_truth(seen, &rows, truth);

@@ -51,7 +51,7 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
 /// Root mean square distance from the truth in configurations that no fit saw, metres, in the first place's frame.
 fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: &Calibration) -> f64 {
     let unseen = simulation.held_out(made, kind, 300).unwrap();
-    let packed = Packed::of(&made.nominal, &unseen);
+    let packed = Packed::from_dataset(&made.nominal, &unseen);
     let session = Session::new(&made.nominal, &unseen, &packed, true);
     let errors = session.errors(&unseen.all_rows(), &calibration.models.calibrated);
     (errors.iter().map(|error| error.position_m().norm_squared()).sum::<f64>() / 300.0).sqrt()

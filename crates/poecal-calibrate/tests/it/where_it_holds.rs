@@ -169,7 +169,7 @@ struct Trial {
 }
 
 impl Trial {
-    fn of(truth: &Truth, seed: u64) -> Self {
+    fn from_truth(truth: &Truth, seed: u64) -> Self {
         let found = calibrate(&truth.nominal, &truth.data, &truth.options).unwrap();
         let (robot, estimate, expected) = delivered(&found);
         let measured: Vec<Vec<f64>> =
@@ -212,7 +212,7 @@ fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
     let sessions = trials(200);
     for (name, of) in [("tracker", tracked as fn(u64) -> Truth), ("pictures", photographed)] {
         let all: Vec<Trial> =
-            sessions.seeds().into_par_iter().map(|seed| Trial::of(&of(seed), seed)).collect();
+            sessions.seeds().into_par_iter().map(|seed| Trial::from_truth(&of(seed), seed)).collect();
         let [measured, inside] = [0, 1].map(|k| summed(all.iter().map(|it| it.ratios[k]).collect()));
         let gains = all.iter().filter(|it| it.is_gain()).count();
         let recommended = all.iter().filter(|it| it.is_gain() && it.is_recommended()).count();

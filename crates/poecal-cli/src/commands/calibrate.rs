@@ -116,7 +116,7 @@ fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
 
 /// What is stated of the session.
 fn record(arguments: &Calibrate) -> Result<Record> {
-    Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))
+    Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))
 }
 
 /// The model, if it and measurements are named, by arguments or settings.
@@ -281,7 +281,7 @@ fn write(
 ) -> Result<String> {
     // Without a report, rows are computed while they are written.
     let place = &arguments.report;
-    let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::of(data, calibration));
+    let residuals = (!matches!(place, Some(ReportPlace::None))).then(|| Residuals::from_calibration(data, calibration));
     let own = out.join("calibration.json");
     let report = residuals.as_ref().map(|rows| page(&file, rows, &own, console)).transpose()?;
     let residuals = residuals.as_ref().map_or(ResidualRows::Of(data, calibration), ResidualRows::AtHand);

@@ -25,7 +25,7 @@ pub(super) fn certificate(arguments: &Report, console: &Console) -> Result<u8> {
             .in_file(calibration));
     }
     let stated = arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str()));
-    let record = file.record.clone().overridden(&Record::of(stated)?);
+    let record = file.record.clone().overridden(&Record::from_pairs(stated)?);
     let logo = arguments.logo.as_deref().map(logo::read).transpose()?;
     let out = arguments.out.clone().unwrap_or_else(|| calibration.with_file_name("certificate.html"));
     let existing = if arguments.force { Existing::Replaced } else { Existing::Own };

@@ -168,7 +168,7 @@ fn find_open(
     let mut doubles = doubles.iter();
     open.retain(|(_, row)| {
         let is_double = doubles.next().is_some_and(Option::is_some);
-        let last = ledger.of(row).filter(|_| ledger.has(row) && !again);
+        let last = ledger.latest_match(row).filter(|_| ledger.has(row) && !again);
         let is_freed = last.is_some_and(|it| it.exit == REFUSED && it.of_another.is_some()) && !is_double;
         failed += usize::from(last.is_some_and(|it| !is_freed && !it.is_passed()));
         last.is_none() || is_freed
@@ -181,7 +181,7 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
     open
         .iter()
         .map(|(_, row)| {
-            let other = ledger.of(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
+            let other = ledger.latest_match(row).filter(|it| !again && it.exit != REFUSED && it.inputs != row.inputs)?;
             (other.sha256(&row.file) != row.sha256(&row.file)).then(|| {
                 format!(
                     "found `{}` of {} again with other bytes, expected one file a robot and date: name it by another date, or repeat by --rerun",
@@ -382,7 +382,7 @@ fn report_of(options: &FleetReport, console: &Console) -> Result<u8> {
         let from_here = results.strip_prefix(folder).map(Path::to_owned);
         row.results = from_here.unwrap_or_else(|_| actual(results)).display().to_string();
     }
-    let line = report::Line::of(rows, station.reference.as_deref(), &station.limits)
+    let line = report::Line::from_rows(rows, station.reference.as_deref(), &station.limits)
         .map_err(|error| error.in_file(&station.path))?;
     place.write(report::fleet_page(&line))?;
     beside.write(vec![line.csv().into()])?;

@@ -44,7 +44,7 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
     let names = arguments
         .frame_names
         .clone()
-        .unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::of));
+        .unwrap_or_else(|| robot.map_or_else(FrameNames::default, FrameNames::from_robot));
     let result =
         HandEyeResult { found: &found, poses: &poses, names: &names, command: &command, arm: arm.as_ref() };
     let found = Frames {

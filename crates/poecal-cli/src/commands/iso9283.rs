@@ -21,7 +21,7 @@ use crate::{DONE, WORSE};
 pub(crate) fn iso9283(arguments: &Iso9283, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let place = arguments.place.reserve(&arguments.inputs(), console)?;
-    let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let model = model(arguments.robot.as_ref(), &arguments.chain, console)?;
     let options = TestOptions {
         reading: arguments.meaning.options()?,

@@ -21,7 +21,7 @@ pub(crate) fn report(arguments: &Report, console: &Console) -> Result<u8> {
     let path = arguments.residuals.clone().unwrap_or_else(|| beside("residuals.csv"));
     let existing = if arguments.force { Existing::Replaced } else { Existing::Own };
     let place = FilePlace::reserve(&out, existing, &[&arguments.calibration, &path], &mut console.warner())?;
-    let stated = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let stated = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let mut file = CalibrationFile::read(&arguments.calibration)?;
     file.record = file.record.overridden(&stated);
     let residuals = Residuals::read(&path)?;

@@ -24,7 +24,7 @@ use crate::{DONE, WORSE};
 pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) -> Result<u8> {
     refuse_repeats(&arguments.measurements)?;
     let (place, page) = reserve(arguments, console)?;
-    let record = Record::of(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
+    let record = Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))?;
     let stated = Stated {
         calibration: &arguments.calibration,
         reference: &arguments.reference,

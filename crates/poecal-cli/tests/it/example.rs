@@ -26,7 +26,7 @@ fn both_models_of_the_example_are_the_same_robot() {
         let path = root().join("examples/elbow").join(name);
         poecal_results::model::Model::read(path, &Default::default()).unwrap().robot
     };
-    let difference = poecal_formats::proof::Difference::of(&read("robot.urdf"), &read("robot.toml"), 1000);
+    let difference = poecal_formats::proof::Difference::from_robots(&read("robot.urdf"), &read("robot.toml"), 1000);
     // Rounding of the two texts' numbers along six joints.
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
 }

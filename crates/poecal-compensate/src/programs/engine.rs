@@ -69,7 +69,7 @@ impl<'e> Engine<'e> {
                 let held: Vec<(usize, f64)> = self.external.iter().copied().zip(values).collect();
                 let (nominal, actual) = self.robots;
                 let readings = Compensation::holding(nominal, actual, self.factors, &held, self.options)?;
-                place.insert(PoseCompensation::of(readings));
+                place.insert(PoseCompensation::from_compensation(readings));
             }
         }
         Ok(())

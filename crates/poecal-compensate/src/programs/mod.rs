@@ -46,7 +46,7 @@ pub struct ProgramOptions {
 impl ProgramOptions {
     /// Of a language, nothing else stated.
     #[must_use]
-    pub fn of(language: Language) -> Self {
+    pub fn new(language: Language) -> Self {
         ProgramOptions {
             language,
             given: Given::default(),
@@ -76,7 +76,7 @@ pub fn compensate_program(
     let counting = counting.map(Controller::counting).transpose()?;
     let mut engine = Engine::new((nominal, actual), factors, &options.given, &options.change)?;
     engine.counting = counting;
-    let axes = Axes::of(nominal);
+    let axes = Axes::from_robot(nominal);
     if let Some(start) = options.given.start.as_ref().filter(|it| it.len() != axes.count()) {
         return ErrorKind::Option.refuse(format!(
             "found {} readings as the start, expected one of each joint: {}",
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn a_robot_that_is_as_drawn_leaves_every_byte() {
         let robot = poecal_testing::sessions::unlimited_elbow();
-        let options = ProgramOptions::of(Language::UrScript);
+        let options = ProgramOptions::new(Language::UrScript);
         let program = b"movej([0, 0, 0, 0, 0.5, 0])\n";
         let (text, summary) = compensate_program(program, (&robot, &robot), &[], &options).unwrap();
         assert!(summary.is_whole() && summary.corrected == 1);

@@ -34,12 +34,12 @@ impl PoseCompensation {
     /// # Errors
     /// As [`Compensation::new`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
-        Ok(PoseCompensation::of(Compensation::new(nominal, actual, factors, options)?))
+        Ok(PoseCompensation::from_compensation(Compensation::new(nominal, actual, factors, options)?))
     }
 
     /// By a compensation of readings.
     #[must_use]
-    pub fn of(compensation: Compensation) -> Self {
+    pub fn from_compensation(compensation: Compensation) -> Self {
         let branches = AllBranches::new(compensation.nominal());
         PoseCompensation { compensation, branches }
     }

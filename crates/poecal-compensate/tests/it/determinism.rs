@@ -25,7 +25,7 @@ fn calibrations_with_one_thread_and_with_two_are_bit_identical() {
                     let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                     let mut rows = Vec::new();
                     ResidualRows::Of(&made.data, &calibration).write_to(&mut rows).unwrap();
-                    assert!(rows == Residuals::of(&made.data, &calibration).text().into_bytes());
+                    assert!(rows == Residuals::from_calibration(&made.data, &calibration).text().into_bytes());
                     (format!("{calibration:?}"), rows)
                 })
             };

@@ -19,7 +19,7 @@ const BESIDE: &str = r#"<robot name="arm"><link name="base_link"/><link name="ba
 <joint name="two" type="revolute"><parent link="upper"/><child link="fore"/><origin xyz="0.2 0 0"/><axis xyz="0 1 0"/><limit lower="-3" upper="3"/></joint>
 <joint name="end" type="fixed"><parent link="fore"/><child link="tool0"/><origin xyz="0.5 0 0"/></joint></robot>"#;
 
-fn of(text: &str, base: &str, tip: Option<&str>) -> UrdfDocument {
+fn parse_urdf(text: &str, base: &str, tip: Option<&str>) -> UrdfDocument {
     let tip_link = tip.map(str::to_owned);
     let selection =
         ChainSelection { base_link: Some(base.to_owned()), tip_link, ..ChainSelection::default() };
@@ -28,13 +28,13 @@ fn of(text: &str, base: &str, tip: Option<&str>) -> UrdfDocument {
 
 #[test]
 fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
-    let base_link = of(BESIDE, "base_link", Some("tool0"));
+    let base_link = parse_urdf(BESIDE, "base_link", Some("tool0"));
     let plate_from_base = Pose::from_xyz_rpy([0.1, 0.0, -0.05], [0.0, 0.0, std::f64::consts::PI]);
     let base_link_from_base = Pose::from_xyz_rpy([0.0, 0.0, 0.02], [0.0, 0.0, 0.3]) * plate_from_base;
     let q = [0.4, -0.7];
     let in_base_link = base_link.robot().forward_kinematics(&q);
     for tip in [Some("tool0"), None] {
-        let base = of(BESIDE, "base", tip);
+        let base = parse_urdf(BESIDE, "base", tip);
         assert_eq!(base.robot().base_name, "base");
         let (metres, radians) =
             (base_link_from_base * base.robot().forward_kinematics(&q)).apart(&in_base_link);
@@ -196,7 +196,7 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
     for (language, text, count) in
         [(Language::Rapid, rapid, 3), (Language::Krl, krl, 2), (Language::Fanuc, fanuc, 1)]
     {
-        let mut options = ProgramOptions { check: true, ..ProgramOptions::of(language) };
+        let mut options = ProgramOptions { check: true, ..ProgramOptions::new(language) };
         if language == Language::Krl {
             options.given.add_tool("0,0,0,0,0,0", language).unwrap();
             options.given.add_frame("0,0,0,0,0,0", language).unwrap();
@@ -214,7 +214,7 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
     }
     // Without a value there is no place.
     let lacking = "MODULE M\nPROC main()\nMoveAbsJ [[10,20,-15,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
-    let options = ProgramOptions::of(Language::Rapid);
+    let options = ProgramOptions::new(Language::Rapid);
     let (_, summary) = compensate_program(lacking.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
     assert!(
         summary.changes.listed[0]

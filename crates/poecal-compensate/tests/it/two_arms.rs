@@ -189,7 +189,7 @@ fn of_left(chain: &Robot, data: &Dataset) -> Dataset {
 /// Error of the corrected model on other rows, metres (RMS).
 fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>) -> f64 {
     let found = calibration.correction.as_ref().unwrap();
-    let packed = Packed::of(&found.model.robot, unseen);
+    let packed = Packed::from_dataset(&found.model.robot, unseen);
     let session = Session::new(&found.model.robot, unseen, &packed, true);
     let is_own = |row: &u32| unseen.targets[unseen.observations[*row as usize].target].as_deref() == target;
     let rows: Vec<u32> = unseen.all_rows().into_iter().filter(is_own).collect();

@@ -62,7 +62,7 @@ pub(crate) struct Decoded {
 
 impl Decoded {
     /// Decodes a file of at most so many pixels; an error says what is wrong with it.
-    pub(crate) fn of(bytes: &[u8], most: u64) -> std::result::Result<Self, Undecoded> {
+    pub(crate) fn from_bytes(bytes: &[u8], most: u64) -> std::result::Result<Self, Undecoded> {
         if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             return of_png(bytes, most);
         }

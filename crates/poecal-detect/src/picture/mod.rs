@@ -37,7 +37,7 @@ impl Turned {
     }
 
     /// By the orientation of EXIF, 1 to 8.
-    fn of(orientation: u8) -> Self {
+    fn from_exif(orientation: u8) -> Self {
         let (degrees, mirrored) = match orientation {
             2 => (0, true),
             3 => (180, false),
@@ -118,7 +118,7 @@ impl Picture {
             )),
             too_large: None,
         };
-        let decoded = Decoded::of(bytes, most_pixels).map_err(|found| match found {
+        let decoded = Decoded::from_bytes(bytes, most_pixels).map_err(|found| match found {
             Undecoded::Broken(reason) => no_picture(&reason),
             Undecoded::Large([width, height]) => Undecodable {
                 error: Error::new(format!(
@@ -128,7 +128,7 @@ impl Picture {
                 too_large: Some([width, height]),
             },
         })?;
-        let turned = Turned::of(decoded.orientation);
+        let turned = Turned::from_exif(decoded.orientation);
         let gray = decoded.gray().map_err(|error| no_picture(&error))?;
         drop(decoded);
         let gray = turned.apply(gray).map_err(|error| no_picture(&error))?;

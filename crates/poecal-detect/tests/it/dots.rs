@@ -14,7 +14,7 @@ fn middles_of_dots_at_all_tilts() {
     let draw = |low: f64, high: f64| Draw { tilt_deg: [low, high], ..Draw::default() };
     for (low, high) in [(0.0, 30.0), (45.0, 60.0)] {
         let trials = trials(12).at_least(3);
-        let tally = Tally::of("circles:9x6:30mm", &draw(low, high), trials.count);
+        let tally = Tally::from_drawn_pictures("circles:9x6:30mm", &draw(low, high), trials.count);
         // OpenCV has 71 % of such pictures, 0.035 px below 30° and 0.114 px above 45°, where the middle of an ellipse is off.
         assert!(tally.part() >= 0.97 - trials.more(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     }
@@ -24,7 +24,7 @@ fn middles_of_dots_at_all_tilts() {
 fn dots_of_an_asymmetric_grid() {
     let draw = Draw { square_px: [28.0, 78.0], ..Draw::default() };
     let trials = trials(16).at_least(4);
-    let tally = Tally::of("circles:4x11:20mm:asymmetric", &draw, trials.count);
+    let tally = Tally::from_drawn_pictures("circles:4x11:20mm:asymmetric", &draw, trials.count);
     assert!(tally.part() >= 0.96 - trials.more(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     // 68 % of a normal error, within what 1000 numbers leave open, and the smallest sigma, which is a floor.
     assert!((0.60..0.78).contains(&tally.within()));

@@ -18,7 +18,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn of(spec: &str, draw: &Draw, pictures: usize) -> Self {
+    pub(crate) fn from_drawn_pictures(spec: &str, draw: &Draw, pictures: usize) -> Self {
         let detector = Detector::new(&spec.parse().unwrap());
         let mut tally = Tally::default();
         for number in 0..pictures {
@@ -74,7 +74,7 @@ impl Tally {
 
 #[test]
 fn corners_of_a_charuco_board() {
-    let tally = Tally::of(
+    let tally = Tally::from_drawn_pictures(
         "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
         &Draw::default(),
         trials(40).at_least(10).count,
@@ -87,7 +87,7 @@ fn corners_of_a_charuco_board() {
 
 #[test]
 fn corners_of_a_chessboard() {
-    let tally = Tally::of("chessboard:10x7:28mm", &Draw::default(), trials(40).at_least(10).count);
+    let tally = Tally::from_drawn_pictures("chessboard:10x7:28mm", &Draw::default(), trials(40).at_least(10).count);
     // As above: OpenCV has 72 % and 0.12 px.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.within()));
@@ -95,14 +95,14 @@ fn corners_of_a_chessboard() {
 
 #[test]
 fn corners_of_a_board_that_looks_the_same_from_both_ends() {
-    let tally = Tally::of("chessboard:8x6:30mm", &Draw::default(), trials(20).at_least(5).count);
+    let tally = Tally::from_drawn_pictures("chessboard:8x6:30mm", &Draw::default(), trials(20).at_least(5).count);
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
 }
 
 #[test]
 fn corners_of_the_old_pattern() {
     let tally =
-        Tally::of("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).at_least(5).count);
+        Tally::from_drawn_pictures("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).at_least(5).count);
     // Markers leave a fifth of a square plain: fewer pixels than on the first board.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.08 && tally.farthest < 1.0);
 }
@@ -118,7 +118,7 @@ fn corners_of_dim_and_noisy_pictures() {
         ..Draw::default()
     };
     for spec in ["charuco:7x5:36.195mm:18.256mm:DICT_6X6_250", "chessboard:10x7:28mm"] {
-        let tally = Tally::of(spec, &draw, 6);
+        let tally = Tally::from_drawn_pictures(spec, &draw, 6);
         // A fifth of the contrast has five times the error.
         assert!(tally.part() >= 0.9 && tally.rms_px() <= 0.25);
     }

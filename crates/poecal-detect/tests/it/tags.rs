@@ -14,7 +14,7 @@ fn corners_of_loose_tags() {
         ("tags:DICT_6X6_250:50mm", steep, 0.08),
     ] {
         let trials = trials(16).at_least(4);
-        let tally = Tally::of(spec, &draw, trials.count);
+        let tally = Tally::from_drawn_pictures(spec, &draw, trials.count);
         // A tag that is covered in part is not read, though some of its corners are seen.
         assert!(
             tally.part() >= 0.94 - trials.more(0.06) && tally.rms_px() <= limit_px && tally.farthest < 1.0
@@ -26,7 +26,7 @@ fn corners_of_loose_tags() {
 
 #[test]
 fn corners_of_kalibrs_grid() {
-    let tally = Tally::of("aprilgrid:6x6:88mm:0.3", &Draw::default(), trials(16).at_least(4).count);
+    let tally = Tally::from_drawn_pictures("aprilgrid:6x6:88mm:0.3", &Draw::default(), trials(16).at_least(4).count);
     // As of a ChArUco board: two edges cross.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.within()));

@@ -164,7 +164,7 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
 /// As [`identify`].
 pub fn identify_measured(robot: &Robot, data: &Dataset, planned: &PlannedSession) -> Result<Foresight> {
     check_unknowns(robot, data.station_count() + data.targets.len())?;
-    let packed = Packed::of(robot, data);
+    let packed = Packed::from_dataset(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
     let registration =
@@ -199,7 +199,7 @@ fn foresee(
     mut estimate: Estimate,
     planned: &PlannedSession,
 ) -> Result<Foresight> {
-    let packed = Packed::of(robot, data);
+    let packed = Packed::from_dataset(robot, data);
     let rows: Vec<u32> = data.all_rows();
     let session = Session::new(robot, data, &packed, planned.device_free);
     estimate.recentre(&session, &rows);

@@ -111,7 +111,7 @@ mod tests {
     fn rows_side_by_side_are_judged_as_each_alone_at_every_level() {
         let robot = &elbow();
         let data = &mixed(robot, 45);
-        let packed = Packed::of(robot, data);
+        let packed = Packed::from_dataset(robot, data);
         let estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
         let mut free = screw_axes(estimate.kinds());
         free.push(Parameter::TargetFrame(TargetFrame::new(0)));
@@ -161,7 +161,7 @@ mod tests {
     fn columns_side_by_side_are_those_of_each_row_at_every_level() {
         for (robot, turned_rad) in [elbow(), scara(), gantry()].iter().zip([0.01, 0.4, 3.0]) {
             let data = turned(robot, turned_rad);
-            let packed = Packed::of(robot, &data);
+            let packed = Packed::from_dataset(robot, &data);
             let other = robot.home * Pose::from_translation(Vector3::new(0.1, 0.0, 0.2));
             let device_from_base = Pose::from_xyz_rpy([0.5, -1.0, 0.2], [0.3, -0.2, 1.2]);
             let estimate = Estimate::new(robot, vec![robot.home, other], device_from_base);

@@ -104,8 +104,8 @@ fn direction(setup: &Setup<'_>, by: &[Block], joints: &[Zero], directions: usize
         stations: session.data.stations.clone(),
     };
     let zeros: Vec<String> =
-        joints.iter().map(|(joint, _)| all.of(Block::Term(*joint, Term::OFFSET))).collect();
-    let hidden: Vec<String> = by.iter().map(|it| all.of(*it)).collect();
+        joints.iter().map(|(joint, _)| all.name_of_block(Block::Term(*joint, Term::OFFSET))).collect();
+    let hidden: Vec<String> = by.iter().map(|it| all.name_of_block(*it)).collect();
     let has = |wanted: &dyn Fn(&Block) -> bool| by.iter().any(wanted);
     let frame = has(&|it| matches!(it, Block::Frame(_))).then_some("the place of the device");
     let target = has(&|it| matches!(it, Block::Target(_))).then_some("the place of the target");

@@ -37,7 +37,7 @@ fn joints(robot: &Robot, tree: &Tree, sight: Sight) -> Vec<String> {
 }
 
 fn of_rows(robot: &Robot, data: &Dataset) -> Vec<Way> {
-    let tree = Tree::of(robot, data);
+    let tree = Tree::from_robot(robot, data);
     let mut known: BTreeMap<_, (Sight, usize)> = BTreeMap::new();
     for row in &data.observations {
         let sight = Sight::from(row);

@@ -31,7 +31,7 @@ impl<'a, 'd> FewTargets<'a, 'd> {
     }
 
     /// The targets with the most rows; all of them if they are few.
-    pub(crate) fn of(fitter: &'d Fitter<'a>, all: &'d Dataset) -> Self {
+    pub(crate) fn new(fitter: &'d Fitter<'a>, all: &'d Dataset) -> Self {
         if FewTargets::are_all(all) {
             return FewTargets { fitter: Cow::Borrowed(fitter), data: Cow::Borrowed(all), kept: None };
         }

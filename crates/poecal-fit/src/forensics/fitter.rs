@@ -134,7 +134,7 @@ impl<'a> Fitter<'a> {
     }
 
     pub(crate) fn packed(&self, data: &Dataset) -> Packed {
-        Packed::of(self.robot, data)
+        Packed::from_dataset(self.robot, data)
     }
 
     pub(crate) fn session<'b>(&'b self, data: &'b Dataset, packed: &'b Packed) -> Session<'b> {

@@ -70,7 +70,7 @@ impl ReadingColumns {
         users.next().filter(|_| users.next().is_none())
     }
 
-    fn of(&self, kind: ReadingKind) -> Vec<usize> {
+    fn columns_of_kind(&self, kind: ReadingKind) -> Vec<usize> {
         (0..self.kinds.len()).filter(|&column| self.kinds[column] == kind).collect()
     }
 }
@@ -82,7 +82,7 @@ pub(crate) fn joint_units(columns: &ReadingColumns) -> Vec<Hypothesis> {
         (ReadingKind::Angle, 180.0 / PI, "degrees", "radians"),
         (ReadingKind::Length, 1e3, "millimetres", "metres"),
     ] {
-        let members = columns.of(kind);
+        let members = columns.columns_of_kind(kind);
         let mut sets: Vec<Vec<usize>> = members.iter().map(|&column| vec![column]).collect();
         if members.len() > 1 {
             sets.insert(0, members);
@@ -138,7 +138,7 @@ pub(crate) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
 /// A revolute joint's readings as sum or difference with those of the revolute joint before it, as where a controller states the third axis
 /// relative to the horizontal.
 pub(crate) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
-    let turning = columns.of(ReadingKind::Angle);
+    let turning = columns.columns_of_kind(ReadingKind::Angle);
     let mut all = Vec::new();
     for (&before, &column) in turning.iter().zip(turning.iter().skip(1)) {
         for (own, factor) in [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)] {

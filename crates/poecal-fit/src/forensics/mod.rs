@@ -144,7 +144,7 @@ fn of_rows(
             return None;
         }
         let all = taken(data, rows);
-        let few = FewTargets::of(fitter, &all);
+        let few = FewTargets::new(fitter, &all);
         places::known_length(fitter, data, &all).or_else(|| judge::of_lengths(&few, &all))
     };
     if let Some(estimate) = options.calibrated
@@ -154,7 +154,7 @@ fn of_rows(
     }
     // A copy of all rows costs more than the fits.
     let all = LazyCell::new(|| taken(data, rows));
-    let many = (!FewTargets::are_all(data)).then(|| FewTargets::of(fitter, &all));
+    let many = (!FewTargets::are_all(data)).then(|| FewTargets::new(fitter, &all));
     let (estimate, base) = match &many {
         Some(few) => few.fitter.judged(&sampled(&few.data)),
         None => fitter.judged(&sample_of(data, rows)),
@@ -163,7 +163,7 @@ fn of_rows(
     if fitter.is_sound(&whole, &placed) {
         return targets::names(fitter, data, &placed).or_else(of_lengths);
     }
-    let few = many.unwrap_or_else(|| FewTargets::of(fitter, &all));
+    let few = many.unwrap_or_else(|| FewTargets::new(fitter, &all));
     targets::rows(fitter, data, &all, rows, &base)
         .or_else(|| places::names(fitter, data, &all, rows, &placed, &base))
         .or_else(|| places::known_length(fitter, data, &all))

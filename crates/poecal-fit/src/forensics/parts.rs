@@ -50,6 +50,6 @@ fn registered_m(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> f64 {
         return fitter.registered(&sample_of(data, rows)).1.total_m;
     }
     let all = taken(data, rows);
-    let few = FewTargets::of(fitter, &all);
+    let few = FewTargets::new(fitter, &all);
     few.fitter.registered(&sampled(&few.data)).1.total_m
 }

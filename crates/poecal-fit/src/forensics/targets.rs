@@ -98,7 +98,7 @@ fn pairs(fitter: &Fitter<'_>, all: &Dataset) -> Vec<(usize, usize)> {
     let mut votes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for range in starts(all) {
         let part = taken(all, &range.map(|row| row as u32).collect::<Vec<_>>());
-        let few = FewTargets::of(fitter, &part);
+        let few = FewTargets::new(fitter, &part);
         let (estimate, _) = few.fitter.judged(&sampled(&few.data));
         vote(fitter, all, &few.placed(fitter, &part, &estimate), &mut votes);
     }

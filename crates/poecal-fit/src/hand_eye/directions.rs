@@ -55,7 +55,7 @@ struct Distances {
 }
 
 impl Distances {
-    fn of(frames: &Frames, flange: &[Pose], camera: CameraPlace) -> Self {
+    fn from_frames(frames: &Frames, flange: &[Pose], camera: CameraPlace) -> Self {
         let (of_camera, of_target) = (frames.outer.translation.norm(), frames.inner.translation.norm());
         let (on_flange, in_base) = match camera {
             CameraPlace::InHand => (of_camera, of_target),
@@ -128,13 +128,13 @@ pub(crate) fn found(
     let target_is_open = options.target_inverted.is_none() && may_be_turned;
     let arm_is_open = options.flange_inverted.is_none();
     let Some((_, frames_inverted, _)) = better else {
-        let distances = Distances::of(&frames, flange, camera);
+        let distances = Distances::from_frames(&frames, flange, camera);
         let is_exchanged = !distances.is_plausible() && distances.on_flange > distances.in_base;
         let is_open = !stated && (arm_is_open || target_is_open);
         return Ok((usual, (is_open && is_exchanged).then(|| exchanged(distances, camera))));
     };
     // Of the arm's list inverted; of the target's list inverted, and of the other end, camera and target are exchanged.
-    let distances = Distances::of(&frames_inverted, flange, camera);
+    let distances = Distances::from_frames(&frames_inverted, flange, camera);
     let target_as_stated = options.target_inverted.is_some() || may_be_as_read;
     if arm_is_open && target_as_stated && distances.is_plausible() {
         return Ok((inverted, Some(said(&inverted, camera))));

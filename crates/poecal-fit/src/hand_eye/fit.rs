@@ -43,7 +43,7 @@ pub(crate) struct Fit {
 
 impl Fit {
     /// Fits all rows. `None` where they do not determine the frames.
-    pub(crate) fn of(pairs: &[Pair]) -> Option<Self> {
+    pub(crate) fn from_pairs(pairs: &[Pair]) -> Option<Self> {
         Fit::from_start(pairs, start(pairs, STARTS)?)
     }
 
@@ -265,5 +265,5 @@ fn rough_noise(pairs: &[Pair], frames: &Frames) -> Noise {
     let scale = 1.0 / chi_square_median(3).sqrt();
     // Four poses fit themselves.
     let few = (1.0 + 4.0 / pairs.len() as f64).min(2.0);
-    Noise::of(few * scale * shift, few * scale * turn)
+    Noise::from_standard_deviations(few * scale * shift, few * scale * turn)
 }

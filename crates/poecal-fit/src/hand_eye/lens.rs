@@ -66,7 +66,7 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
          lens"
             .to_owned()
     };
-    let (search, start) = LensSearch::of(pictures).ok_or_else(refuse)?;
+    let (search, start) = LensSearch::from_pictures(pictures).ok_or_else(refuse)?;
     let mut state = search.alone(&start).ok_or_else(refuse)?;
     // Of a flat board that has two poses the better one may be the other one with another lens.
     for _ in 0..2 {
@@ -120,7 +120,7 @@ pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>
     let mut state = search.stepped(alone, &starts, &DVector::zeros(alone.step.len()));
     let (mut fit, mut rows) = fitted(&along(&state), None)?;
     let mut first: Option<f64> = None;
-    let mut normal = Normal::of(&state, &fit, &rows)?;
+    let mut normal = Normal::from_rows(&state, &fit, &rows)?;
     for _ in 0..ROUNDS {
         let (by, gain) = normal.step()?;
         if first.is_none() {
@@ -131,7 +131,7 @@ pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>
         }
         state = search.stepped(&state, &state.poses, &by);
         (fit, rows) = fitted(&along(&state), Some(&fit))?;
-        normal = Normal::of(&state, &fit, &rows)?;
+        normal = Normal::from_rows(&state, &fit, &rows)?;
     }
     let apart = first.unwrap_or(1.0);
     let inverse = |matrix: &DMatrix<f64>| -> Option<DMatrix<f64>> {
@@ -178,7 +178,7 @@ struct Normal {
 }
 
 impl Normal {
-    fn of(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
+    fn from_rows(state: &LensState, fit: &Fit, rows: &[(usize, Pair)]) -> Option<Self> {
         let count = state.step.len();
         let weights = fit.noise.weights();
         let (mut frames, mut mixed) = (DMatrix::zeros(UNKNOWNS, UNKNOWNS), DMatrix::zeros(UNKNOWNS, count));

@@ -127,7 +127,7 @@ impl Session {
 
     fn solved(&self) -> HandEye {
         let target = PoseList::of_pictures(&self.pictures).unwrap();
-        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::of(self.camera), &|row| {
+        hand_eye(&self.flange.clone().into(), &target, &HandEyeOptions::new(self.camera), &|row| {
             format!("row {row}")
         })
         .unwrap()

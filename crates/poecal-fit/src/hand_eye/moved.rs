@@ -37,9 +37,9 @@ pub(crate) fn found(pairs: &[Pair]) -> Option<Move> {
     let places = (part..=count - part).step_by(every);
     let scores = places.filter_map(|at| Some((scored(&pairs[..at])? + scored(&pairs[at..])?, at)));
     let (_, at) = scores.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
-    let (first, second) = (Fit::of(&pairs[..at])?, Fit::of(&pairs[at..])?);
+    let (first, second) = (Fit::from_pairs(&pairs[..at])?, Fit::from_pairs(&pairs[at..])?);
     let [before, after] = [(&first, &pairs[..at]), (&second, &pairs[at..])]
-        .map(|(fit, rows)| Spread::of(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames));
+        .map(|(fit, rows)| Spread::from_pairs(&fit.noise, &fit.rows(&fit.seen_about(rows)), &fit.frames));
     let (before, after) = (before?, after?);
     let chance = CHANCE / (count / every) as f64;
     let ratio = |side: Side| {

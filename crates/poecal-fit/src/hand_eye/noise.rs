@@ -29,7 +29,7 @@ const ALIKE: [usize; NUMBERS] = [0, 0, 0, 1, 1, 1];
 
 impl Noise {
     /// Of stated standard deviations.
-    pub(crate) fn of(sigma_m: f64, sigma_rad: f64) -> Self {
+    pub(crate) fn from_standard_deviations(sigma_m: f64, sigma_rad: f64) -> Self {
         let variance = [sigma_m, sigma_rad].map(|it| it.max(LEAST).powi(2)).to_vec();
         Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
     }
@@ -53,7 +53,7 @@ impl Noise {
     /// The same parts from the residuals of rows about their fit: each the mean square over its degrees of freedom, that is what remains
     /// after its share of the unknowns. `None` where the rows do not determine the unknowns, or a part has no freedom.
     pub(crate) fn estimated(&self, pairs: &[Pair], frames: &Frames) -> Option<Noise> {
-        let parts = Parts::of(self.part_of, self.variance.len(), pairs, frames);
+        let parts = Parts::from_pairs(self.part_of, self.variance.len(), pairs, frames);
         let mut noise = self.clone();
         for _ in 0..ROUNDS {
             let known = parts.covariance(&noise.variance)?;
@@ -112,7 +112,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn of(part_of: [usize; NUMBERS], parts: usize, pairs: &[Pair], frames: &Frames) -> Self {
+    fn from_pairs(part_of: [usize; NUMBERS], parts: usize, pairs: &[Pair], frames: &Frames) -> Self {
         let mut all = Parts {
             normals: vec![Normal::zero(); parts],
             squares: vec![0.0; parts],
@@ -152,8 +152,8 @@ pub(crate) struct Spread {
 
 impl Spread {
     /// Of rows about their fit.
-    pub(crate) fn of(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
-        let parts = Parts::of(noise.part_of, noise.variance.len(), pairs, frames);
+    pub(crate) fn from_pairs(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
+        let parts = Parts::from_pairs(noise.part_of, noise.variance.len(), pairs, frames);
         let mut covariance = parts.covariance(&noise.variance)?;
         let wider = follows(noise, pairs, frames);
         let by_part = parts.normals.iter().zip(&noise.variance).zip(&noise.freedom);

@@ -17,7 +17,7 @@ pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
     if pictures.all.len() < FEWEST || corners < FEWEST_CORNERS {
         return None;
     }
-    let (search, start) = LensSearch::of(pictures)?;
+    let (search, start) = LensSearch::from_pictures(pictures)?;
     let before = off_px(pictures, &start)?;
     let found = search.alone(&start)?;
     let after = off_px(&found.pictures, &found)?;

@@ -119,7 +119,7 @@ fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option
     let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
     let fit = match before {
         Some(before) => Fit::from_start(&rows, before.own_frames()),
-        None => Fit::of(&rows),
+        None => Fit::from_pairs(&rows),
     }?;
     let about = fit.seen_about(&rows);
     let kept = counted.iter().copied().zip(about).zip(&fit.kept);
@@ -160,7 +160,7 @@ fn finished(
 ) -> Result<HandEye> {
     let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
     let kept = fit.rows(&fit.seen_about(&rows));
-    let Some(spread) = Spread::of(&fit.noise, &kept, &fit.frames) else {
+    let Some(spread) = Spread::from_pairs(&fit.noise, &kept, &fit.frames) else {
         return ErrorKind::Problem.refuse(
             "found poses that determine the camera's place in some directions only, expected turns about two axes or more: add such poses",
         );
@@ -184,7 +184,7 @@ fn finished(
     let noise = [0, 2, 3, 5].map(|number| fit.noise.sigma(number));
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     let distance = distance.unwrap_or_default();
-    let scale = scale::of((&rows, &kept), fit, verdict::inconsistent(&noise, distance).is_none());
+    let scale = scale::length_scale((&rows, &kept), fit, verdict::inconsistent(&noise, distance).is_none());
     // Where camera and target are follows from lengths that are none.
     findings.retain(|it| it.kind != FindingKind::Exchanged || !scale.is_some_and(scale::is_gross));
     let mut result = HandEye {
@@ -217,7 +217,7 @@ fn with_bounds(
 ) -> ([Placed; 2], Option<FoundLens>) {
     let factors = simulated::factors(&fit.rows(rows), fit);
     let by = |spread: &Spread, side: Side| {
-        let (by_m, by_rad) = factors.of(side);
+        let (by_m, by_rad) = factors.factors_of_side(side);
         let placed = bounded(spread, &fit.frames, &fit.point, side);
         Placed { bound95_m: by_m * placed.bound95_m, bound95_rad: by_rad * placed.bound95_rad, ..placed }
     };

@@ -40,7 +40,7 @@ fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
 }
 
 /// How many times as long as the arm's lengths the camera's are, if it is said: of all rows, those that count, and whether they fit together.
-pub(crate) fn of((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
+pub(crate) fn length_scale((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
     if fits { found(kept, fit) } else { explaining(rows, fit) }
 }
 
@@ -57,7 +57,7 @@ fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
     let mut times = 1.0;
     for _ in 0..ROUNDS {
         let scaled = shortened(rows, times);
-        let now = Fit::of(&scaled)?;
+        let now = Fit::from_pairs(&scaled)?;
         let (share, _) = share(&now.seen_about(&scaled), &now)?;
         if share.abs() < FOUND {
             let places = |fit: &Fit| fit.noise.sigma(0).max(fit.noise.sigma(2));

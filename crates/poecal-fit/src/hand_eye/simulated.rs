@@ -25,7 +25,7 @@ pub(crate) struct Factors {
 }
 
 impl Factors {
-    pub(crate) fn of(&self, side: Side) -> (f64, f64) {
+    pub(crate) fn factors_of_side(&self, side: Side) -> (f64, f64) {
         if side == Side::Camera { self.camera } else { self.target }
     }
 }
@@ -44,7 +44,7 @@ pub(crate) fn factors(rows: &[Pair], fit: &Fit) -> Factors {
         let session = like(rows, fit, &mut draw);
         let Some(again) = Fit::from_start(&session, truth) else { continue };
         let kept = again.rows(&again.seen_about(&session));
-        let Some(spread) = Spread::of(&again.noise, &kept, &again.frames) else { continue };
+        let Some(spread) = Spread::from_pairs(&again.noise, &kept, &again.frames) else { continue };
         for (side, (pose, at)) in [Side::Camera, Side::Target].into_iter().zip(poses.iter().zip([0, 2])) {
             let placed = bounded(&spread, &again.frames, &again.point, side);
             let (shift, turn) = placed.pose.apart(pose);

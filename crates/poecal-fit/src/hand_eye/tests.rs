@@ -60,7 +60,7 @@ impl Session {
     }
 
     pub(crate) fn read(&self, flange: PoseList, target: PoseList) -> Result<HandEye> {
-        hand_eye(&flange, &target, &HandEyeOptions::of(self.camera), &|row| format!("row {}", row + 1))
+        hand_eye(&flange, &target, &HandEyeOptions::new(self.camera), &|row| format!("row {}", row + 1))
     }
 
     fn refused(&self, flange: Vec<Pose>, target: Vec<Pose>) -> String {
@@ -129,7 +129,7 @@ fn lists_the_other_way_round_are_found() {
                 Err(error) => assert!(error.to_string().contains("--camera"), "{error}"),
             }
             let turned: PoseList = inverted(&session.target).into();
-            let stated = HandEyeOptions { target_inverted: Some(true), ..HandEyeOptions::of(camera) };
+            let stated = HandEyeOptions { target_inverted: Some(true), ..HandEyeOptions::new(camera) };
             let stated =
                 hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
             match session.read(session.flange.clone().into(), turned) {

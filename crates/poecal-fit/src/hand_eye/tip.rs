@@ -85,7 +85,7 @@ pub fn tool_tip(touches: &Touches, name: &dyn Fn(usize) -> String) -> Result<Too
         ));
     }
     refuse_arm_lengths(&touches.flange.poses)?;
-    let layout = Layout::of(touches);
+    let layout = Layout::from_touches(touches);
     layout.refuse_few(touches)?;
     let poses = &touches.flange.poses;
     let (weak, spread) = layout.least_tilted(poses, &vec![true; poses.len()]);
@@ -277,5 +277,5 @@ fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name
         reasons.push(statement.clone());
         tool.findings.push(Finding::new(FindingKind::MissingMoves, statement, Vec::new()));
     }
-    (tool.level, tool.reasons) = Level::of(against, reasons);
+    (tool.level, tool.reasons) = Level::from_reasons(against, reasons);
 }

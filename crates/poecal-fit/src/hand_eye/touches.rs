@@ -47,7 +47,7 @@ pub(crate) struct TipFit {
 }
 
 impl Layout {
-    pub(crate) fn of(touches: &Touches) -> Self {
+    pub(crate) fn from_touches(touches: &Touches) -> Self {
         let mut layout = Layout { tips: Vec::new(), points: Vec::new(), rows: Vec::new() };
         let index = |names: &mut Vec<String>, name: Option<&String>| {
             let name = name.cloned().unwrap_or_default();

@@ -41,7 +41,7 @@ pub enum Level {
 
 impl Level {
     /// The level, with what speaks against any use, else with what speaks against use without its bounds.
-    pub(crate) fn of(against: Vec<String>, weak: Vec<String>) -> (Self, Vec<String>) {
+    pub(crate) fn from_reasons(against: Vec<String>, weak: Vec<String>) -> (Self, Vec<String>) {
         match (against.is_empty(), weak.is_empty()) {
             (false, _) => (Level::DoNotUse, against),
             (true, false) => (Level::WithinBounds, weak),
@@ -84,7 +84,7 @@ pub struct HandEyeOptions {
 impl HandEyeOptions {
     /// With directions that are found.
     #[must_use]
-    pub fn of(camera: CameraPlace) -> Self {
+    pub fn new(camera: CameraPlace) -> Self {
         HandEyeOptions { camera, flange_inverted: None, target_inverted: None }
     }
 }

@@ -54,7 +54,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     if result.findings.iter().any(|it| it.kind == FindingKind::Moved) {
         weak.push("something moved during the session".to_owned());
     }
-    (result.level, result.reasons) = Level::of(against, weak);
+    (result.level, result.reasons) = Level::from_reasons(against, weak);
 }
 
 /// Why poses with this noise (across, along, tilts, turn) do not fit together, if they do not.

@@ -128,7 +128,7 @@ impl<'a> JointWatch<'a> {
                 return Err(Doubt::new(DoubtPlace::Cell(line, character), message));
             }
             if let Some(limits) = one.joint.limits.filter(|_| one.beyond.count > 0) {
-                warnings.push(one.limit_warning(limits, NamedUnit::from(column.unit.of())));
+                warnings.push(one.limit_warning(limits, NamedUnit::from(column.unit.si_unit())));
             }
         }
         Ok(warnings)
@@ -197,7 +197,7 @@ impl OneJoint<'_> {
     /// The unit that explains readings far outside.
     fn other_unit(&self, input: &ReadColumn<'_>, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
         let is_rare = (self.beyond.count as f64) < SHARE * rows as f64;
-        let is_far = self.is_far_outside(input.unit.of(), extremes, input.unit_from);
+        let is_far = self.is_far_outside(input.unit.si_unit(), extremes, input.unit_from);
         if is_rare || !is_far { None } else { self.smaller_unit(input, extremes) }
     }
 
@@ -216,7 +216,7 @@ impl OneJoint<'_> {
 
     /// The smaller unit in which readings are inside the limits.
     fn smaller_unit(&self, input: &ReadColumn<'_>, extremes: [f64; 2]) -> Option<NamedUnit> {
-        let quantity = input.unit.of();
+        let quantity = input.unit.si_unit();
         let candidates: &[&str] = match quantity {
             Unit::Radian => &["deg", "mrad", "arcmin", "arcsec"],
             Unit::Metre => &["mm", "um", "nm"],
@@ -271,7 +271,7 @@ impl OneJoint<'_> {
         let symbol = likely.symbol();
         let outside = match self.joint.limits {
             Some(limits) => {
-                let si = NamedUnit::from(input.unit.of()).symbol();
+                let si = NamedUnit::from(input.unit.si_unit()).symbol();
                 format!(
                     "far outside the limits {} to {} {si} of joint `{}`",
                     short(limits.lower),

@@ -32,7 +32,7 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
         }
         if let Some(part) = (2..=4).find(|part| fill(size.map(|it| it / f64::from(*part)), &corners)) {
             let ([width, height], [x, y]) = (size, size.map(|it| it / f64::from(part)));
-            let (share, of) = (["half", "third", "quarter"][part as usize - 2], of(camera));
+            let (share, of) = (["half", "third", "quarter"][part as usize - 2], camera_phrase(camera));
             said.push(format!(
                 "all corners{of} are in the upper left {x} × {y} pixels of the {width} × {height} that its lens states, as those of pictures of \
                  a {share} of the size: if the pictures are so small, divide fx, fy, cx, cy and the size by {part}"
@@ -43,7 +43,7 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
 }
 
 /// Whose corners or lens it is, of a camera that has a name.
-fn of(camera: &Camera) -> String {
+fn camera_phrase(camera: &Camera) -> String {
     if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shown(&camera.name)) }
 }
 
@@ -80,7 +80,7 @@ fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count):
     } else {
         "the lens is that of cropped pictures, or of another mode of the camera: state the lens of the pictures as they are".to_owned()
     };
-    let (all, of, [width, height], [far_x, far_y]) = (corners.len(), of(camera), size, most);
+    let (all, of, [width, height], [far_x, far_y]) = (corners.len(), camera_phrase(camera), size, most);
     let (x, y) = (first.pixel.x, first.pixel.y);
     format!(
         "found the corner ({x:.1}, {y:.1}), and {count} of {all} corners, outside the {width} × {height} pixels of the pictures that the lens{of} states; \

@@ -124,7 +124,7 @@ fn is_about(ratio: f64, expected: f64) -> bool {
 }
 
 fn is_angle(input: &ReadColumn<'_>) -> bool {
-    input.unit.of() == Unit::Radian
+    input.unit.si_unit() == Unit::Radian
 }
 
 /// The first joint angle, if all are in degrees and as small as radians.

@@ -53,7 +53,7 @@ impl Names {
     /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`, `lag.NAME`, `drift.NAME`; `target` of [`MEASURED`], `frame`,
     /// `zero`, `scale`, `lag`, `drift` of a single instrument.
     #[must_use]
-    pub fn of(&self, block: Block) -> String {
+    pub fn name_of_block(&self, block: Block) -> String {
         let joint = |joint: usize| self.joints.get(joint).map_or("", String::as_str);
         let among = |kind: &str, names: &[Option<String>], at: usize| match names.get(at) {
             Some(Some(name)) => format!("{kind}.{name}"),
@@ -75,7 +75,7 @@ impl Names {
     /// Names of the unknowns of a parameter, in its order.
     #[must_use]
     pub fn of_unknowns(&self, parameter: &Parameter) -> Vec<String> {
-        let block = self.of(parameter.block());
+        let block = self.name_of_block(parameter.block());
         let columns = parameter.model().columns().iter();
         let name = |name: &str| if name.is_empty() { block.clone() } else { format!("{block}.{name}") };
         columns.map(|column| name(column.name)).collect()
@@ -124,7 +124,7 @@ mod tests {
             (ball.block(), "target.ball"),
             (Block::Frame(0), "frame.left"),
         ] {
-            assert_eq!(names.of(block), name);
+            assert_eq!(names.name_of_block(block), name);
         }
     }
 }

@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn a_frame_has_the_columns_of_the_motions_that_are_seen() {
         for set in 0..Freedom::SETS {
-            let freedom = Freedom::of((0..6).filter(|motion| set >> motion & 1 == 1));
+            let freedom = Freedom::from_motions((0..6).filter(|motion| set >> motion & 1 == 1));
             let seen: Vec<Column> = freedom.motions().iter().map(|&motion| FRAME[motion]).collect();
             assert_eq!(of_freedom(freedom), seen, "{freedom:?}");
         }

@@ -32,7 +32,7 @@ thread_local! {
 impl Fast {
     /// Groups the rows of a problem.
     pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, level: SimdLevel) -> Self {
-        Fast::of(problem, state, level, RowGroup::of_problem(problem), None)
+        Fast::from_groups(problem, state, level, RowGroup::of_problem(problem), None)
     }
 
     /// The same for the second derivative of the residuals along a step, which takes the place of the residuals.
@@ -42,10 +42,10 @@ impl Fast {
             group.form = group.form.shaped();
             group.ratio = None;
         });
-        Fast::of(problem, state, problem.level, groups, Some(second))
+        Fast::from_groups(problem, state, problem.level, groups, Some(second))
     }
 
-    fn of(
+    fn from_groups(
         problem: &Problem<'_>,
         state: &Estimate,
         level: SimdLevel,
@@ -122,7 +122,7 @@ impl Group {
             let last = self.rows.len().min((index + 1) * size);
             let rows = &self.rows[index * size..last];
             let shapes = RowShapes { problem, linkage, second, arranged: &self.arranged, rows };
-            let arm = &Arm { shape: shapes.of(), ..*arm };
+            let arm = &Arm { shape: shapes.as_shape(), ..*arm };
             match self.packed.get(index) {
                 Some(rows) => sum(level, arm, &rows.blocks),
                 None => {
@@ -174,7 +174,7 @@ pub(crate) struct RowShapes<'a> {
 
 impl RowShapes<'_> {
     /// These, if the plan needs them.
-    pub(crate) fn of(&self) -> Option<&dyn Shape> {
+    pub(crate) fn as_shape(&self) -> Option<&dyn Shape> {
         (self.arranged.plan.shaped > 0).then_some(self)
     }
 
@@ -295,7 +295,7 @@ fn row_data<'a>(
         return RowData { joints, position, orientation: None, weight };
     }
     let orientation = is_pose.then(|| columns.as_chunks::<3>().0.first_chunk::<3>()).flatten();
-    let Whitening { weight, ratio } = usual.of(observation, noise);
+    let Whitening { weight, ratio } = usual.whitening_of_row(observation, noise);
     let weight = match problem.weights.and_then(|weights| weights.get(row)) {
         Some(own) => own.sqrt() * weight,
         None => weight,

@@ -19,7 +19,7 @@ pub(crate) enum Form {
 impl Form {
     /// Of a measurement; whether the kernels have the columns of all screws, the residual of poses, and the
     /// readings of its instrument, whose zero and scale are then no unknowns.
-    pub(crate) fn of(
+    pub(crate) fn from_measurement(
         measured: &Measurement,
         have_screws: bool,
         have_residual: bool,

@@ -55,7 +55,7 @@ impl Prior {
     /// The prior of a session's fit: of the robot's axes, and of the targets that move with it and are not open
     /// ([`Unknowns::open_targets`](crate::state::Unknowns::open_targets)).
     #[must_use]
-    pub fn of(session: &Session<'_>, common: Tolerance) -> Self {
+    pub fn from_session(session: &Session<'_>, common: Tolerance) -> Self {
         let Session { robot, data, unknowns, .. } = *session;
         let nominal = delivered(robot, data);
         let is_shared = |target: usize| {

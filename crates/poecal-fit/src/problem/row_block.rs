@@ -43,7 +43,7 @@ impl Problem<'_> {
         mut each: impl FnMut(&[u32], &mut RowBlock),
     ) {
         let mut block = RowBlock::new(self.layout().dim());
-        for group in RowGroup::of(self, rows, |position, _| position) {
+        for group in RowGroup::all_from_rows(self, rows, |position, _| position) {
             let arranged = ColumnMap::new(self, state, group.sight, group.form);
             self.by_kernel(state, rows, &(arranged, group.rows), &mut block, &mut each);
         }
@@ -63,7 +63,7 @@ impl Problem<'_> {
         let columns: Vec<(usize, f64)> = arranged.places().map(|place| (place.at, place.sign)).collect();
         let own: Vec<u32> = places.iter().map(|&place| rows[place as usize]).collect();
         let shapes = RowShapes { problem: self, linkage: &linkage, second: None, arranged, rows: &own };
-        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.of(), nearly: false };
+        let arm = Arm { plan, steps: &steps, end: &end, shape: shapes.as_shape(), nearly: false };
         let mut packed = ROWS.take();
         pack(self, &linkage, arranged, &own, &mut packed);
         let blocks = packed.blocks.chunks_exact(plan.block_len());

@@ -26,10 +26,10 @@ impl RowGroup {
     /// Groups the rows of a problem.
     pub(crate) fn of_problem(problem: &Problem<'_>) -> Vec<RowGroup> {
         if problem.rows.len() <= CHUNK {
-            return RowGroup::of(problem, &problem.rows, |_, row| row);
+            return RowGroup::all_from_rows(problem, &problem.rows, |_, row| row);
         }
         let parts =
-            threads::map_chunks(&problem.rows, CHUNK, |_, rows| RowGroup::of(problem, rows, |_, row| row));
+            threads::map_chunks(&problem.rows, CHUNK, |_, rows| RowGroup::all_from_rows(problem, rows, |_, row| row));
         let mut groups: Vec<RowGroup> = Vec::new();
         for other in parts.into_iter().flatten() {
             match groups.iter_mut().find(|group| group.holds(other.sight, other.form)) {
@@ -44,11 +44,11 @@ impl RowGroup {
     }
 
     /// Groups rows by target, station and form; stores `key(position, row)` of each.
-    pub(crate) fn of(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
+    pub(crate) fn all_from_rows(problem: &Problem<'_>, rows: &[u32], key: impl Fn(u32, u32) -> u32) -> Vec<RowGroup> {
         let mut groups: Vec<RowGroup> = Vec::new();
         let (usual, are_alike) = (Whitening::new(problem.noise), problem.session.noise_ratios.is_empty());
         let ratio = |observation: &Observation| match are_alike {
-            true => usual.of(observation, problem.noise).ratio,
+            true => usual.whitening_of_row(observation, problem.noise).ratio,
             false => Whitening::new(problem.session.noise_of(observation, problem.noise)).ratio,
         };
         let own = |row: u32| problem.measurement(row as usize);
@@ -60,7 +60,7 @@ impl RowGroup {
             // The kernels have noise that is the same in all directions.
             let form = match observation.noise_shape {
                 Some(_) => Form::shaped_of(own(row)),
-                None => Form::of(own(row), !is_other, residual.is_none(), is_plain),
+                None => Form::from_measurement(own(row), !is_other, residual.is_none(), is_plain),
             };
             let sight = Sight::from(observation);
             // Most rows are like the one before.
@@ -110,7 +110,7 @@ impl Whitening {
 
     /// Whitening of a row, which may state its own noise; `self` is the whitening by the `usual` noise.
     #[inline(always)]
-    pub(crate) fn of(self, observation: &Observation, usual: Noise) -> Self {
+    pub(crate) fn whitening_of_row(self, observation: &Observation, usual: Noise) -> Self {
         match (observation.stated.get(Quantity::Position), observation.stated.get(Quantity::Rotation)) {
             (None, None) => self,
             _ => Whitening::new(observation.noise_or(usual)),

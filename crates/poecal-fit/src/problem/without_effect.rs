@@ -85,7 +85,7 @@ impl Layout {
             let (freedom, shift) = match parameter.model().subject() {
                 Subject::Joint(joint) if parameter.value_term().is_none() => {
                     let is_revolute = estimate.kinds().get(joint) == Some(&JointKind::Revolute);
-                    let freedom = Freedom::of([0, 1].into_iter().filter(|_| is_revolute));
+                    let freedom = Freedom::from_motions([0, 1].into_iter().filter(|_| is_revolute));
                     (freedom, estimate.base_from_axis.get(joint).map(local))
                 }
                 Subject::Target(target) => {

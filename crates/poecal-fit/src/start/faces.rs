@@ -54,7 +54,7 @@ fn turns_of_faces(data: &Dataset, robot: &Robot) -> Option<Vec<Matrix3<f64>>> {
     let mut nominal = delivered(robot, data);
     nominal.device_from_base = Pose::identity();
     nominal.further_devices.iter_mut().for_each(|device| *device = Pose::identity());
-    let (linkage, packed, mut chain) = (Linkage::new(&nominal), Packed::of(robot, data), Chain::default());
+    let (linkage, packed, mut chain) = (Linkage::new(&nominal), Packed::from_dataset(robot, data), Chain::default());
     let targets = data.targets.len();
     let mut sums = vec![Matrix3::zeros(); data.station_count() * targets];
     for (row, observation) in data.observations.iter().enumerate() {

@@ -47,7 +47,7 @@ pub struct RenamedMarkers {
 
 impl Group {
     /// The largest group of some columns that keep their distances.
-    fn of(frames: &[MarkerPlaces], columns: &[usize]) -> Option<Self> {
+    fn from_columns(frames: &[MarkerPlaces], columns: &[usize]) -> Option<Self> {
         let step = frames.len().div_ceil(SOME).max(1);
         let distances = |a: usize, b: usize| -> Vec<f64> {
             let apart = |frame: &MarkerPlaces| Some(((*frame.get(a)?)? - (*frame.get(b)?)?).norm());
@@ -185,8 +185,8 @@ impl RenamedMarkers {
     /// What the distances show of the markers in some columns, of which one body is made; the places of `others` may be theirs too. `None` if no
     /// three of them keep their distances.
     #[must_use]
-    pub fn of(frames: &[MarkerPlaces], columns: &[usize], others: &[usize]) -> Option<Self> {
-        let group = Group::of(frames, columns)?;
+    pub fn from_frames(frames: &[MarkerPlaces], columns: &[usize], others: &[usize]) -> Option<Self> {
+        let group = Group::from_columns(frames, columns)?;
         let others: Vec<usize> = others.iter().copied().filter(|it| !group.markers.contains(it)).collect();
         let mut found = RenamedMarkers { markers: group.markers.clone(), ..RenamedMarkers::default() };
         for (at, frame) in frames.iter().enumerate() {
@@ -260,7 +260,7 @@ mod tests {
                 frame[3] = frame[3].map(|it| it + Vector3::new(0.03, 0.02, 0.0));
             }
             let columns: Vec<usize> = (0..count).collect();
-            let found = RenamedMarkers::of(&frames, &columns, &[count, count + 1]).unwrap();
+            let found = RenamedMarkers::from_frames(&frames, &columns, &[count, count + 1]).unwrap();
             for (at, frame) in frames.iter().enumerate() {
                 for (marker, expected) in truth[at].iter().enumerate().take(count) {
                     let place = found.place_of(at, marker).and_then(|it| frame[it]);
@@ -290,7 +290,7 @@ mod tests {
         for (at, frame) in frames.iter_mut().enumerate() {
             frame.push(Some(Vector3::new(0.001 * at as f64, 0.0, 0.0)));
         }
-        assert!(RenamedMarkers::of(&frames, &[0, 1, 2], &[]).is_none());
+        assert!(RenamedMarkers::from_frames(&frames, &[0, 1, 2], &[]).is_none());
     }
 
     #[test]
@@ -300,10 +300,10 @@ mod tests {
             [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
         let mut frames = moving(&markers, 200, 1e-4, 4);
         frames[50].swap(0, 1);
-        let found = RenamedMarkers::of(&frames, &[0, 1, 2], &[]).unwrap();
+        let found = RenamedMarkers::from_frames(&frames, &[0, 1, 2], &[]).unwrap();
         assert!(found.frames.is_empty(), "{:?}", found.frames);
         frames[60].swap(0, 2);
-        let found = RenamedMarkers::of(&frames, &[0, 1, 2], &[]).unwrap();
+        let found = RenamedMarkers::from_frames(&frames, &[0, 1, 2], &[]).unwrap();
         assert_eq!(found.frames.keys().copied().collect::<Vec<_>>(), [60]);
         assert_eq!(found.frames[&60].values().copied().collect::<Vec<_>>(), [None; 3]);
     }

@@ -145,7 +145,7 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     for at in 0..found.pictures.all.len() {
         choose(&mut found, at, |picture| picture.poses.first().copied());
     }
-    let packed = Packed::of(robot, &found);
+    let packed = Packed::from_dataset(robot, &found);
     let (mut best, mut result, mut used) = (f64::INFINITY, found.clone(), rows.clone());
     for _ in 0..ROUNDS {
         let registered = registered(&found, robot, &packed, &used);

@@ -336,7 +336,7 @@ impl Chain {
         // Without a configuration of its own the instrument was in that of the target.
         let [target, instrument] = &self.bases;
         let (own, values) = if view.backward && self.in_two { instrument } else { target };
-        Bases::new(&self.terms, own, values).of(view.joint, term)
+        Bases::new(&self.terms, own, values).basis_of_term(view.joint, term)
     }
 
     /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.

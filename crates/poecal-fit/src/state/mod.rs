@@ -334,7 +334,7 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
 pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {
     let place = robot.places_of_targets();
     let base_from_target = data.targets.iter().map(|name| place(name.as_deref()).1).collect();
-    let mut delivered = Estimate::on(robot, Tree::of(robot, data), base_from_target, Pose::identity());
+    let mut delivered = Estimate::on(robot, Tree::from_robot(robot, data), base_from_target, Pose::identity());
     for station in 0..data.station_count() {
         let name = data.stations.get(station).and_then(Option::as_deref);
         if let Some(mount) = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name) {

@@ -50,7 +50,7 @@ impl Packed {
 
     /// Packs the joint values of a data set's rows, theory.md §2 (7).
     #[must_use]
-    pub fn of(robot: &Robot, data: &Dataset) -> Self {
+    pub fn from_dataset(robot: &Robot, data: &Dataset) -> Self {
         let width = data.reading_names().len();
         let mut packed = Packed::new(robot, data.all_readings(), width);
         if !data.further_readings().is_empty() {
@@ -181,7 +181,7 @@ impl Packed {
 
     /// The function b of a term of a joint in a row, or in a further configuration in place of it.
     pub fn basis(&self, row: usize, further: Option<u32>, joint: usize, term: Term) -> f64 {
-        self.bases_at(row, further).of(joint, term)
+        self.bases_at(row, further).basis_of_term(joint, term)
     }
 
     /// Place of a term of a joint among the packed ones, by which its function is found in each row.
@@ -199,7 +199,7 @@ impl Packed {
     ) -> f64 {
         let found = self.bases_at(row, further);
         let known = place.and_then(|place| found.bases.get(place)).copied();
-        known.unwrap_or_else(|| found.of(joint, term))
+        known.unwrap_or_else(|| found.basis_of_term(joint, term))
     }
 
     /// Whether each joint is revolute.
@@ -247,18 +247,18 @@ impl<'a> Bases<'a> {
     }
 
     /// The function of a term of a joint; one that is not among the robot's is a function of the joint values alone.
-    pub(crate) fn of(&self, joint: usize, term: Term) -> f64 {
+    pub(crate) fn basis_of_term(&self, joint: usize, term: Term) -> f64 {
         let at = self.terms.iter().position(|it| *it == (joint, term));
         at.and_then(|at| self.bases.get(at))
             .copied()
-            .unwrap_or_else(|| Situation::of(self.values).basis(joint, term))
+            .unwrap_or_else(|| Situation::from_values(self.values).basis(joint, term))
     }
 
     /// The sum of terms of a joint, each with its place among the robot's terms, if it is there.
     pub(crate) fn sum(&self, terms: &[(usize, JointTerm)]) -> f64 {
         let own = |&(at, it): &(usize, JointTerm)| {
             let known = self.terms.get(at).is_some_and(|known| *known == (it.joint, it.term));
-            let basis = if known { self.bases[at] } else { self.of(it.joint, it.term) };
+            let basis = if known { self.bases[at] } else { self.basis_of_term(it.joint, it.term) };
             it.coefficient * basis
         };
         terms.iter().map(own).sum()

@@ -34,7 +34,7 @@ impl Session<'_> {
             } else {
                 let mut values = [0.0; NUMBERS];
                 written.residual(&predicted(), &mut values);
-                RowError::of(written.measurement, values)
+                RowError::from_values(written.measurement, values)
             };
             each(observation, self.alike(observation, error).squares())
         })

@@ -32,7 +32,7 @@ pub struct Rounding {
 
 impl Rounding {
     /// Of a session's readings, where errors of `left_m` (RMS) are no less than half of what rounding makes; `None` if they are not rounded.
-    pub fn of(session: &Session<'_>, left_m: f64) -> Option<Self> {
+    pub fn from_session(session: &Session<'_>, left_m: f64) -> Option<Self> {
         let Session { robot, data, .. } = *session;
         let names = data.reading_names();
         let looked = sample_rows(&data.all_rows(), LOOKED);

@@ -24,7 +24,7 @@ impl RowError {
     }
 
     /// Of a measurement with these numbers.
-    pub(crate) fn of(seen: &Measurement, values: [f64; NUMBERS]) -> Self {
+    pub(crate) fn from_values(seen: &Measurement, values: [f64; NUMBERS]) -> Self {
         RowError { channels: seen.channels(), values }
     }
 
@@ -57,7 +57,7 @@ impl RowError {
     #[must_use]
     #[inline]
     pub fn part(&self, quantity: Quantity) -> &[f64] {
-        &self.values[self.channels.of(quantity)]
+        &self.values[self.channels.range(quantity)]
     }
 
     /// Length of the error of one quantity, metres or radians, if it was measured.
@@ -163,7 +163,7 @@ impl RowError {
     /// The same error in other axes, turned by a rotation; a quantity that is no vector stays.
     pub(crate) fn turned(mut self, turn: &Matrix3<f64>) -> Self {
         for quantity in Quantity::ALL {
-            if let [x, y, z] = &mut self.values[self.channels.of(quantity)] {
+            if let [x, y, z] = &mut self.values[self.channels.range(quantity)] {
                 let turned = turn * Vector3::new(*x, *y, *z);
                 (*x, *y, *z) = (turned.x, turned.y, turned.z);
             }

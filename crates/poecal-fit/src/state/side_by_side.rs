@@ -115,14 +115,14 @@ impl<'a> SideBySide<'a> {
                 };
                 values.copy_from_slice(own.as_slice());
             }
-            return RowError::of(measurement, values);
+            return RowError::from_values(measurement, values);
         }
         let target = self.predicted(lane, seen);
         match (self.linkage.range(seen.station), measurement.range()) {
             // The length of the seen place would lose the sign of a reading below zero.
             (Some(range), Some(measured)) => {
                 values[0] = measured - range.reading(&target);
-                RowError::of(measurement, values)
+                RowError::from_values(measurement, values)
             }
             (Some(range), None) => RowError::new(measurement, &range.seen(&target)),
             (None, _) => RowError::new(measurement, &target),
@@ -217,7 +217,7 @@ mod tests {
                 let seen = Measurement::point(Vector3::zeros());
                 data.push(readings, None, seen).unwrap();
             }
-            let packed = Packed::of(&robot, &data);
+            let packed = Packed::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, false);
             for offsets in [[0.0; 4], [0.3, -0.2, 0.6, 0.1]] {
                 let estimate =

@@ -57,7 +57,7 @@ impl Tree {
     /// The tree of a robot with the instruments and targets of a data set, by their names. An instrument without a place in the model stands
     /// on the base; one whose rows have two configurations sees from the frame of the target with its name, or else of the target that they see.
     #[must_use]
-    pub fn of(robot: &Robot, data: &Dataset) -> Self {
+    pub fn from_robot(robot: &Robot, data: &Dataset) -> Self {
         let stand = |station: usize| {
             let name = data.stations.get(station).and_then(Option::as_deref);
             let mount = robot.instruments.iter().find(|mount| Some(mount.name.as_str()) == name);

@@ -19,7 +19,7 @@ pub struct Correlations {
 impl Correlations {
     /// Of a covariance (row-major), of whose unknowns each belongs to a block.
     #[must_use]
-    pub fn of(covariance: &[f64], blocks: &[usize]) -> Self {
+    pub fn from_covariance(covariance: &[f64], blocks: &[usize]) -> Self {
         let n = blocks.len();
         let variance = |k: usize| covariance.get(k * n + k).copied().unwrap_or(0.0);
         let count = blocks.iter().max().map_or(0, |most| most + 1);
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn what_is_known_only_together_is_a_pair() {
-        let found = Correlations::of(&[4.0, 1.94, 1.94, 1.0], &[0, 1]);
+        let found = Correlations::from_covariance(&[4.0, 1.94, 1.94, 1.0], &[0, 1]);
         assert_eq!((found.pairs[0].0, found.pairs[0].1, found.count), (0, 1, 1));
         assert!((found.largest[1][0] - 0.97).abs() < 1e-12);
     }

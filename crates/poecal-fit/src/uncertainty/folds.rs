@@ -252,7 +252,7 @@ impl ErrorSums {
     }
 
     fn rms(&self) -> Measured<f64> {
-        Measured::of(|quantity| {
+        Measured::from_fn(|quantity| {
             let (squares, count) = self.parts[quantity];
             (count > 0).then(|| (squares / count as f64).sqrt())
         })

@@ -26,7 +26,7 @@ pub(super) struct Gauge {
 
 impl Gauge {
     /// That of a fit; `None` where its rows see everything that they predict.
-    pub(super) fn of(view: &View<'_>, layout: &Layout) -> Option<Self> {
+    pub(super) fn from_view(view: &View<'_>, layout: &Layout) -> Option<Self> {
         let View { session, estimate, .. } = *view;
         let mut unseen = layout.base_motions(estimate, &session, view.rows);
         let grows = session.lacks_length(view.rows);

@@ -84,7 +84,7 @@ impl Uncertainty {
             .then(|| extrapolated(gram, layout.dim(), view, found.extrapolation));
         let sampled = ranges(&view.session, view.rows);
         let covariance = own_size(inflated(gram, layout.dim(), view, found.scatter)?, normal, view);
-        let gauge = Gauge::of(view, &layout);
+        let gauge = Gauge::from_view(view, &layout);
         let fixed = |covariance: Vec<f64>| match &gauge {
             Some(gauge) => gauge.fixed(&covariance),
             None => covariance,

@@ -267,7 +267,7 @@ pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder
     let angles = total_of(&sums, Unit::Radian);
     let lengths = total_of(&sums, Unit::Metre);
     let left_m = (3.0 * lengths.squares / lengths.components.max(1) as f64).sqrt();
-    let rounding = Rounding::of(&view.session, left_m);
+    let rounding = Rounding::from_session(&view.session, left_m);
     let by_rotations =
         share * determined_by_rotations(view, normal, layout, effective_unknowns, &angles, total);
     let in_sample = share * effective_unknowns;

@@ -56,7 +56,7 @@ fn the_gradient_is_that_of_differences() {
     let mut worst: f64 = 0.0;
     for in_hand in [true, false] {
         let made = photographed(in_hand, 0.3);
-        let packed = Packed::of(&made.nominal, &made.data);
+        let packed = Packed::from_dataset(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, true);
         let start = start(&made);
         let bundle = bundle(session, &start, &ALL, CommonError::NONE);
@@ -94,7 +94,7 @@ fn what_corners_share_is_eliminated() {
     let mut worst: f64 = 0.0;
     for (in_hand, about) in [(true, Centre::Board), (true, Centre::Camera), (false, Centre::Camera)] {
         let made = photographed(in_hand, 0.3);
-        let packed = Packed::of(&made.nominal, &made.data);
+        let packed = Packed::from_dataset(&made.nominal, &made.data);
         let session = Session::new(&made.nominal, &made.data, &packed, true);
         let start = start(&made);
         let common = CommonError { shift_m: 1e-3, turn_rad: 2e-3, about, corners: 1.0 };
@@ -140,7 +140,7 @@ fn what_corners_share_is_eliminated() {
 #[test]
 fn a_bundle_finds_the_lens() {
     let made = photographed(true, 0.01);
-    let packed = Packed::of(&made.nominal, &made.data);
+    let packed = Packed::from_dataset(&made.nominal, &made.data);
     let mut data = made.data.clone();
     let truth = data.pictures.cameras[0].lens;
     data.pictures.cameras[0].lens.focal_px = [1510.0, 1490.0];

@@ -211,7 +211,7 @@ impl Measured {
             let observation = Observation { station, from, ..Observation::new(target, measurement) };
             data.push_observation(&readings(), observation).unwrap();
         }
-        let packed = Packed::of(&robot, &data);
+        let packed = Packed::from_dataset(&robot, &data);
         let mut estimate = delivered(&robot, &data);
         if cell.sees.iter().all(|it| it.instrument.is_none()) {
             estimate.device_from_base = place(&mut generator, 0.9);
@@ -353,7 +353,7 @@ fn sensitivities_of_clocks_are_those_of_differences() {
                 made.data.state_motion(row, &rates, row as f64 / 24.0 - 0.5);
             }
         }
-        made.packed = Packed::of(&made.robot, &made.data);
+        made.packed = Packed::from_dataset(&made.robot, &made.data);
         let mut estimate = made.estimate.clone();
         let stations = 0..made.data.station_count();
         estimate.clocks = stations

@@ -30,7 +30,7 @@ pub enum Form {
 
 impl Form {
     /// The form of a text; `None` for others.
-    pub fn of(text: &str, path: &Path) -> Option<Self> {
+    pub fn from_text(text: &str, path: &Path) -> Option<Self> {
         let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
         match extension.to_ascii_lowercase().as_str() {
             "yaml" | "yml" => return Some(Form::DriverYaml),

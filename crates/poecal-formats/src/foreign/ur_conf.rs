@@ -83,7 +83,7 @@ pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Re
         .collect();
     let place = |error: Error| error.in_file(path);
     let robot = Robot::from_dh("ur", DhConvention::Standard, &rows, Pose::identity(), Pose::identity());
-    let mut frames = AxisFrames::of(&robot.map_err(place)?).map_err(place)?;
+    let mut frames = AxisFrames::from_robot(&robot.map_err(place)?).map_err(place)?;
     frames.end_at_tip();
     Ok(ur_arm(&frames))
 }

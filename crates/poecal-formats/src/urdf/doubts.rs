@@ -77,7 +77,7 @@ mod tests {
     use super::*;
     use crate::urdf::ChainSelection;
 
-    fn of(joints: &str) -> Vec<String> {
+    fn doubts_of_joints(joints: &str) -> Vec<String> {
         let text = format!(
             "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n{joints}\n<joint name=\"two\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/><origin xyz=\"0.4 0 0\"/><axis xyz=\"0 1 0\"/><limit lower=\"-3.1\" upper=\"3.1\"/></joint></robot>"
         );
@@ -132,11 +132,11 @@ mod tests {
                 "line 3 has `rpy=\"0 90 0\"`, which looks like degrees, expected radians: write `rpy=\"0 1.570796 0\"`",
             ),
         ] {
-            let found = of(&joint(origin, limit));
+            let found = doubts_of_joints(&joint(origin, limit));
             assert_eq!(found.len(), usize::from(!words.is_empty()), "{found:?}");
             assert!(found.iter().all(|it| it.contains(words)), "{found:?}");
         }
-        let far = of(&joint("xyz=\"0 0 400\"", "lower=\"-2.9\" upper=\"2.9\""));
+        let far = doubts_of_joints(&joint("xyz=\"0 0 400\"", "lower=\"-2.9\" upper=\"2.9\""));
         assert!(far.len() == 1 && far.iter().all(|it| it.contains("looks like millimetres")), "{far:?}");
     }
 }

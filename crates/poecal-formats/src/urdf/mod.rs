@@ -120,7 +120,7 @@ impl UrdfDocument {
     #[must_use]
     pub fn selection(&self) -> ChainSelection {
         let links: Vec<&str> = self.ends.iter().map(|end| end.link.as_str()).collect();
-        ChainSelection::of(&self.robot, &links)
+        ChainSelection::from_links(&self.robot, &links)
     }
 
     /// Joints beyond the tip link, which the robot does not have, each with an end link that it moves.

@@ -89,7 +89,7 @@ impl UrdfDocument {
             added.links.push((end.link.clone(), *wanted, name));
         }
         let links: Vec<&str> = links.iter().map(String::as_str).collect();
-        let selection = ChainSelection::of(&self.robot, &links);
+        let selection = ChainSelection::from_links(&self.robot, &links);
         let tip_link = selection.tip_link.clone().unwrap_or_default();
         Ok(PatchedUrdf { text: splice.apply(), tip_link, selection, notes })
     }

@@ -27,7 +27,7 @@ pub struct ChainSelection {
 
 impl ChainSelection {
     /// The selection that gives a robot, by its links: the tip's, then those of instruments and targets.
-    pub(crate) fn of(robot: &Robot, links: &[&str]) -> Self {
+    pub(crate) fn from_links(robot: &Robot, links: &[&str]) -> Self {
         let mut links = links.iter().map(|&link| link.to_owned());
         let tip_link = links.next();
         let mut named = |mounts: &[Mount]| -> Vec<(String, String)> {

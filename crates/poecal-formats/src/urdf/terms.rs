@@ -22,7 +22,7 @@ pub fn holdable<'a>(robot: &'a Robot, notes: &mut Vec<String>) -> Cow<'a, Robot>
         };
         let left: Vec<String> = plain.terms.iter().map(name).collect();
         plain.terms.clear();
-        let lost = Difference::of(robot, &plain, CONFIGURATIONS).position_m * 1e3;
+        let lost = Difference::from_robots(robot, &plain, CONFIGURATIONS).position_m * 1e3;
         notes.push(format!(
             "URDF has no place for {}: without, the tip is off by up to {lost:.3} mm; calibration.json and the TOML model have it",
             left.join(", ")

@@ -83,7 +83,7 @@ pub fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
         writer.notes.push("masses without inertia are not part of a URDF and were left out".to_owned());
     }
     let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
-    let selection = ChainSelection::of(robot, &ends);
+    let selection = ChainSelection::from_links(robot, &ends);
     Ok((Converted { text: writer.text.finish(), notes: writer.notes }, selection))
 }
 

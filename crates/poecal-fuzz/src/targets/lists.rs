@@ -43,7 +43,7 @@ pub fn hand_eye(data: &[u8]) -> bool {
     if poses.flange.poses.len() > MOST_ROWS {
         return true;
     }
-    match calibrated(&poses.flange, &poses.target, &HandEyeOptions::of(CameraPlace::InHand), &row_name) {
+    match calibrated(&poses.flange, &poses.target, &HandEyeOptions::new(CameraPlace::InHand), &row_name) {
         Ok(found) => {
             assert!(format!("{found:?}").len() > 10 && !format!("{found:?}").contains("NaN"), "{found:?}")
         }
@@ -78,7 +78,7 @@ pub fn ledgers(data: &[u8]) -> bool {
     let written = |rows: &[LedgerRow]| serde_json::to_string(rows).unwrap_or_default();
     assert_eq!(read().map(|again| written(&again)).unwrap_or_default(), written(&rows));
     let count = rows.len();
-    if let Ok(line) = Line::of(rows, None, &BTreeMap::new()) {
+    if let Ok(line) = Line::from_rows(rows, None, &BTreeMap::new()) {
         assert!(line.text().starts_with("robots"));
         assert!(line.csv().lines().count() > count);
     }

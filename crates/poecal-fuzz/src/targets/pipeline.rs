@@ -76,7 +76,7 @@ fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> 
         assert!(!report::summary(&file, detail).is_empty());
     }
     same(&file);
-    let residuals = Residuals::of(&read.data, calibration);
+    let residuals = Residuals::from_calibration(&read.data, calibration);
     let text = residuals.text();
     assert_eq!(certain(Residuals::parse(&text, PATH), &text).text(), text);
     assert!(page(&file, &residuals), "a calibration without a page");

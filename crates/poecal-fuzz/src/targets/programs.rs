@@ -31,7 +31,7 @@ pub fn programs(data: &[u8]) -> bool {
     let nominal = elbow();
     let mut actual = nominal.clone();
     actual.terms.push(JointTerm { joint: 1, term: Term::OFFSET, coefficient: 0.003 });
-    let mut options = ProgramOptions::of(language);
+    let mut options = ProgramOptions::new(language);
     options.change.nearest = text.len().is_multiple_of(2);
     options.given.tools.push((None, Pose::from_translation([0.0, 0.0, 0.1].into())));
     options.given.frames.push((None, Pose::identity()));

@@ -250,7 +250,7 @@ impl<'h> Sample<'h> {
         if cells.all(|cell| cell.units().next().is_some()) {
             return None;
         }
-        let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.of() == *of);
+        let named = columns.first().and_then(|it| self.names.unit(*it)).filter(|it| it.si_unit() == *of);
         let symbol = usual[usize::from(self.largest_of(columns) > *most)];
         named.or_else(|| NamedUnit::parse(symbol, *of).ok())
     }

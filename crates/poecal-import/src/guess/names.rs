@@ -39,7 +39,7 @@ struct Words {
 }
 
 impl Words {
-    fn of(name: &str) -> Self {
+    fn from_name(name: &str) -> Self {
         let (name, unit) = without_unit(name);
         let words = name.split(|it: char| !it.is_alphanumeric()).filter(|it| !it.is_empty());
         let mut words: Vec<String> = words.map(str::to_lowercase).collect();
@@ -73,7 +73,7 @@ pub(crate) struct Names<'h> {
 
 impl<'h> Names<'h> {
     pub(crate) fn new(header: &'h Header<'h>, numeric: Vec<bool>) -> Self {
-        Names { header, words: header.cells.iter().map(|cell| Words::of(&cell.name)).collect(), numeric }
+        Names { header, words: header.cells.iter().map(|cell| Words::from_name(&cell.name)).collect(), numeric }
     }
 
     /// The unit that the name of a column ends with.

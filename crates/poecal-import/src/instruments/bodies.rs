@@ -74,7 +74,7 @@ pub(crate) struct Frames<'t> {
 impl<'t> Frames<'t> {
     /// The frames in the lines below the header. `time` of the cells of a line, and of the number and the time of the frame before, is that of its frame,
     /// or what is wrong with the line.
-    pub(crate) fn of(
+    pub(crate) fn from_lines(
         text: &'t str,
         (header, unit): (usize, (&'static str, f64)),
         separator: char,
@@ -168,7 +168,7 @@ impl<'t> Frames<'t> {
         let frames: Vec<MarkerPlaces> = self.all.iter().map(of).collect();
         let columns: Vec<usize> = (0..taken.len()).collect();
         let others: Vec<usize> = (if self.are_unnamed { 0 } else { taken.len() }..places.len()).collect();
-        RenamedMarkers::of(&frames, &columns, &others)
+        RenamedMarkers::from_frames(&frames, &columns, &others)
     }
 
     /// The bodies to take.

@@ -52,13 +52,13 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
             "found the length unit `{stated}`, expected Meters, Centimeters or Millimeters"
         ));
     };
-    let labels = Labels::of(text)?;
+    let labels = Labels::from_text(text)?;
     let (bodies, unnamed) = labels.bodies(value("Rotation Type").unwrap_or("Quaternion"))?;
     let is_time = |it: &&str| it.starts_with("Time") && !it.starts_with("TimeCode");
     let Some(time) = labels.axes.iter().position(is_time) else {
         return At(labels.line).refuse("found no column `Time`, expected the time of each frame in seconds");
     };
-    let frames = Frames::of(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
+    let frames = Frames::from_lines(text, (labels.line, *unit), ',', |cells, _, _| labels.time(cells, time))?;
     let are_unnamed = bodies.iter().all(|it| it.name.starts_with(UNNAMED));
     let frames = Frames { unnamed, are_unnamed, ..frames };
     let mut made = frames.table(&bodies, "body or marker", opening)?;
@@ -70,7 +70,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
 }
 
 impl<'t> Labels<'t> {
-    fn of(text: &'t str) -> Result<Self, Refused> {
+    fn from_text(text: &'t str) -> Result<Self, Refused> {
         let mut found: Vec<Vec<&str>> = Vec::new();
         for (line, content) in lines(text).skip(1).take(12) {
             let axes = cells(content, ',');

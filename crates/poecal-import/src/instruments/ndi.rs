@@ -14,7 +14,7 @@ const FIRST: usize = 10;
 const TIME: [(&str, f64); 4] = [("Hour", 3600.0), ("Minutes", 60.0), ("Seconds", 1.0), ("ms", 1e-3)];
 
 fn head(text: &str) -> Option<Head<'_>> {
-    let mut some = lines(text).take(FIRST).map(|it| Head::of(it, Separator::Comma));
+    let mut some = lines(text).take(FIRST).map(|it| Head::from_line(it, Separator::Comma));
     some.find(|it| it.has(&["Xa", "Ya", "Za", "qoa"]))
 }
 
@@ -34,7 +34,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let time = TIME.map(|(name, seconds)| Some((head.at(name)?, seconds)));
     let expected = head.names.len();
     let mut days = 0.0;
-    let frames = Frames::of(text, (head.line, ("mm", 1e-3)), ',', |cells, _, before| {
+    let frames = Frames::from_lines(text, (head.line, ("mm", 1e-3)), ',', |cells, _, before| {
         if cells.len() < expected {
             return Err(format!("found {} cells, expected {expected} as in the header", cells.len()));
         }

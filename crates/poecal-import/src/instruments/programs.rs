@@ -49,7 +49,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     }
     let language = language(text).ok_or("found no program")?;
     let found = joint_targets(language, text.as_bytes(), opening.robot);
-    let found = found.map_err(|error| Refused::of(&error))?;
+    let found = found.map_err(|error| Refused::from_error(&error))?;
     let title = language.title();
     if let Some(line) = found.poses.first() {
         let (targets, are) = match found.poses.len() {

@@ -52,7 +52,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         (place(0).or(frame.map(|_| 2)).unwrap_or(0), 3)
     };
     let needed = (first + step * names.len()).min(expected);
-    let mut frames = Frames::of(text, (line, ("mm", 1e-3)), '\t', |cells, count, _| {
+    let mut frames = Frames::from_lines(text, (line, ("mm", 1e-3)), '\t', |cells, count, _| {
         let read = |at: Option<usize>| number(cells.get(at?)?);
         let frame = read(frame).unwrap_or(count as f64 + 1.0);
         if cells.len() < needed {

@@ -35,7 +35,7 @@ impl Refused {
     }
 
     /// Of an error without a file.
-    pub(crate) fn of(error: &Error) -> Self {
+    pub(crate) fn from_error(error: &Error) -> Self {
         Refused { line: error.place().and_then(|it| it.line), message: error.message().to_owned() }
     }
 

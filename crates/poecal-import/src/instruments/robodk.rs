@@ -14,7 +14,7 @@ pub(crate) const FORM: Form = Form { title: "measurements of RoboDK", is_it, tab
 const POSE: [&str; 6] = ["X", "Y", "Z", "rX", "rY", "rZ"];
 
 fn head(text: &str) -> Option<Head<'_>> {
-    lines(text).next().map(|line| Head::of(line, Separator::Comma))
+    lines(text).next().map(|line| Head::from_line(line, Separator::Comma))
 }
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {

@@ -51,14 +51,14 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
 }
 
 fn table(text: &str, _: &Opening<'_>) -> Result<Made, Refused> {
-    let Comments { frame, is_cylindrical, unit } = Comments::of(text)?;
+    let Comments { frame, is_cylindrical, unit } = Comments::from_text(text)?;
     let points = lines(text).filter(|it| comment(it.1).is_none());
-    let point = |(line, content): (usize, _)| Point::of(line, content).or_else(|why| At(line).refuse(why));
+    let point = |(line, content): (usize, _)| Point::from_line(line, content).or_else(|why| At(line).refuse(why));
     let points: Vec<Point<'_>> = points.map(point).collect::<Result<_, _>>()?;
     let first =
         points.first().ok_or("found comments of SpatialAnalyzer and no point, expected at least one")?;
     refuse_unlike(first, &points)?;
-    let layout = Layout::of(first, &points).or_else(|why| At(first.line).refuse(why))?;
+    let layout = Layout::from_points(first, &points).or_else(|why| At(first.line).refuse(why))?;
     let (names, have_targets) = layout.names(&points);
     let sigmas = ["sigma_x", "sigma_y", "sigma_z"].map(|it| Column::from(it).in_unit(unit));
     let columns = std::iter::once(Column::from(if have_targets { "target" } else { "id" }))
@@ -127,7 +127,7 @@ fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused>
 }
 
 impl<'t> Comments<'t> {
-    fn of(text: &'t str) -> Result<Self, Refused> {
+    fn from_text(text: &'t str) -> Result<Self, Refused> {
         let frame = stated(text, "Coordinate Frame", "the frame")?.map(|it| it.1);
         let Some((line, axes)) = stated(text, "AXES", "axes and unit")? else {
             return Refused::whole(
@@ -177,7 +177,7 @@ fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t
 
 impl<'t> Point<'t> {
     /// The point of a line, or what is wrong with it.
-    fn of(line: usize, content: &'t str) -> Result<Self, String> {
+    fn from_line(line: usize, content: &'t str) -> Result<Self, String> {
         let content = content.trim();
         if content.contains(';') {
             return Err("found `;` between the cells of a point, expected commas or blanks: export the points again, or replace it".to_owned());
@@ -218,7 +218,7 @@ impl<'t> Point<'t> {
 
 impl Layout {
     /// What the numbers of points are, of which this is the first one.
-    fn of(first: &Point<'_>, points: &[Point<'_>]) -> Result<Self, String> {
+    fn from_points(first: &Point<'_>, points: &[Point<'_>]) -> Result<Self, String> {
         let is_digits = |it: &str| it.bytes().all(|it| it.is_ascii_digit());
         let is_whole = |at: usize| points.iter().all(|it| it.numbers.get(at).is_some_and(|it| is_digits(it)));
         // A point has a name in any case: it may be a number.

@@ -122,12 +122,12 @@ pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
 
 impl<'t> Sets<'t> {
     /// The sets that a line names, below another one that may name what they are.
-    fn of(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
+    fn from_line(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
         let head = Head::recognised(line);
         if head.names.iter().any(|it| number(it).is_some()) {
             return None;
         }
-        let over = above.map(|it| Head::of(it, head.by).names).unwrap_or_default();
+        let over = above.map(|it| Head::from_line(it, head.by).names).unwrap_or_default();
         let (parts, called) = sort(&head.names, &over)?;
         Some(Sets { head, parts, called })
     }
@@ -136,7 +136,7 @@ impl<'t> Sets<'t> {
     fn of_text(text: &'t str) -> Option<Self> {
         let some: Vec<(usize, &str)> = lines(text).take(FIRST).collect();
         let above = std::iter::once(None).chain(some.iter().copied().map(Some));
-        some.iter().zip(above).find_map(|(line, above)| Sets::of(*line, above))
+        some.iter().zip(above).find_map(|(line, above)| Sets::from_line(*line, above))
     }
 
     /// The table of a set.

@@ -112,7 +112,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let (expected, rate_hz) = (head.columns.len(), head.rate_hz);
     let own: usize = text.split_inclusive('\n').take(head.end - 1).map(str::len).sum();
     let mut frames =
-        Frames::of(text.get(..own).unwrap_or(text), (head.line + 1, unit), ',', |cells, count, _| {
+        Frames::from_lines(text.get(..own).unwrap_or(text), (head.line + 1, unit), ',', |cells, count, _| {
             if cells.len() > expected {
                 return Err(format!("found {} cells, expected {expected} as in the head", cells.len()));
             }

@@ -40,13 +40,13 @@ pub(crate) struct Head<'t> {
 
 impl<'t> Head<'t> {
     /// A line with the names in it.
-    pub(crate) fn of((line, text): (usize, &'t str), by: Separator) -> Self {
+    pub(crate) fn from_line((line, text): (usize, &'t str), by: Separator) -> Self {
         Head { line, by, names: cells(text, by) }
     }
 
     /// The same, by the separator that is recognised.
     pub(crate) fn recognised(line: (usize, &'t str)) -> Self {
-        Head::of(line, Separator::recognised(line.1))
+        Head::from_line(line, Separator::recognised(line.1))
     }
 
     /// The column of a name.

@@ -90,7 +90,7 @@ fn is_none(count: &usize) -> bool {
 }
 
 impl InputEntry {
-    fn of(it: &FileUnderstanding) -> Self {
+    fn from_understanding(it: &FileUnderstanding) -> Self {
         let counts = [("points", it.points), ("poses", it.poses)];
         let others = it.others.iter().map(|(name, count)| (*name, *count));
         let mut units: Vec<String> = Vec::new();
@@ -120,6 +120,6 @@ impl MeasurementFile {
     /// What `calibration.json` says of each file: one that has joint readings and measurements has two entries.
     #[must_use]
     pub fn inputs(&self) -> Vec<InputEntry> {
-        self.understood.iter().map(InputEntry::of).collect()
+        self.understood.iter().map(InputEntry::from_understanding).collect()
     }
 }

@@ -197,7 +197,7 @@ impl<'a> Pairing<'a> {
         }
         let partners = Partners::new(&own, others);
         let row_of = |name: &String| {
-            let other = partners.of(name)?;
+            let other = partners.partner(name)?;
             self.joints.ids.iter().position(|it| it == other)
         };
         let pairs: Vec<Pair> = (seen.iter().enumerate())

@@ -86,7 +86,7 @@ impl<'p> Planned<'p> {
 
 impl<'p> Plan<'p> {
     /// The plan of files, if there are some to join.
-    pub(crate) fn of(
+    pub(crate) fn from_paths(
         paths: &[&'p Path],
         robot: &Robot,
         options: &ReadOptions,

@@ -13,7 +13,7 @@ pub(crate) enum NoStands {
 
 impl NoStands {
     /// Of what is wrong with the times of rows, if they are none of a list, with their lines.
-    pub(crate) fn of(why: Option<NoStream>, times: &[f64], line: impl Fn(usize) -> Option<usize>) -> Self {
+    pub(crate) fn from_times(why: Option<NoStream>, times: &[f64], line: impl Fn(usize) -> Option<usize>) -> Self {
         let Some(why) = why else { return NoStands::Listed };
         let line = |row: usize| line(row).unwrap_or_default();
         let back = if let NoStream::Back(row) = why { Some(line(row)) } else { None };

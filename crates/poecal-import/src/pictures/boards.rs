@@ -49,7 +49,7 @@ fn coordinate(header: &Header<'_>, name: &str) -> Result<Coordinate> {
     }
     let mut cells = header.cells.iter().enumerate();
     let found = cells.find_map(|(at, cell)| Some((at, unit_in_name(&cell.name, name)?)));
-    match found.filter(|(_, unit)| unit.of() == Unit::Metre) {
+    match found.filter(|(_, unit)| unit.si_unit() == Unit::Metre) {
         Some(found) => Ok(found),
         None => Ok((header.require(name, "for a point of the board", |_| false, "")?, Unit::Metre.into())),
     }

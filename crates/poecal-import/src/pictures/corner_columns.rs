@@ -129,7 +129,7 @@ fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
 fn of_length(header: &Header<'_>, name: &str) -> Option<Result<Coordinate>> {
     let named = |cell: &HeaderCell| {
         let is_it = cell.name.eq_ignore_ascii_case(name) && !key(cell).ends_with("px");
-        let unit = unit_in_name(&cell.name, name).filter(|unit| unit.of() == Unit::Metre);
+        let unit = unit_in_name(&cell.name, name).filter(|unit| unit.si_unit() == Unit::Metre);
         is_it.then_some(NamedUnit::from(Unit::Metre)).or(unit)
     };
     let (at, unit) = header.cells.iter().enumerate().find_map(|(at, cell)| Some((at, named(cell)?)))?;

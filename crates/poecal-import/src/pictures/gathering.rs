@@ -83,7 +83,7 @@ impl Gathering {
         let partners = Partners::new(&seen, others.keys().collect());
         let alike = partners.words("pictures", seen.len());
         let mut words: Vec<String> = alike.map(|it| format!("{it} of the {what}")).into_iter().collect();
-        let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.of(name).is_none()).collect();
+        let unknown: Vec<&String> = seen.iter().copied().filter(|name| partners.partner(name).is_none()).collect();
         let used: BTreeSet<&String> = seen.iter().copied().chain(partners.alike.values().copied()).collect();
         let without: Vec<&String> = others.keys().filter(|name| !used.contains(name)).collect();
         if unknown.len() == seen.len()
@@ -103,7 +103,7 @@ impl Gathering {
                 words.push(format!("left out the pictures that have {which}: {} ({few})", names.len()));
             }
         }
-        let taken = |sight: &Sight| others.get(partners.of(sight.image.as_ref()?)?).cloned();
+        let taken = |sight: &Sight| others.get(partners.partner(sight.image.as_ref()?)?).cloned();
         let taken: Vec<Option<Taken>> = self.pictures.iter().map(taken).collect();
         for (picture, taken) in self.pictures.iter_mut().zip(taken) {
             picture.taken = taken;

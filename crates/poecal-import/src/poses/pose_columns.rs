@@ -122,7 +122,7 @@ impl std::str::FromStr for PoseUnits {
         let mut units = PoseUnits::default();
         for symbol in text.split(',').map(str::trim) {
             let unit = NamedUnit::parse_any(symbol)?;
-            let place = if unit.of() == Unit::Radian { &mut units.angle } else { &mut units.length };
+            let place = if unit.si_unit() == Unit::Radian { &mut units.angle } else { &mut units.length };
             if place.replace(unit).is_some() {
                 return ErrorKind::Option.refuse(format!(
                     "found `{text}`, expected one unit of lengths and one of angles, like mm,deg"
@@ -245,7 +245,7 @@ fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits
         |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
             let in_header = header.unit(at, quantity, &format!("for {who}"))?.map(|(unit, _)| unit);
             let in_name = header.cells.get(at).and_then(|cell| without_unit(&cell.name).1);
-            let known = in_header.or(in_name.filter(|unit| unit.of() == quantity)).or(stated);
+            let known = in_header.or(in_name.filter(|unit| unit.si_unit() == quantity)).or(stated);
             Ok(NumberColumn { at, unit: known.map_or_else(|| NamedUnit::parse(usual, quantity), Ok)? })
         };
     let of = |columns: Vec<usize>, quantity, stated, usual| {

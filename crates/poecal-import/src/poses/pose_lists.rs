@@ -170,7 +170,7 @@ fn by_name(first: &PoseFile, second: &PoseFile, warnings: &mut Vec<String>) -> R
     let other = second.rows_by_name()?.unwrap_or_default();
     let names = |rows: &BTreeMap<_, usize>| rows.keys().copied().collect::<BTreeSet<&String>>();
     let partners = Partners::new(&names(&one), names(&other));
-    let pair = |(row, name)| Some((row, *other.get(partners.of(name)?)?));
+    let pair = |(row, name)| Some((row, *other.get(partners.partner(name)?)?));
     let rows: Vec<(usize, usize)> = first.names.iter().flatten().enumerate().filter_map(pair).collect();
     if rows.is_empty() {
         let message = format!(

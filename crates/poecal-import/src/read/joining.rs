@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         let mut understood = FileUnderstanding::new(&table, &cursor, table_rows.rows);
         understood.others = BTreeMap::from([("joint readings", table_rows.rows)]);
         self.found.understood.push(understood);
-        let turning = layout.inputs.iter().filter(|it| it.unit.of() == Unit::Radian);
+        let turning = layout.inputs.iter().filter(|it| it.unit.si_unit() == Unit::Radian);
         let rows = JointRows {
             path: path.to_path_buf(),
             readings: table_rows.readings,
@@ -107,7 +107,7 @@ impl<'a> Reader<'a> {
             is_sheet: table.is_sheet(),
             is_without_unit: turning.clone().count() > 0
                 && turning.clone().all(|it| it.unit_from == UnitSource::Si),
-            turns: layout.inputs.iter().map(|it| it.unit.of() == Unit::Radian).collect(),
+            turns: layout.inputs.iter().map(|it| it.unit.si_unit() == Unit::Radian).collect(),
             times: table_rows.times,
             spans: None,
             sampled: None,
@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
         let found = match found {
             Ok(found) => found,
             Err(why) => {
-                let why = NoStands::of(why, &rows.times, |row| rows.lines.get(row).copied());
+                let why = NoStands::from_times(why, &rows.times, |row| rows.lines.get(row).copied());
                 refuse_backwards(&rows.path, &why)?;
                 if self.options.join == Some(Join::Motion) {
                     rows.sampled = Sampled::new(&rows.times, &rows.readings, rows.turns.len());
@@ -182,7 +182,7 @@ impl<'a> Reader<'a> {
             Ok(stands) => (Some(stands), None),
             Err(why) => {
                 let line = |row: usize| data.observations.get(row).map(|it| it.source.line as usize);
-                (None, Some(NoStands::of(why, &times, line)))
+                (None, Some(NoStands::from_times(why, &times, line)))
             }
         };
         if let Some(why) = &why {

@@ -52,7 +52,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return ErrorKind::Option.refuse("found no measurement file, expected at least one");
     }
     let no_map = ColumnMap::default();
-    if let Some(mut plan) = Plan::of(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
+    if let Some(mut plan) = Plan::from_paths(paths, robot, options, options.mapping.as_ref().unwrap_or(&no_map))? {
         plan.settle_sets(robot, options, &no_map)?;
         let mut reader = Reader::new(robot, options, &no_map);
         reader.joined(&plan)?;

@@ -68,7 +68,7 @@ pub(super) fn stated_separator(path: &Path, line: usize, text: &str) -> Result<O
     };
     let stated = text.get(stated.len()..).unwrap_or_default();
     let mut characters = stated.chars();
-    let separator = characters.next().and_then(Separator::of);
+    let separator = characters.next().and_then(Separator::from_char);
     match separator {
         Some(separator) if characters.all(|c| separator.matches(c) || c == ' ') => Ok(Some(separator)),
         _ => Err(ErrorKind::Syntax

@@ -33,7 +33,7 @@ impl Separator {
     }
 
     /// The separator with this character.
-    pub(crate) fn of(c: char) -> Option<Self> {
+    pub(crate) fn from_char(c: char) -> Option<Self> {
         match c {
             ',' => Some(Separator::Comma),
             ';' => Some(Separator::Semicolon),

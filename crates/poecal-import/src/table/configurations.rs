@@ -78,7 +78,7 @@ pub(crate) fn read(folder: &Path) -> Result<Configurations> {
     for name in &files {
         let path = folder.join(name);
         let text = source_text::read_up_to(&path, EXPECTED, Limit::Settings)?;
-        all.push(Readings::of(&text, path)?);
+        all.push(Readings::from_text(&text, path)?);
         whole.push_str(&text);
     }
     let mut text = "image".to_owned();
@@ -139,7 +139,7 @@ fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
 }
 
 impl Readings {
-    fn of(text: &str, path: PathBuf) -> Result<Self> {
+    fn from_text(text: &str, path: PathBuf) -> Result<Self> {
         let text = text.trim_start_matches('\u{feff}');
         let refuse = |line: usize, found: &str| {
             let message = format!("found {found}, expected {EXPECTED}");
@@ -239,8 +239,8 @@ fn of_leaves(all: &[Leaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usiz
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> std::result::Result<(Vec<String>, Vec<f64>), String> {
-        let found = Readings::of(text, PathBuf::from("configuration_1"));
+    fn readings_of_text(text: &str) -> std::result::Result<(Vec<String>, Vec<f64>), String> {
+        let found = Readings::from_text(text, PathBuf::from("configuration_1"));
         found.map(|it| (it.names, it.values)).map_err(|error| error.to_string())
     }
 
@@ -257,7 +257,7 @@ mod tests {
             "joint_positions:\n- 0.1\n- -0.2\n- 1e-3\n",
             "q: [0.1, -0.2, 1e-3] # at rest\nstamp: 17\n",
         ] {
-            assert_eq!(of(text), Ok((Vec::new(), vec![0.1, -0.2, 1e-3])), "{text}");
+            assert_eq!(readings_of_text(text), Ok((Vec::new(), vec![0.1, -0.2, 1e-3])), "{text}");
         }
         for text in [
             "a: 0.1\nb: -0.2\n",
@@ -265,7 +265,7 @@ mod tests {
             "name: [a, b]\nposition: [0.1, -0.2]\n",
             "{joints: [a, b], positions: [0.1, -0.2]}",
         ] {
-            assert_eq!(of(text), Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])), "{text}");
+            assert_eq!(readings_of_text(text), Ok((vec!["a".to_owned(), "b".to_owned()], vec![0.1, -0.2])), "{text}");
         }
     }
 
@@ -281,7 +281,7 @@ mod tests {
             ("a: [", "found broken YAML"),
             ("1e9", "found `1e9`"),
         ] {
-            let error = of(text).unwrap_err();
+            let error = readings_of_text(text).unwrap_err();
             assert!(error.contains(part), "{text}: {error}");
         }
     }

@@ -280,7 +280,7 @@ fn check_size(value: f64, row: &Row<'_>, input: &Input) -> Result<()> {
         return Ok(());
     }
     let text = row.raw(column);
-    let si = match input.unit.of() {
+    let si = match input.unit.si_unit() {
         Unit::One | Unit::Second => String::new(),
         quantity @ (Unit::Metre | Unit::Radian) => format!(" {}", NamedUnit::from(quantity).symbol()),
     };

@@ -48,7 +48,7 @@ impl<'a> Partners<'a> {
     }
 
     /// The other file's name of a picture: the same, or that with the same number.
-    pub(crate) fn of(&self, name: &String) -> Option<&'a String> {
+    pub(crate) fn partner(&self, name: &String) -> Option<&'a String> {
         self.others.get(name).or_else(|| self.alike.get(name)).copied()
     }
 }

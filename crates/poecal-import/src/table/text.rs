@@ -65,7 +65,7 @@ impl<'a> Blocks<'a> {
     /// The blocks of a file; `expected` describes it in messages.
     pub(crate) fn open(path: &'a Path, expected: &'a str) -> Result<Self> {
         let source = TextSource::File(Hashing::new(source::open(path, expected, Limit::Table)?));
-        Ok(Blocks::of(path, expected, source, BLOCK))
+        Ok(Blocks::new(path, expected, source, BLOCK))
     }
 
     /// The same, and of a folder the table that its files make.
@@ -86,7 +86,7 @@ impl<'a> Blocks<'a> {
         text: Box<dyn Read + Send>,
         sha256: Option<String>,
     ) -> Self {
-        Blocks::of(path, expected, TextSource::Made(text, sha256), BLOCK)
+        Blocks::new(path, expected, TextSource::Made(text, sha256), BLOCK)
     }
 
     /// The same with the places of its lines, and what was understood.
@@ -96,7 +96,7 @@ impl<'a> Blocks<'a> {
 
     /// The blocks of an input that is open.
     pub(crate) fn of_input(path: &'a Path, expected: &'a str, input: Input) -> Self {
-        Blocks::of(path, expected, TextSource::File(Hashing::new(input)), BLOCK)
+        Blocks::new(path, expected, TextSource::File(Hashing::new(input)), BLOCK)
     }
 
     /// The places of the lines in the file that they were made of.
@@ -117,10 +117,10 @@ impl<'a> Blocks<'a> {
     /// The blocks of a text that messages call `path`, of so many bytes per read.
     #[cfg(test)]
     pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
-        Blocks::of(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
+        Blocks::new(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
     }
 
-    fn of(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
+    fn new(path: &'a Path, expected: &'a str, source: TextSource, size: usize) -> Self {
         Blocks {
             path,
             expected,
@@ -361,7 +361,7 @@ mod tests {
         let path = Path::new("x.csv");
         let source = TextSource::File(Hashing::new(Input::from_reader(Box::new(Broken))));
         let expected = "a measurement file (CSV)";
-        let error = Blocks::of(path, expected, source, BLOCK).advance().unwrap_err().to_string();
+        let error = Blocks::new(path, expected, source, BLOCK).advance().unwrap_err().to_string();
         assert_eq!(
             error,
             "x.csv: the file cannot be read (the cable was pulled), expected a measurement file (CSV)"

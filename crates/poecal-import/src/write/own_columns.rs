@@ -46,7 +46,7 @@ pub(crate) fn refuse_names(names: &[String], measured: &[&str]) -> Result<()> {
 /// The columns of the readings.
 pub(crate) fn reading_header(names: &[String], units: &[NamedUnit]) -> String {
     let cell = |(name, unit): (&String, &NamedUnit)| {
-        let symbol = if unit.of() == Unit::One { String::new() } else { format!("[{}]", unit.symbol()) };
+        let symbol = if unit.si_unit() == Unit::One { String::new() } else { format!("[{}]", unit.symbol()) };
         csv_text::cell(&format!("{name}{symbol}")).into_owned()
     };
     names.iter().zip(units).map(cell).collect::<Vec<_>>().join(",")

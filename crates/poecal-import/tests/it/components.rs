@@ -73,7 +73,7 @@ fn the_cost_is_that_of_the_covariance() {
     }
     let along = sight * sight.transpose();
     let covariance = along * 1e-10 + (Matrix3::identity() - along) * 49e-10;
-    let packed = Packed::of(&made.nominal, &data);
+    let packed = Packed::from_dataset(&made.nominal, &data);
     let session = Session::new(&made.nominal, &data, &packed, true);
     let estimate = poecal_fit::state::delivered(&made.nominal, &data);
     let errors = session.errors(&data.all_rows(), &estimate);
@@ -210,7 +210,7 @@ fn a_fit_that_knows_the_noise_is_better() {
                 .unwrap();
         let error = |data: &Dataset| {
             let found = fit(&exact.nominal, data);
-            let packed = Packed::of(&exact.nominal, &further);
+            let packed = Packed::from_dataset(&exact.nominal, &further);
             let session = Session::new(&exact.nominal, &further, &packed, true);
             let errors = session.errors(&further.all_rows(), &found.models.calibrated);
             let squares: f64 = errors.iter().map(|error| error.position_m().norm_squared()).sum();

@@ -49,14 +49,14 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
     for robot in [elbow(), scara(), seven_axis(), gantry()] {
         for base_free in [true, false] {
             let data = two_targets(&robot);
-            let packed = Packed::of(&robot, &data);
+            let packed = Packed::from_dataset(&robot, &data);
             let session = Session::new(&robot, &data, &packed, base_free);
             let targets = [
                 Parameter::TargetPlace(TargetPlace { target: 0 }),
                 Parameter::TargetFrame(TargetFrame::new(1)),
             ];
             let layout = Layout::new(screws(&robot).into_iter().chain(targets).collect(), 0.4);
-            let prior = Prior::of(&session, Tolerance { angle_rad: 0.01, length_m: 0.004 });
+            let prior = Prior::from_session(&session, Tolerance { angle_rad: 0.01, length_m: 0.004 });
             let nominal = delivered(&robot, &data);
             let mut generator = ChaCha8Rng::seed_from_u64(5);
             let n = layout.dim();
@@ -456,7 +456,7 @@ fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
         let found = fitted(&robot, &data);
         let validated = found.trust.cross_validation.as_ref().unwrap().random.rms.lead();
         let fresh = session(seed + 1000, 200);
-        let packed = Packed::of(&robot, &fresh);
+        let packed = Packed::from_dataset(&robot, &fresh);
         let of_fresh = Session::new(&robot, &fresh, &packed, true);
         let errors = of_fresh.errors(&fresh.all_rows(), &found.models.calibrated);
         let squares: f64 = errors.iter().map(|it| it.position_m().norm_squared()).sum();

@@ -179,7 +179,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
                 made.data = without.run(&elbow(), kind).unwrap().data;
                 expected += unknowns as f64;
             }
-            let packed = Packed::of(&made.nominal, &made.data);
+            let packed = Packed::from_dataset(&made.nominal, &made.data);
             let session = Session::new(&made.nominal, &made.data, &packed, true);
             for error in session.errors(&made.data.all_rows(), &found.models.calibrated) {
                 let whitened = error.numbers().map(|(channel, e)| (e / sigma[channel.quantity]).powi(2));
@@ -280,7 +280,7 @@ fn residuals_of_a_sphere_have_their_sign() {
     let made = simulation.run(&elbow(), Kind::SPHERE).unwrap();
     let options = CalibrationOptions { robust: Robust::Off, ..geometry() };
     let found = calibrate(&made.nominal, &made.data, &options).unwrap();
-    let packed = Packed::of(&made.nominal, &made.data);
+    let packed = Packed::from_dataset(&made.nominal, &made.data);
     let session = Session::new(&made.nominal, &made.data, &packed, true);
     let errors = session.errors(&found.fit_rows, &found.models.calibrated);
     let all: Vec<f64> = errors.iter().flat_map(|it| it.numbers().map(|(_, e)| e)).collect();

@@ -86,7 +86,7 @@ fn jacobians_agree_with_differences() {
     let state = Estimate::new(&robot, vec![robot.home], device);
     let mut parameters = vec![("target frame", Parameter::TargetFrame(TargetFrame::new(0)))];
     for (joint, it) in robot.joints.iter().enumerate() {
-        parameters.push(("free screw", FreeScrew::of(joint, it.kind)));
+        parameters.push(("free screw", FreeScrew::parameter(joint, it.kind)));
         parameters.push(("screw axis", Parameter::ScrewAxis(ScrewAxis { joint, kind: it.kind })));
         parameters
             .push(("offset", Parameter::ValueTerm(ValueTerm { joint, kind: it.kind, term: Term::OFFSET })));
@@ -157,7 +157,7 @@ fn the_kernels_sum_them_as_their_formulas_do() {
         ] {
             let mut made = simulation.run(&robot, kind).unwrap();
             made.data.write_poses_by(residual.model());
-            let packed = poecal_fit::state::Packed::of(&robot, &made.data);
+            let packed = poecal_fit::state::Packed::from_dataset(&robot, &made.data);
             let seen = poecal_fit::state::Session::new(&robot, &made.data, &packed, true);
             let about = Vector3::new(0.3, 0.1, 0.2);
             let mut free = vec![Parameter::DeviceFrame(DeviceFrame::new(0, about))];

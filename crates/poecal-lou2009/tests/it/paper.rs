@@ -242,7 +242,7 @@ fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
                 let seen = to_target * device().adjoint();
                 for (i, joint) in robot.joints.iter().enumerate() {
                     let screw = seen * literal.screw_blocks[i] * estimate.base_from_axis[i].adjoint();
-                    let free = FreeScrew::of(i, joint.kind);
+                    let free = FreeScrew::parameter(i, joint.kind);
                     let shift =
                         Parameter::ValueTerm(ValueTerm { joint: i, kind: joint.kind, term: Term::OFFSET });
                     let mut twists = [(Vector3::zeros(), Vector3::zeros()); 6];

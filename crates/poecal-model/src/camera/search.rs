@@ -56,7 +56,7 @@ pub struct LensState {
 impl LensSearch {
     /// Of the camera of pictures, whose lens is a first guess; with the state there. `None` if there is no such camera.
     #[must_use]
-    pub fn of(pictures: &Pictures) -> Option<(Self, LensState)> {
+    pub fn from_pictures(pictures: &Pictures) -> Option<(Self, LensState)> {
         let first = pictures.all.first()?;
         let lens = PictureUnknown::Lens(first.camera);
         let is_sheet = pictures.boards.get(first.board).is_some_and(is_flat_sheet);

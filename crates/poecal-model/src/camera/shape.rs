@@ -11,7 +11,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    pub(crate) fn of(board: &Board) -> Self {
+    pub(crate) fn from_board(board: &Board) -> Self {
         let middle = middle(&board.points);
         let half = |axis: usize| {
             board.points.iter().map(|it| (it[axis] - middle[axis]).abs()).fold(f64::MIN_POSITIVE, f64::max)

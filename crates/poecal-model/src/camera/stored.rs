@@ -45,7 +45,7 @@ pub struct CameraEntry {
 impl BoardEntry {
     /// Of a board.
     #[must_use]
-    pub fn of(board: &Board) -> Self {
+    pub fn from_board(board: &Board) -> Self {
         let point = |(name, point): (&String, &Vector3<f64>)| PointEntry {
             name: name.clone(),
             place_mm: [0, 1, 2].map(|axis| 1e3 * point[axis]),
@@ -111,7 +111,7 @@ impl CameraEntry {
 
     /// Of a camera.
     #[must_use]
-    pub fn of(camera: &Camera) -> Self {
+    pub fn from_camera(camera: &Camera) -> Self {
         let lens = &camera.lens;
         let (model, distortion) = match lens.distortion {
             Distortion::Brown(k) => ("brown", k.to_vec()),

@@ -147,7 +147,7 @@ impl PictureUnknowns {
                 }
                 PictureUnknown::Board(board) => {
                     let Some(board) = boards.get_mut(board) else { continue };
-                    let shape = Shape::of(board);
+                    let shape = Shape::from_board(board);
                     let numbers = [own(0), own(1), own(2), own(3)];
                     board.points.iter_mut().for_each(|point| *point = shape.bent(point, numbers));
                 }
@@ -175,7 +175,7 @@ impl PictureUnknowns {
         let mut mixed = Matrix6xX::zeros(count);
         let mut by_pose = Vector6::zeros();
         let parts: Vec<&Part> = self.parts.iter().filter(|part| part.is_of(camera, board)).collect();
-        let shape = self.boards.get(board).map(Shape::of);
+        let shape = self.boards.get(board).map(Shape::from_board);
         let mut columns: Vec<(usize, Vector2<f64>)> = Vec::new();
         for corner in view.corners.iter().filter(|corner| corner.weight > 0.0) {
             let Some(seen) = view.seen(corner, pose) else { continue };
@@ -230,7 +230,7 @@ impl PictureUnknowns {
         if parts.is_empty() {
             return Vec::new();
         }
-        let shape = Shape::of(given);
+        let shape = Shape::from_board(given);
         let of = |(at, point): (usize, &Vector3<f64>)| {
             let mut columns = Vec::new();
             for part in &parts {
@@ -381,7 +381,7 @@ fn lens_priors(camera: &Camera) -> (Vec<usize>, Vec<f64>) {
 }
 
 fn shape_priors(board: &Board) -> (Vec<usize>, Vec<f64>) {
-    let Shape { half_m: [x, y], .. } = Shape::of(board);
+    let Shape { half_m: [x, y], .. } = Shape::from_board(board);
     (Vec::new(), vec![SHAPE, SHAPE, SHAPE * x, SHAPE * y])
 }
 

@@ -111,9 +111,9 @@ impl DhTable {
     /// # Errors
     /// [`ErrorKind::Export`] as [`AxisFrames::of`], and if axes are nearly parallel, so that a row of Denavit and Hartenberg would have an offset
     /// of more than ten reaches.
-    pub fn of(robot: &Robot, convention: DhConvention) -> Result<Self> {
+    pub fn from_robot(robot: &Robot, convention: DhConvention) -> Result<Self> {
         // Refuses what it refuses, and takes in offsets of readings.
-        let plain = AxisFrames::of(robot)?.robot(robot)?;
+        let plain = AxisFrames::from_robot(robot)?.robot(robot)?;
         let frames: Vec<Pose> = plain.joints.iter().map(along_axis).collect();
         let kinds: Vec<JointKind> = plain.joints.iter().map(|joint| joint.kind).collect();
         let points = points(&frames, &kinds);

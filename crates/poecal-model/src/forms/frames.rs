@@ -27,7 +27,7 @@ impl AxisFrames {
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own.
-    pub fn of(robot: &Robot) -> Result<Self> {
+    pub fn from_robot(robot: &Robot) -> Result<Self> {
         if let Some(joint) = robot.joints.iter().find(|it| robot.leader(it).is_some()) {
             return refuse(&format!("found joint `{}`, which follows `{}`", joint.name, joint.reading.name));
         }

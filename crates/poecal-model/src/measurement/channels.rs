@@ -57,7 +57,7 @@ impl Channels {
     /// Places of the numbers of a quantity; empty if it is not measured.
     #[must_use]
     #[inline]
-    pub fn of(&self, quantity: Quantity) -> Range<usize> {
+    pub fn range(&self, quantity: Quantity) -> Range<usize> {
         let (first, count) = self.parts[quantity];
         usize::from(first)..usize::from(first + count)
     }
@@ -65,7 +65,7 @@ impl Channels {
     /// Places of the numbers of a quantity with their components: in order where all are measured, else by name.
     #[inline]
     pub fn components(&self, quantity: Quantity) -> impl Iterator<Item = (usize, usize)> {
-        let own = self.of(quantity);
+        let own = self.range(quantity);
         let (first, all) = (own.start, own.len() == quantity.components());
         own.map(move |k| (k, if all { k - first } else { self.all[k].component() }))
     }

@@ -52,7 +52,7 @@ impl Measurement {
     }
 
     /// The same numbers of another function.
-    pub(crate) fn of(self, function: &'static Function) -> Self {
+    pub(crate) fn with_function(self, function: &'static Function) -> Self {
         Measurement { function, ..self }
     }
 

@@ -303,7 +303,7 @@ pub struct Measured<T>(ByQuantity<Option<T>>);
 
 impl<T: Copy> Measured<T> {
     /// What `of` gives for each quantity.
-    pub fn of(of: impl FnMut(Quantity) -> Option<T>) -> Self {
+    pub fn from_fn(of: impl FnMut(Quantity) -> Option<T>) -> Self {
         Measured(ByQuantity::from_fn(of))
     }
 
@@ -320,7 +320,7 @@ impl<T: Copy> Measured<T> {
 
     /// What `to` gives for each value.
     pub fn map<U: Copy>(self, mut to: impl FnMut(Quantity, T) -> U) -> Measured<U> {
-        Measured::of(|quantity| self.get(quantity).map(|value| to(quantity, value)))
+        Measured::from_fn(|quantity| self.get(quantity).map(|value| to(quantity, value)))
     }
 
     /// The first measured quantity, lengths before angles: that by which a model is judged.

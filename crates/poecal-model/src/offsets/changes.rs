@@ -186,7 +186,7 @@ impl Changes {
     ///
     /// # Errors
     /// As [`explain`](super::explain).
-    pub fn of(nominal: &Robot, actual: &Robot, base: End) -> Result<Self> {
+    pub fn from_robots(nominal: &Robot, actual: &Robot, base: End) -> Result<Self> {
         check_same_joints(nominal, actual)?;
         let (nominal, actual) = (&nominal.without_offsets(), &actual.without_offsets());
         let options = OffsetOptions { base, tip: End::Free, ..OffsetOptions::default() };
@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         let robot = moved(0.02);
-        let changes = Changes::of(&elbow(), &robot, End::Free).unwrap();
+        let changes = Changes::from_robots(&elbow(), &robot, End::Free).unwrap();
         let mut worst = 0f64;
         for (joint, motion) in (0..6).flat_map(|joint| (0..6).map(move |motion| (joint, motion))) {
             let mut twists = vec![Vector6::zeros(); 6];
@@ -315,7 +315,7 @@ mod tests {
                 let mut robot = robot.clone();
                 let by = Pose::exp(&Twist::from_vector(&(twists[joint] * (sign * STEP))));
                 robot.joints[joint].screw = robot.joints[joint].screw.transformed(&by);
-                Changes::of(&elbow(), &robot, End::Free).unwrap()
+                Changes::from_robots(&elbow(), &robot, End::Free).unwrap()
             };
             let (less, more) = (at(-1.0), at(1.0));
             for (k, entry) in found.iter().enumerate() {
@@ -339,7 +339,7 @@ mod tests {
     fn offsets_alone_are_found_as_such() {
         let offsets = [0.0, 0.01, -0.02, 0.015, 0.005, 0.0];
         let robot = into_screws(&elbow(), &offsets).unwrap();
-        let changes = Changes::of(&elbow(), &robot, End::Free).unwrap();
+        let changes = Changes::from_robots(&elbow(), &robot, End::Free).unwrap();
         let words: Vec<String> = changes.joints.iter().map(JointChange::words).collect();
         println!("{words:#?}");
         assert_eq!(changes.joints[0].offset, None, "the base may turn instead");
@@ -353,7 +353,7 @@ mod tests {
 
     #[test]
     fn what_is_noise_is_said_to_be() {
-        let mut change = Changes::of(&elbow(), &elbow(), End::Free).unwrap().joints[1];
+        let mut change = Changes::from_robots(&elbow(), &elbow(), End::Free).unwrap().joints[1];
         change.is_estimated = true;
         change.shift = Vector3::new(0.001, 0.001, 0.0);
         change.sigma_shift = Some(0.00031);

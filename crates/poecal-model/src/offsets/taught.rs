@@ -19,7 +19,7 @@ pub struct Taught {
 
 impl Taught {
     /// Least squares of `log((B N T)⁻¹ A)` over pairs of tips, a radian counting as so many metres. A base that is known is held.
-    pub fn of(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
+    pub fn from_tips(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
         Taught::with_points(tips, &[], radian_m, base_is_known)
     }
 
@@ -127,7 +127,7 @@ mod tests {
         let base = Pose::from_xyz_rpy([0.01, -0.02, 0.005], [0.01, 0.02, -0.015]);
         let tool = Pose::from_xyz_rpy([0.004, 0.003, -0.01], [-0.02, 0.0, 0.03]);
         let tips: Vec<(Pose, Pose)> = poses.iter().map(|it| (*it, base * *it * tool)).collect();
-        let taught = Taught::of(&tips, 0.3, false);
+        let taught = Taught::from_tips(&tips, 0.3, false);
         let worst = tips
             .iter()
             .map(|(nominal, actual)| (taught.tip(nominal).translation - actual.translation).norm())
@@ -135,7 +135,7 @@ mod tests {
         println!("left of 20 mm and 1.5 degrees after {STEPS} steps: {worst:.1e} m");
         // The third order of what was moved.
         assert!(worst < 1e-6);
-        let held = Taught::of(&tips, 0.3, true);
+        let held = Taught::from_tips(&tips, 0.3, true);
         assert!((held.base.translation).norm() == 0.0);
     }
 }

@@ -35,7 +35,7 @@ impl Robot {
     pub fn arm_holding(&self, factors: &[f64], held: &[(usize, f64)]) -> Result<(Arm, Vec<usize>)> {
         let (model, readings) = self.model_holding(factors, held)?;
         let names = self.reading_names();
-        let arm = Arm::of(&model).ok_or_else(|| {
+        let arm = Arm::from_model(&model).ok_or_else(|| {
             let names: Vec<&str> =
                 readings.iter().filter_map(|&it| names.get(it)).map(String::as_str).collect();
             ErrorKind::Model.error(format!(
@@ -86,7 +86,7 @@ impl Robot {
         };
         let mut model = Model::new(readings.len(), &self.home);
         for &joint in &path {
-            let value = values.of(joint);
+            let value = values.value_of_joint(joint);
             if value != JointValue::default() {
                 model.joints.push(ArmJoint { screw: self.joints[joint].screw, value });
             }
@@ -133,7 +133,7 @@ struct Values<'a> {
 }
 
 impl Values<'_> {
-    fn of(&self, joint: usize) -> JointValue {
+    fn value_of_joint(&self, joint: usize) -> JointValue {
         let (constant, linear) = self.by_reading(joint);
         let linear = linear.into_iter().collect();
         let mut value = JointValue { constant, linear, ..JointValue::default() };

@@ -350,7 +350,7 @@ mod tests {
     /// A reading, its columns with factors, and its offset.
     type Row = (&'static str, &'static [(&'static str, f64)], f64);
 
-    fn of(rows: &[Row]) -> Controller {
+    fn controller_from_rows(rows: &[Row]) -> Controller {
         let column = |(name, factor): &(&str, f64)| {
             ((*name).to_owned(), ControllerColumn { factor: *factor, unit: "deg".to_owned() })
         };
@@ -364,7 +364,7 @@ mod tests {
 
     #[test]
     fn sums_signs_factors_and_zeros_go_and_come_back() {
-        let all = of(&[
+        let all = controller_from_rows(&[
             ("a", &[("J1", -1.0)], 0.5),
             ("b", &[("J2", 2.0), ("J3", 1.0)], 0.0),
             ("c", &[("J3", 1.0)], -0.25),
@@ -397,9 +397,9 @@ mod tests {
     #[test]
     fn what_cannot_be_taken_apart_is_refused() {
         for readings in [
-            of(&[("a", &[("J1", 1.0), ("J2", 1.0)], 0.0), ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0)]),
-            of(&[("a", &[("J1", 1.0)], 0.0), ("b", &[("J1", 1.0)], 0.0)]),
-            of(&[("a", &[], 0.3)]),
+            controller_from_rows(&[("a", &[("J1", 1.0), ("J2", 1.0)], 0.0), ("b", &[("J1", 1.0), ("J2", -1.0)], 0.0)]),
+            controller_from_rows(&[("a", &[("J1", 1.0)], 0.0), ("b", &[("J1", 1.0)], 0.0)]),
+            controller_from_rows(&[("a", &[], 0.3)]),
         ] {
             let error = readings.counting().unwrap_err().to_string();
             assert!(error.contains("cannot be taken apart again"), "{error}");

@@ -51,7 +51,7 @@ impl Robot {
         let path = self.joints_to(self.tip_body());
         let (joints, indices) = self.path(&path, &self.reading_indices());
         let width = self.reading_names().len().max(1);
-        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::of(&it.screw)).collect();
+        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::from_screw(&it.screw)).collect();
         let mut values = vec![[0.0; WIDTH]; joints.len()];
         readings.chunks(WIDTH * width).flat_map(move |some| {
             let some = some.chunks_exact(width);
@@ -99,7 +99,7 @@ impl Robot {
     #[must_use]
     pub fn motion_of(&self, body: Body, joint_values: &[f64]) -> Pose {
         let (joints, values) = self.path(&self.joints_to(body), joint_values);
-        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::of(&it.screw)).collect();
+        let exponentials: Vec<Exponential> = joints.iter().map(|it| Exponential::from_screw(&it.screw)).collect();
         let values: Vec<[f64; 1]> = values.into_iter().map(|value| [value]).collect();
         let rows = product(&exponentials, &values);
         Pose::from_rows(|i, j| rows[i][j][0])
@@ -118,7 +118,7 @@ struct Exponential {
 }
 
 impl Exponential {
-    fn of(screw: &Screw) -> Self {
+    fn from_screw(screw: &Screw) -> Self {
         let rows = |turn: &Matrix3<f64>, shift: &Vector3<f64>| {
             std::array::from_fn(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]])
         };

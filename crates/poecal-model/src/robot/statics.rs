@@ -34,7 +34,7 @@ pub struct Moments {
 impl Moments {
     /// The moment of a weight about a joint.
     #[must_use]
-    pub fn of(&self, joint: usize, weight: usize) -> f64 {
+    pub fn moment(&self, joint: usize, weight: usize) -> f64 {
         if weight >= self.weights {
             return 0.0;
         }
@@ -48,7 +48,7 @@ impl Moments {
 
     /// The moment of the last weight, where payloads are, about a joint.
     pub(crate) fn of_last(&self, joint: usize) -> f64 {
-        self.weights.checked_sub(1).map_or(0.0, |last| self.of(joint, last))
+        self.weights.checked_sub(1).map_or(0.0, |last| self.moment(joint, last))
     }
 }
 
@@ -231,8 +231,8 @@ mod tests {
         robot.gravity = Some(Gravity::of_unit_weights(&robot, -Vector3::z()));
         let (statics, mut moments) = (Statics::new(&robot).unwrap(), Moments::default());
         statics.evaluate(&[0.0; 6], &mut moments);
-        assert!(moments.of(0, 5).abs() < 1e-15);
+        assert!(moments.moment(0, 5).abs() < 1e-15);
         // The tip at x = 0.834, the axis along y at x = 0.15.
-        assert!((moments.of(1, 5) * statics.levers_m()[1] - 0.684).abs() < 1e-14);
+        assert!((moments.moment(1, 5) * statics.levers_m()[1] - 0.684).abs() < 1e-14);
     }
 }

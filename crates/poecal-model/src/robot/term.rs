@@ -74,7 +74,7 @@ pub struct Situation<'a> {
 impl<'a> Situation<'a> {
     /// These values of all joints, without weights and factors.
     #[must_use]
-    pub fn of(values: &'a [f64]) -> Self {
+    pub fn from_values(values: &'a [f64]) -> Self {
         Situation { values, moments: None, factors: &[] }
     }
 
@@ -88,7 +88,7 @@ impl<'a> Situation<'a> {
             Argument::OwnValue => value(self.values, joint),
             Argument::OtherJoint => value(self.values, term.index()),
             Argument::Masses => moment(&|it| it.of_masses(joint)),
-            Argument::Weight => moment(&|it| it.of(joint, term.index())),
+            Argument::Weight => moment(&|it| it.moment(joint, term.index())),
             Argument::Factor => value(self.factors, term.index()),
             Argument::Payload => value(self.factors, term.index()) * moment(&|it| it.of_last(joint)),
         };
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn terms_are_functions_of_the_configuration() {
-        let at = Situation { factors: &[21.5], ..Situation::of(&[0.7, 0.1, 0.2, 0.3]) };
+        let at = Situation { factors: &[21.5], ..Situation::from_values(&[0.7, 0.1, 0.2, 0.3]) };
         for (name, expected) in [
             ("offset", 1.0),
             ("ratio", 0.7),

@@ -29,7 +29,7 @@ impl Capability {
     /// Of a series with a lower and an upper limit, either of which may be missing: by the line's own spread, whose uncertainty is that of the
     /// spread seen times the ratio of both squared. `None` with fewer robots than [`FEWEST`](super::FEWEST), or without a spread.
     #[must_use]
-    pub fn of(series: &Series, low: Option<f64>, high: Option<f64>) -> Option<Self> {
+    pub fn from_series(series: &Series, low: Option<f64>, high: Option<f64>) -> Option<Self> {
         let plain = Series { is_size: false, ..series.clone() };
         let spread = plain.spread().filter(|it| series.is_enough() && it.own > 0.0)?;
         let count = spread.count as f64;
@@ -66,7 +66,7 @@ mod tests {
             let (mut inside, lines) = (0, 1000);
             for seed in 0..lines {
                 let series = drawn(seed, 100, share);
-                let found = Capability::of(&series, Some(-4.0), Some(4.5)).unwrap().cpk;
+                let found = Capability::from_series(&series, Some(-4.0), Some(4.5)).unwrap().cpk;
                 inside += usize::from(found.low <= 4.0 / 3.0 && 4.0 / 3.0 <= found.high);
             }
             let share_inside = inside as f64 / lines as f64;

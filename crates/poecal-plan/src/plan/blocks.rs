@@ -19,7 +19,7 @@ impl Blocks {
     }
 
     /// Rows of a configuration, row after row.
-    pub(crate) fn of(&self, index: usize) -> &[f64] {
+    pub(crate) fn rows_of_configuration(&self, index: usize) -> &[f64] {
         let size = self.numbers * self.columns;
         &self.values[index * size..(index + 1) * size]
     }
@@ -29,7 +29,7 @@ impl Blocks {
         let n = self.columns;
         let mut upper = vec![0.0; n * n];
         for index in some {
-            linalg::add_gram(&mut upper, n, self.of(index), 0);
+            linalg::add_gram(&mut upper, n, self.rows_of_configuration(index), 0);
         }
         DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
     }
@@ -42,7 +42,7 @@ impl Blocks {
 
     /// The configurations of some indices.
     pub(crate) fn only(&self, some: &[usize]) -> Blocks {
-        let values = some.iter().flat_map(|&index| self.of(index).iter().copied()).collect();
+        let values = some.iter().flat_map(|&index| self.rows_of_configuration(index).iter().copied()).collect();
         Blocks { values, ..*self }
     }
 }

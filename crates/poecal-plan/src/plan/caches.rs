@@ -35,7 +35,7 @@ impl Caches {
         made.small = vec![0.0; count * made.small_len()];
         made.long = vec![0.0; count * made.long_len()];
         made.each(|index, small, long| {
-            let rows = blocks.of(index);
+            let rows = blocks.rows_of_configuration(index);
             by_best(
                 #[inline(always)]
                 || begin(state, aim, (rows, m), (small, long)),
@@ -86,7 +86,7 @@ impl Caches {
     fn apply_of<const S: usize>(&mut self, aim: &Aim, blocks: &Blocks, change: &Change) {
         let (m, c, root) = (self.m, self.c, aim.share.sqrt());
         self.each(|index, small, long| {
-            let rows = blocks.of(index);
+            let rows = blocks.rows_of_configuration(index);
             by_best(
                 #[inline(always)]
                 || follow::<S>((rows, blocks.columns), (small, long), (m, c, root), change),

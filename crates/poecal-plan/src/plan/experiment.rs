@@ -189,9 +189,9 @@ impl Experiment {
 
     /// The fit of geometry and terms with their priors to rows, from the estimate on; what is left, as the cost.
     pub(crate) fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
-        let packed = Packed::of(&self.model, data);
+        let packed = Packed::from_dataset(&self.model, data);
         let session = self.session_of(data, &packed);
-        let prior = Prior::of(&session, self.tolerance).with_terms(self.deviations.clone());
+        let prior = Prior::from_session(&session, self.tolerance).with_terms(self.deviations.clone());
         let problem = Problem::new(session, data.all_rows(), self.free.clone(), self.session.noise)
             .with_prior(Some((&prior, 1.0)));
         let options = Options { iterations: ITERATIONS, ..Options::default() };
@@ -201,7 +201,7 @@ impl Experiment {
 
     /// Whitened rows of measurements at the estimate, as [`Experiment::blocks`], and their residuals; each row a block of its own.
     pub(crate) fn rows(&self, data: &Dataset) -> (DMatrix<f64>, nalgebra::DVector<f64>) {
-        let packed = Packed::of(&self.model, data);
+        let packed = Packed::from_dataset(&self.model, data);
         let rows = data.all_rows();
         let problem =
             Problem::new(self.session_of(data, &packed), rows.clone(), self.free.clone(), self.session.noise);
@@ -251,7 +251,7 @@ impl Experiment {
         let mut values = Vec::with_capacity(readings.len() / self.width() * self.numbers * columns);
         for some in readings.chunks(CHUNK * self.width()) {
             let (data, _) = self.data(some)?;
-            let packed = Packed::of(&self.model, &data);
+            let packed = Packed::from_dataset(&self.model, &data);
             let rows = data.all_rows();
             let session = self.session_of(&data, &packed);
             let problem = Problem::new(session, rows.clone(), self.free.clone(), self.session.noise);

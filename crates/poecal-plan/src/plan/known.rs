@@ -71,10 +71,10 @@ pub(crate) struct Judged {
 
 impl Known {
     pub(crate) fn new(robot: &Robot, options: &WatchOptions, data: &Dataset) -> Result<Self> {
-        let packed = Packed::of(robot, data);
+        let packed = Packed::from_dataset(robot, data);
         let rows = data.all_rows();
         let session = Session::new(robot, data, &packed, options.fit.session.device_free);
-        let prior = Prior::of(&session, options.fit.tolerance.unwrap_or(Tolerance::WIDE));
+        let prior = Prior::from_session(&session, options.fit.tolerance.unwrap_or(Tolerance::WIDE));
         let noise = options.fit.session.noise;
         let registration =
             Registration { session, rows: &rows, noise, targets_free: true, prior: Some((&prior, 1.0)) };

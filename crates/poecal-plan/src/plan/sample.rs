@@ -59,7 +59,7 @@ impl Experiment {
         }
         self.numbers =
             data.observations.iter().map(|row| row.measurement.dim()).sum::<usize>() / SAMPLE.max(1);
-        let packed = Packed::of(&self.model, &data);
+        let packed = Packed::from_dataset(&self.model, &data);
         let rows = data.all_rows();
         let mut estimate = match begun {
             Some((_, registered)) => self.with_gives(registered, &data),
@@ -76,7 +76,7 @@ impl Experiment {
         let free = match begun {
             // Device frames turn about the middle of what was measured.
             Some((data, _)) => {
-                let packed = Packed::of(&self.model, data);
+                let packed = Packed::from_dataset(&self.model, data);
                 free_parameters(&self.session_of(data, &packed), &self.estimate, &data.all_rows(), joints)
             }
             None => free_parameters(&session, &self.estimate, &rows, joints),
@@ -119,7 +119,7 @@ impl Experiment {
     ) -> DMatrix<f64> {
         let n = layout.dim();
         let mut prior = Normal::new(n);
-        Prior::of(session, tolerance).without_terms().add(&self.estimate, layout, 1.0, &mut prior);
+        Prior::from_session(session, tolerance).without_terms().add(&self.estimate, layout, 1.0, &mut prior);
         let own = |i: usize, j: usize| {
             let (a, b) = (geometry[i], geometry[j]);
             prior.gram[a.min(b) * n + a.max(b)] + if i == j { RIDGE } else { 0.0 }

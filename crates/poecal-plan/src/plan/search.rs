@@ -55,7 +55,7 @@ impl Search<'_> {
             if chosen.len() == count {
                 break;
             }
-            let Some(change) = state.change(self.aim, blocks.of(best), blocks.numbers, 1.0) else { break };
+            let Some(change) = state.change(self.aim, blocks.rows_of_configuration(best), blocks.numbers, 1.0) else { break };
             state.apply(&change, blocks.numbers);
             caches.apply(self.aim, blocks, &change);
         }
@@ -172,7 +172,7 @@ impl Search<'_> {
             let unchanged = chosen.clone();
             for position in fixed..chosen.len() {
                 let own = chosen[position];
-                let Some(without) = state.change(aim, self.blocks.of(own), m, -1.0) else { continue };
+                let Some(without) = state.change(aim, self.blocks.rows_of_configuration(own), m, -1.0) else { continue };
                 state.apply(&without, m);
                 caches.apply(aim, blocks, &without);
                 chosen.swap_remove(position);
@@ -188,7 +188,7 @@ impl Search<'_> {
                 chosen.push(next);
                 let last = chosen.len() - 1;
                 chosen.swap(position, last);
-                let Some(with) = state.change(aim, self.blocks.of(next), m, 1.0) else { return unchanged };
+                let Some(with) = state.change(aim, self.blocks.rows_of_configuration(next), m, 1.0) else { return unchanged };
                 state.apply(&with, m);
                 caches.apply(aim, blocks, &with);
             }
@@ -233,10 +233,10 @@ pub(crate) fn around(
         if own.is_empty() {
             continue;
         }
-        let Some(without) = state.change(aim, rows.of(row), m, -1.0) else { continue };
+        let Some(without) = state.change(aim, rows.rows_of_configuration(row), m, -1.0) else { continue };
         state.apply(&without, m);
         let mut candidates = proposals.only(&own);
-        candidates.values.extend_from_slice(rows.of(row));
+        candidates.values.extend_from_slice(rows.rows_of_configuration(row));
         let caches = Caches::new(&state, aim, &candidates);
         let kept = caches.gain(own.len(), &aim.weights);
         let best =
@@ -250,9 +250,9 @@ pub(crate) fn around(
             && gain > kept + least
             && take(row, own[at])
         {
-            rows.values[row * size..(row + 1) * size].copy_from_slice(candidates.of(at));
+            rows.values[row * size..(row + 1) * size].copy_from_slice(candidates.rows_of_configuration(at));
         }
-        let Some(with) = state.change(aim, rows.of(row), m, 1.0) else { return };
+        let Some(with) = state.change(aim, rows.rows_of_configuration(row), m, 1.0) else { return };
         state.apply(&with, m);
     }
 }
@@ -289,7 +289,7 @@ mod tests {
             let (mut state, _) = State::new(&aim, &gram).unwrap();
             let mut caches = Caches::new(&state, &aim, &blocks);
             for (row, sign) in [(40, 1.0), (3, -1.0), (41, 1.0), (40, -1.0)] {
-                let change = state.change(&aim, blocks.of(row), m, sign).unwrap();
+                let change = state.change(&aim, blocks.rows_of_configuration(row), m, sign).unwrap();
                 state.apply(&change, m);
                 caches.apply(&aim, &blocks, &change);
             }

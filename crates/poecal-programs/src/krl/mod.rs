@@ -19,7 +19,7 @@ pub(crate) use words::RULES;
 
 /// Targets and motions of a program, or of a list of its data.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
-    let variables = Variables::of(text, &RULES, axes);
+    let variables = Variables::from_text(text, &RULES, axes);
     if variables.is_data {
         return Ok(data::parse(&variables, given));
     }

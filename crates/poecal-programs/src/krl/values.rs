@@ -95,7 +95,7 @@ const CONDITIONS: &str = "IF WHILE UNTIL WAIT FOR SIGNAL INTERRUPT TRIGGER ON_ER
 
 impl Variables {
     /// Of a text.
-    pub(crate) fn of(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
+    pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
         let mut out = Variables::default();
         let mut scanner = Scanner::new(text, rules);
         let mut tokens = Vec::new();
@@ -198,7 +198,7 @@ struct Fields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
 
 impl<'t> Fields<'t> {
     /// Of an aggregate without its brackets; `None` if it has a field twice, or none of a name.
-    fn of(text: &[u8], inside: &'t [Token]) -> Option<Self> {
+    fn from_tokens(text: &[u8], inside: &'t [Token]) -> Option<Self> {
         let inside = match inside {
             [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
             all => all,
@@ -241,7 +241,7 @@ impl<'t> Fields<'t> {
 }
 
 fn aggregate(text: &[u8], inside: &[Token], axes: &Axes) -> Value {
-    let Some(fields) = Fields::of(text, inside) else { return Value::Other };
+    let Some(fields) = Fields::from_tokens(text, inside) else { return Value::Other };
     let has = |name: &str| fields.get(name).is_some();
     let found = if has("TOOL_NO") || has("BASE_NO") {
         return Value::Place(place(text, &fields));

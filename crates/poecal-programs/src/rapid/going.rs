@@ -19,7 +19,7 @@ pub(crate) enum Held {
 
 impl Held {
     /// Of what a move writes.
-    pub(crate) fn of(written: &str, statement: &Statement, declared: &Declared) -> Self {
+    pub(crate) fn from_written(written: &str, statement: &Statement, declared: &Declared) -> Self {
         let name = written.to_ascii_lowercase();
         match declared.find(&name, statement) {
             Some(data) => Held::Data(data),

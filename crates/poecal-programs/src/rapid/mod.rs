@@ -66,7 +66,7 @@ impl Reader<'_> {
         if statement.is_entry || self.last.is_some_and(|(_, block)| block != statement.block) {
             self.last = None;
         }
-        let Some(instruction) = Instruction::of(own, self.text) else {
+        let Some(instruction) = Instruction::from_tokens(own, self.text) else {
             self.last = None;
             return;
         };
@@ -121,7 +121,7 @@ impl Reader<'_> {
             ToolAt::Place(at) => instruction.arguments.get(at),
             ToolAt::Last => instruction.arguments.last().filter(|_| instruction.arguments.len() > 2),
         };
-        let held = |written: &[Token]| Held::of(&shown(text, written), statement, declared);
+        let held = |written: &[Token]| Held::from_written(&shown(text, written), statement, declared);
         let [displaced, lines, joints] = &self.modals;
         let not_followed = if layout.is_free { joints } else { lines };
         let of = Move {

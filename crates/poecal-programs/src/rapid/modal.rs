@@ -42,7 +42,7 @@ impl Modal {
             }
             everywhere(&mut out.everywhere, on.filter(|(_, block)| !outline.is_in(statement.block, *block)));
             let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
-            let instruction = Instruction::of(own, text);
+            let instruction = Instruction::from_tokens(own, text);
             match instruction.as_ref().and_then(|it| switched(switch, it)) {
                 Some(true) => {
                     on.get_or_insert((statement.line, statement.block));

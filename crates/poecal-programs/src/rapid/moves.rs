@@ -59,7 +59,7 @@ pub(crate) struct Instruction<'a> {
 
 impl<'a> Instruction<'a> {
     /// Of a statement's tokens; `None` if it does not begin with a word, or if its brackets do not match.
-    pub(crate) fn of(tokens: &'a [Token], text: &[u8]) -> Option<Self> {
+    pub(crate) fn from_tokens(tokens: &'a [Token], text: &[u8]) -> Option<Self> {
         let (first, rest) = tokens.split_first()?;
         if first.kind != Kind::Word {
             return None;

@@ -44,7 +44,7 @@ const AWAY: &str = "speedj speedl freedrive_mode teach_mode force_mode move_unti
 
 /// Targets and motions of a program.
 pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
-    let variables = Variables::of(text, &RULES, axes);
+    let variables = Variables::from_text(text, &RULES, axes);
     let mut reader = Reader { text, given, axes, variables, out: Parsed::default() };
     let program = Program::read(text, &RULES, &mut |tokens, nodes| reader.statement(tokens, nodes))?;
     Ok(reader.motions(&program))

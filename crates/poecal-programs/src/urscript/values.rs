@@ -40,7 +40,7 @@ pub(crate) struct Variables {
 
 impl Variables {
     /// Of a text.
-    pub(crate) fn of(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
+    pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
         let mut out = Variables::default();
         let mut scanner = Scanner::new(text, rules);
         let mut line = Vec::new();

@@ -198,7 +198,7 @@ impl Calibration {
     pub(crate) fn rows(&self) -> PyResult<&Residuals> {
         match &self.found {
             Found::Fit(fit) => {
-                Ok(fit.residuals.get_or_init(|| Residuals::of(&fit.data.data, &fit.calibration)))
+                Ok(fit.residuals.get_or_init(|| Residuals::from_calibration(&fit.data.data, &fit.calibration)))
             }
             Found::Written(written) => written.residuals.as_ref().ok_or_else(|| {
                 let message = "found no residuals.csv beside the calibration.json, expected it: name it in Calibration.read";

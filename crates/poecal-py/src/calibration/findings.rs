@@ -155,7 +155,7 @@ pub(crate) fn identify(
     #[pyo3(from_py_with = arg::robot_error_mm)] robot_error_mm: Option<RobotError>,
 ) -> PyResult<Findings> {
     let model = &robot.model;
-    let joints = Joints::of(joints, &model.robot)?;
+    let joints = Joints::from_argument(joints, &model.robot)?;
     let [position_m, rotation_rad] = sigmas(sigma_position_mm, sigma_rotation_deg)?;
     let usual = PlannedSession::default();
     let session = PlannedSession {
@@ -189,7 +189,7 @@ pub(crate) enum RobotOrCalibration<'a> {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         match (value.cast::<Robot>(), value.cast::<Calibration>()) {
             (Ok(robot), _) => Ok(RobotOrCalibration::Robot(robot.get())),
             (_, Ok(calibration)) => Ok(RobotOrCalibration::Calibration(calibration.get())),

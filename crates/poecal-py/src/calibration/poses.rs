@@ -53,7 +53,7 @@ impl Calibration {
         let counting = reach::counting(self.file(), readings)?;
         let frame = one_of("output_frame", output_frame, words::PREDICT_IN)?;
         let model = &self.actual(model)?.model;
-        let joints = Joints::of(joints, &model.robot)?;
+        let joints = Joints::from_argument(joints, &model.robot)?;
         let width = model.robot.reading_names().len();
         let found = py
             .detach(|| {

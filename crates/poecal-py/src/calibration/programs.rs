@@ -76,7 +76,7 @@ pub(super) fn compensate<'py>(
         each: true,
         controller,
         is_third_axis_open,
-        ..ProgramOptions::of(language)
+        ..ProgramOptions::new(language)
     };
     stated.give(&mut options.given, language)?;
     options.given = options.given.taught(&taught.base, &taught.tool);

@@ -13,10 +13,10 @@ pub(crate) enum ReportPlace {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for ReportPlace {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         match value.extract() {
             Ok(among) => Ok(ReportPlace::Among(among)),
-            Err(_) if value.extract::<PathBuf>().is_ok() => PathBuf::of(value, name).map(ReportPlace::File),
+            Err(_) if value.extract::<PathBuf>().is_ok() => PathBuf::from_argument(value, name).map(ReportPlace::File),
             Err(_) => Err(unexpected(name, value, "True, False, or the path of a file")),
         }
     }

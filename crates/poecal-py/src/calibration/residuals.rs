@@ -26,7 +26,7 @@ pub(crate) struct Residuals {
 
 impl Residuals {
     /// Those of a calibration; an error if it was read without them.
-    pub(crate) fn of(calibration: &Bound<'_, Calibration>) -> PyResult<Self> {
+    pub(crate) fn from_calibration(calibration: &Bound<'_, Calibration>) -> PyResult<Self> {
         calibration.get().rows()?;
         Ok(Residuals { calibration: calibration.clone().unbind() })
     }
@@ -72,7 +72,7 @@ impl Residuals {
         model: OfModel,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.numbers(py, |row| {
-            row.errors.get(quantity).map(|errors| model.of(errors.models, errors.corrected))
+            row.errors.get(quantity).map(|errors| model.select_error(errors.models, errors.corrected))
         })
     }
 
@@ -284,7 +284,7 @@ impl Residuals {
         #[pyo3(from_py_with = arg::model)] model: &str,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let model = self.model_of(model)?;
-        self.numbers(py, |row| row.corners.map(|corners| model.of(corners.models_px, corners.corrected_px)))
+        self.numbers(py, |row| row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px)))
     }
 
     /// Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had.

@@ -65,7 +65,7 @@ impl Places {
             command: None,
         };
         let found = py.detach(|| {
-            let found = Validation { record, ..Validation::of(file, data, judging, inputs)? };
+            let found = Validation { record, ..Validation::from_measurements(file, data, judging, inputs)? };
             let rows = JudgedRows { data, robot: &model.robot, rows: &found.judgement.rows };
             let before = self.history.as_ref().zip(own.values().next());
             let earlier: Vec<Earlier> =

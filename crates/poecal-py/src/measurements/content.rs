@@ -152,14 +152,14 @@ impl Measurements {
 }
 
 impl<'a, 'py> Argument<'a, 'py> for &'a Measurements {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "poecal.Measurements, as of Measurements.from_csv, from_arrays or from_dataframe";
         value.cast::<Measurements>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
     }
 }
 
 impl<'a, 'py> Argument<'a, 'py> for Measurements {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        <&Measurements>::of(value, name).cloned()
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+        <&Measurements>::from_argument(value, name).cloned()
     }
 }

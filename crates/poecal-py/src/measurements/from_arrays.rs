@@ -222,7 +222,7 @@ fn points(
     let expected = format!("shape ({m}, 4): x, y, z, w of a unit quaternion for each row of joints");
     let name = "quaternions_xyzw";
     let quaternions = quaternions
-        .map(|value| Numbers::of(value, name, &expected)?.shaped(&[Some(m), Some(4)], name, &expected))
+        .map(|value| Numbers::from_argument(value, name, &expected)?.shaped(&[Some(m), Some(4)], name, &expected))
         .transpose()?;
     let rows = positions.values.chunks_exact(3).enumerate();
     rows.map(|(row, numbers)| {
@@ -263,8 +263,8 @@ fn sigma(
     let Some(value) = value else { return Ok(Vec::new()) };
     let expected = format!("a number, or shape ({m},): one for each row of joints");
     let mut numbers = match value.is_instance_of::<PyString>() {
-        true => Numbers::repeated(f64::of(value, name)?, m),
-        false => Numbers::of(value, name, &expected)?,
+        true => Numbers::repeated(f64::from_argument(value, name)?, m),
+        false => Numbers::from_argument(value, name, &expected)?,
     };
     if let (true, [number]) = (numbers.shape.is_empty(), numbers.values.as_slice()) {
         numbers = Numbers::repeated(*number, m);

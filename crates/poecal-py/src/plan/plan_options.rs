@@ -76,7 +76,7 @@ pub(crate) fn place(of_mm: Option<[f64; 3]>) -> Option<Vector3<f64>> {
 
 /// Configurations of an argument.
 pub(crate) fn configurations(value: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Option<Vec<f64>>> {
-    value.map(|value| Ok(Joints::of(value, &robot.model.robot)?.readings)).transpose()
+    value.map(|value| Ok(Joints::from_argument(value, &robot.model.robot)?.readings)).transpose()
 }
 
 /// Two corners of a box, metres.

@@ -95,7 +95,7 @@ impl VisitOptions<'_> {
                 .map(|it| sigma("repeatability_mm", it, from_mm))
                 .transpose()?,
         };
-        let new = candidates.map(|it| Joints::of(it, robot)).transpose()?;
+        let new = candidates.map(|it| Joints::from_argument(it, robot)).transpose()?;
         let readings = new.as_ref().map(|it| it.readings.as_slice());
         let own;
         let earlier = match self.earlier {

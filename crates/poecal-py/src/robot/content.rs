@@ -191,7 +191,7 @@ pub(crate) fn form(format: Option<&str>, path: Option<&Path>) -> PyResult<ModelF
 }
 
 impl<'a, 'py> Argument<'a, 'py> for &'a Robot {
-    fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+    fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
         let expected = "a poecal.Robot; poecal.Robot.read reads one from a file";
         value.cast::<Robot>().map(Bound::get).map_err(|_| unexpected(name, value, expected))
     }

@@ -69,7 +69,7 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
 
 /// The errors before and after on the same rows, and the error to expect, all RMS and in one unit.
 fn before_after(file: &CalibrationFile) -> Markup {
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return Markup::default() };
     let has_length = set.calibrated.leading().is_some_and(|(quantity, _)| quantity.unit() == Unit::Metre);
     let measured = |(_, model, key): &ModelRow<'_>| {

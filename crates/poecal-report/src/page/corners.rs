@@ -43,7 +43,7 @@ pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
 
 /// Errors of the corners of pictures that were held out, or if there are none of those fitted.
 pub(crate) fn fact(file: &CalibrationFile) -> Option<Markup> {
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let [before, after] = leading.ends()?;
     let (Some(was), Some(is)) = (before.1.pixels, after.1.pixels) else { return None };
     let [of_before, of_after] = [&before.2, &after.2];

@@ -195,8 +195,8 @@ pub(crate) fn json(
             nominal_terms: straight(&joint.nominal_terms),
         }
     });
-    let frames = Frames::of(file, &robot, residuals)?;
-    let lead = Lead::of(residuals);
+    let frames = Frames::from_calibration(file, &robot, residuals)?;
+    let lead = Lead::from_residuals(residuals);
     let reading = |(_, name, unit)| ReadingData { name: visible(name), unit };
     let data = Data {
         joints: joints.collect(),
@@ -206,10 +206,10 @@ pub(crate) fn json(
         draws_instruments: draws_instruments(file),
         readings: readings_of(residuals).map(reading).collect(),
         lead: LeadData { name: lead.name(), unit: lead.unit() },
-        rows: RowData::of(residuals, &lead, drawn),
+        rows: RowData::from_residuals(residuals, &lead, drawn),
         count: residuals.rows().len(),
-        shapes: shapes.shapes.iter().map(ShapeData::of).collect(),
-        meshes: shapes.meshes.iter().map(MeshData::of).collect(),
+        shapes: shapes.shapes.iter().map(ShapeData::from_shape).collect(),
+        meshes: shapes.meshes.iter().map(MeshData::from_mesh).collect(),
     };
     let text = serde_json::to_string(&data)
         .map_err(|error| ErrorKind::Export.error(format!("the report's data cannot be written: {error}")))?;
@@ -233,7 +233,7 @@ fn thinned(residuals: &Residuals, rows: &[usize], most: usize) -> Vec<(usize, bo
         return rows.iter().map(|row| (*row, true)).collect();
     }
     let suspected = |row: usize| residuals.rows().get(row)?.judged.map(|judged| judged.suspected);
-    let lead = Lead::of(residuals);
+    let lead = Lead::from_residuals(residuals);
     let error = |row: usize| residuals.rows().get(row).and_then(|row| lead.error(row)).unwrap_or_default();
     let (mut worst, mut others): (Vec<usize>, Vec<usize>) =
         rows.iter().partition(|&&row| suspected(row) == Some(true));
@@ -268,7 +268,7 @@ pub(crate) fn drawn(residuals: &Residuals) -> Vec<Drawn> {
 }
 
 impl RowData {
-    fn of(residuals: &Residuals, lead: &Lead, drawn: &[Drawn]) -> Self {
+    fn from_residuals(residuals: &Residuals, lead: &Lead, drawn: &[Drawn]) -> Self {
         let rows: Vec<(usize, &ResidualRow)> =
             drawn.iter().filter_map(|it| Some((it.index, residuals.rows().get(it.index)?))).collect();
         let column = |value: &dyn Fn(&ResidualRow) -> Option<f64>| {
@@ -319,7 +319,7 @@ impl RowData {
 /// Factor and shift of a joint's value by its terms, as a straight line through the values at 0 and 1.
 fn straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
     let at = |value: f64| -> f64 {
-        value + terms.iter().map(|(term, c)| c * Situation::of(&[value]).basis(0, *term)).sum::<f64>()
+        value + terms.iter().map(|(term, c)| c * Situation::from_values(&[value]).basis(0, *term)).sum::<f64>()
     };
     (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }

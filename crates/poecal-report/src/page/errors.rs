@@ -35,7 +35,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
             (&file.accuracy.training, "the fitted rows, since none was held out", "accuracy.training.count")
         }
     };
-    let Leading { set, models: rows, without, beside } = Leading::of(file);
+    let Leading { set, models: rows, without, beside } = Leading::from_calibration(file);
     let on = match held_out {
         Some(_) => format!("on {of}"),
         None => format!("on the fitted rows{without}, since none was held out"),

@@ -16,7 +16,7 @@ const STEPS: usize = 20;
 
 /// Which share of the rows is off by how much, for the models.
 pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let lead = Lead::of(residuals);
+    let lead = Lead::from_residuals(residuals);
     let held_out = file.accuracy.held_out.is_some();
     // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
     let line = |name: &str, style: usize, error: &dyn Fn(&ResidualRow) -> Option<f64>| {
@@ -47,7 +47,7 @@ const FAR_OFF: f64 = 4.0;
 
 /// Errors of the delivered model on fitted rows and on those held out.
 pub(crate) fn sets(file: &CalibrationFile, residuals: &Residuals) -> Markup {
-    let lead = Lead::of(residuals);
+    let lead = Lead::from_residuals(residuals);
     let errors = |held_out: bool| -> Vec<f64> {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         rows.filter_map(|row| lead.error(row)).collect()

@@ -95,7 +95,7 @@ pub(crate) struct Frames<'a> {
 }
 
 impl<'a> Frames<'a> {
-    pub(crate) fn of(file: &'a CalibrationFile, robot: &Robot, residuals: &'a Residuals) -> Result<Self> {
+    pub(crate) fn from_calibration(file: &'a CalibrationFile, robot: &Robot, residuals: &'a Residuals) -> Result<Self> {
         let nominal = file.nominal_robot()?;
         let places = robot.places_of_targets();
         let target = |name: &'a String| {

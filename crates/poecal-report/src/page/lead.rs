@@ -12,7 +12,7 @@ pub(crate) struct Lead {
 }
 
 impl Lead {
-    pub(crate) fn of(residuals: &Residuals) -> Self {
+    pub(crate) fn from_residuals(residuals: &Residuals) -> Self {
         let unit = residuals.leading().map_or(Unit::Metre, Quantity::unit);
         let leads = |it: &Quantity| {
             residuals.kinds().iter().any(|(kind, _)| leading(kind, unit).is_some_and(|(own, ())| own == *it))

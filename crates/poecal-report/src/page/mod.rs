@@ -84,7 +84,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// [`ErrorKind::Problem`] if the residuals are not those of this calibration, [`ErrorKind::Model`] if the file has been changed into no
 /// calibration.
 pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result<Page> {
-    calibration_page_with(file, residuals, &Shapes::of(file))
+    calibration_page_with(file, residuals, &Shapes::from_calibration(file))
 }
 
 /// [`calibration_page`] with what the robot looks like: [`Shapes::read`] reads the meshes that its URDF names.
@@ -187,7 +187,7 @@ fn check(file: &CalibrationFile, residuals: &Residuals) -> Result<()> {
     for (quantity, expected) in accuracy.training.calibrated.iter() {
         let fitted = residuals.rows().iter().filter(|row| !row.held_out);
         let errors = fitted.filter_map(|row| Some(row.errors.get(quantity)?.calibrated())).collect();
-        let found = Statistic::of(errors).map_or(0.0, |it| it.rms);
+        let found = Statistic::from_errors(errors).map_or(0.0, |it| it.rms);
         let (expected, unit) = (expected.rms, quantity.unit().symbol());
         if (found - expected).abs() > SAME * expected {
             return refused(format!(

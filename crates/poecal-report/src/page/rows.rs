@@ -171,7 +171,7 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
         let values: Vec<f64> =
             residuals.rows().iter().filter(|row| row.held_out == held_out).filter_map(of).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let found = Statistic::of(values.iter().map(|value| value.abs()).collect())?;
+        let found = Statistic::from_errors(values.iter().map(|value| value.abs()).collect())?;
         let sign = if mean < 0.0 { "−" } else { "" };
         let mean = format!("{sign}{}", number(mean.abs()));
         Some([name, set.to_owned(), values.len().to_string(), mean, number(found.rms), number(found.max)])
@@ -182,7 +182,7 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
 
 /// Errors by equal parts of what was sampled of each joint.
 fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
-    let lead = Lead::of(residuals);
+    let lead = Lead::from_residuals(residuals);
     let of = format!(
         "of the {} model, {} (RMS), and number of rows by parts of each reading",
         delivered(file),

@@ -33,7 +33,7 @@ enum FormData {
 }
 
 impl<'a> ShapeData<'a> {
-    pub(crate) fn of(shape: &'a Shape) -> Self {
+    pub(crate) fn from_shape(shape: &'a Shape) -> Self {
         ShapeData {
             link: visible(&shape.link),
             on: shape.body.joint(),
@@ -60,7 +60,7 @@ pub(crate) struct MeshData<'a> {
 }
 
 impl<'a> MeshData<'a> {
-    pub(crate) fn of(mesh: &'a Mesh) -> Self {
+    pub(crate) fn from_mesh(mesh: &'a Mesh) -> Self {
         let Mesh { least, step, places, corners, wide, .. } = mesh;
         MeshData { least: *least, step: *step, places, corners, wide: *wide }
     }

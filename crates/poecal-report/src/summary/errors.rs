@@ -32,7 +32,7 @@ pub(crate) struct Leading<'a> {
 impl<'a> Leading<'a> {
     /// Of rows held out all, with those that are not suspected beside them; of fitted rows, where none was held out, those that are not suspected, as in
     /// cross-validation, with all beside them.
-    pub(crate) fn of(file: &'a CalibrationFile) -> Self {
+    pub(crate) fn from_calibration(file: &'a CalibrationFile) -> Self {
         let (accuracy, robust) = (&file.accuracy, &file.robust);
         let training = (&accuracy.training, "accuracy.training");
         let rest = robust.without_suspected.training.as_ref();
@@ -103,7 +103,7 @@ pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
 
 /// The rows on which the errors before and after were measured.
 pub(crate) fn judged_on(file: &CalibrationFile) -> String {
-    let Leading { set, without, .. } = Leading::of(file);
+    let Leading { set, without, .. } = Leading::from_calibration(file);
     let rows = if set.calibrated.of_pictures(set.count).is_some() { "pictures" } else { "rows" };
     if file.accuracy.held_out.is_some() {
         format!("{rows} held out")
@@ -133,7 +133,7 @@ pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> 
 
 /// Why the error to expect is larger than the one measured, where it is.
 pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let [_, (_, after, _)] = leading.ends()?;
     let measured_mm = after.get(Quantity::Position)?.rms;
     (expected(file)?.error_mm > measured_mm).then_some(
@@ -144,7 +144,7 @@ pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
 
 /// Errors before and after on the same rows, the error to expect, and where that is valid.
 pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return };
     let held_out = file.accuracy.held_out.is_some();
     let judging = if held_out { "held out" } else { "fitted" };
@@ -246,7 +246,7 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
 
 /// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
 pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let (set, rows) = (leading.set, leading.rows());
     let name = if file.accuracy.held_out.is_some() { "held out" } else { "fitted" };
     for (quantity, _) in set.calibrated.iter() {
@@ -280,7 +280,7 @@ mod tests {
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
         assert!(file.accuracy.held_out.is_none() && (gross, file.robust.suspected.training) == (1, 1));
-        let leading = Leading::of(&file);
+        let leading = Leading::from_calibration(&file);
         let [before, after] = leading.ends().unwrap();
         let rms = |model: &ModelAccuracy| model.get(Quantity::Position).unwrap().rms;
         let all = &file.accuracy.training;

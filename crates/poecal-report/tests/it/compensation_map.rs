@@ -49,7 +49,7 @@ fn file_of(robot: &Robot, kind: Kind, options: &CalibrationOptions) -> (Calibrat
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     println!("{}: its file was made in {:.2} ms", robot.name, 1e3 * begin.elapsed().as_secs_f64());
     let file = CalibrationFile::parse(&file.to_text().unwrap(), "calibration.json").unwrap();
-    (file, Residuals::of(&made.data, &calibration))
+    (file, Residuals::from_calibration(&made.data, &calibration))
 }
 
 #[test]

@@ -63,7 +63,7 @@ fn rows_of(data: &Value, class: &str) -> Vec<usize> {
 fn every_row_has_its_dot_where_its_error_is() {
     let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
-    let page = Session::of(&elbow(), made.data).page();
+    let page = Session::from_dataset(&elbow(), made.data).page();
     let (data, chart) = (data_of(&page), chart(&page, "rows"));
     let errors = numbers_of(&data["rows"]["error_mm"]);
     let [width, height] =

@@ -22,10 +22,10 @@ pub(crate) struct Session {
 impl Session {
     pub(crate) fn new(robot: &Robot, kind: Kind, count: usize) -> Self {
         let made = Simulation { count, ..Simulation::default() }.run(robot, kind).unwrap();
-        Session::of(robot, made.data)
+        Session::from_dataset(robot, made.data)
     }
 
-    pub(crate) fn of(robot: &Robot, data: Dataset) -> Self {
+    pub(crate) fn from_dataset(robot: &Robot, data: Dataset) -> Self {
         Session::with(robot, data, &CalibrationOptions::default())
     }
 
@@ -38,7 +38,7 @@ impl Session {
     }
 
     fn residuals(&self) -> Residuals {
-        Residuals::of(&self.data, &self.calibration)
+        Residuals::from_calibration(&self.data, &self.calibration)
     }
 
     pub(crate) fn page(&self) -> String {
@@ -137,12 +137,12 @@ fn every_figure_is_that_of_the_calibration_file() {
     }
     let mut made = Simulation { count: 80, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let gross = Gross { share: 0.05, ..Gross::default() }.spoil(&mut made.data);
-    let session = Session::of(&elbow(), made.data);
+    let session = Session::from_dataset(&elbow(), made.data);
     check_figures("elbow, wrong rows", &session);
     assert!(session.page().contains("Suspected outliers, the worst first") && !gross.is_empty());
     let mut data = Simulation::default().run(&elbow(), Kind::POINT).unwrap().data;
     data.observations.iter_mut().for_each(|row| row.set = Some(Set::Fit));
-    let session = Session::of(&elbow(), data);
+    let session = Session::from_dataset(&elbow(), data);
     check_figures("elbow, nothing held out", &session);
     assert!(session.page().contains("since none was held out"));
 }
@@ -221,7 +221,7 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
 
 #[test]
 fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
-    let session = Session::of(&elbow(), repeated());
+    let session = Session::from_dataset(&elbow(), repeated());
     let found = session.file.repeatability.as_ref().unwrap();
     println!("{found:?}");
     assert_eq!((found.poses, found.rows), (5, 25));
@@ -257,7 +257,7 @@ fn configurations_whose_targets_are_all_off_alike_are_named() {
             data.push_observation(&readings, observation).unwrap();
         }
     }
-    let session = Session::of(&robot, data);
+    let session = Session::from_dataset(&robot, data);
     let found = &session.file.suspected_configurations;
     println!("{found:?}");
     let rows: Vec<u32> = found.iter().map(|it| it.row).collect();
@@ -296,7 +296,7 @@ fn names_are_no_markup() {
         made.data.files.push(name.into());
         made.data.targets[0] = Some(name.to_owned());
         made.data.ids = vec![name.to_owned(); made.data.len()];
-        let mut session = Session::of(&robot, made.data);
+        let mut session = Session::from_dataset(&robot, made.data);
         session.file.inputs.command = Some(format!("poecal calibrate {name}"));
         session.file.inputs.measurements = vec![name.to_owned()];
         session.page()

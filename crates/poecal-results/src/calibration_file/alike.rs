@@ -40,7 +40,7 @@ fn key(data: &Dataset, row: u32) -> Vec<u64> {
 
 impl SuspectedConfigurationEntry {
     /// Of a calibration, the worst first, at most 100; the others are suspected row by row.
-    pub(crate) fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
+    pub(crate) fn all_from_calibration(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let suspects: Vec<u32> = calibration.robustness.suspects().collect();
         if data.targets.len() < TARGETS || suspects.len() < TARGETS {
             return Vec::new();

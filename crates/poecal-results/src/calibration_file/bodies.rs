@@ -174,9 +174,9 @@ pub struct MassEntry {
 
 impl MassEntry {
     /// The masses of a robot.
-    pub fn of(robot: &Robot) -> Vec<Self> {
+    pub fn all_from_robot(robot: &Robot) -> Vec<Self> {
         let entry = |mass: &Mass| MassEntry {
-            on: BodyEntry::of(robot, mass.body),
+            on: BodyEntry::from_body(robot, mass.body),
             place_m: mass.place.into(),
             mass_kg: mass.kg,
         };
@@ -233,7 +233,7 @@ impl CalibrationFile {
 
 impl BodyEntry {
     /// The entry of a body of a robot.
-    pub fn of(robot: &Robot, body: Body) -> Self {
+    pub fn from_body(robot: &Robot, body: Body) -> Self {
         match body.joint().and_then(|joint| robot.joints.get(joint)) {
             Some(joint) => BodyEntry::LinkOf(joint.name.clone()),
             None => BodyEntry::Base,
@@ -258,7 +258,7 @@ pub(crate) fn targets(robot: &Robot, targets: &[CalibratedTarget]) -> BTreeMap<S
     let on_body = |mount: &Mount, measured: MeasuredEntry| TargetEntry {
         position_m: mount.pose.translation.into(),
         quaternion_xyzw: Some(mount.pose.quaternion_xyzw()),
-        on: Some(BodyEntry::of(robot, mount.body)),
+        on: Some(BodyEntry::from_body(robot, mount.body)),
         measured: Some(measured),
     };
     let entry = |target: &CalibratedTarget| {
@@ -283,10 +283,10 @@ pub(crate) fn targets(robot: &Robot, targets: &[CalibratedTarget]) -> BTreeMap<S
 
 impl InstrumentEntry {
     /// Entries of instruments, or targets, of a robot.
-    pub(crate) fn of(robot: &Robot, mounts: &[Mount]) -> BTreeMap<String, Self> {
+    pub(crate) fn all_from_mounts(robot: &Robot, mounts: &[Mount]) -> BTreeMap<String, Self> {
         let entry = |mount: &Mount| {
             let PoseEntry { position_m, quaternion_xyzw } = (&mount.pose).into();
-            let on = BodyEntry::of(robot, mount.body);
+            let on = BodyEntry::from_body(robot, mount.body);
             (mount.name.clone(), InstrumentEntry { on, position_m, quaternion_xyzw })
         };
         mounts.iter().map(entry).collect()

@@ -67,7 +67,7 @@ pub struct CommonDirectionEntry {
 
 impl CommonDirectionEntry {
     /// Those of a calibration.
-    pub(crate) fn of(calibration: &Calibration) -> Vec<Self> {
+    pub(crate) fn all_from_calibration(calibration: &Calibration) -> Vec<Self> {
         let name = |joint: &usize| calibration.robot.joints.get(*joint).map(|joint| joint.name.clone());
         let entry = |found: &CommonDirection| CommonDirectionEntry {
             words: found.words.clone(),
@@ -103,7 +103,7 @@ pub struct CorrelationsEntry {
 
 impl CorrelationsEntry {
     /// Of a covariance (row-major) of named unknowns, whose blocks are their names up to the last dot.
-    pub(crate) fn of(covariance: &[f64], unknowns: &[String]) -> Self {
+    pub(crate) fn from_covariance(covariance: &[f64], unknowns: &[String]) -> Self {
         let mut blocks: Vec<String> = Vec::new();
         let block = |name: &String| {
             let own = name.rsplit_once('.').map_or(&**name, |(block, _)| block);
@@ -114,7 +114,7 @@ impl CorrelationsEntry {
             at
         };
         let of: Vec<usize> = unknowns.iter().map(block).collect();
-        let found = Correlations::of(covariance, &of);
+        let found = Correlations::from_covariance(covariance, &of);
         let pair = |&(i, j, correlation): &(usize, usize, f64)| {
             let unknowns = [unknowns.get(i)?.clone(), unknowns.get(j)?.clone()];
             Some(CorrelatedEntry { unknowns, correlation })

@@ -32,7 +32,7 @@ pub struct ClockEntry {
 
 impl ClockEntry {
     /// Of a calibration; none if nothing was measured in motion.
-    pub(crate) fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
+    pub(crate) fn all_from_calibration(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let found = calibration.trust.uncertainty.as_ref();
         let entry = |clock: &poecal_model::measurement::Clock| {
             let change = found.map(|it| it.estimate.clock(clock.station)).unwrap_or_default();

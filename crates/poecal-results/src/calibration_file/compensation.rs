@@ -87,7 +87,7 @@ impl SpreadEntry {
 }
 
 impl DisplacementEntry {
-    fn of(found: &Displacements) -> Self {
+    fn from_displacements(found: &Displacements) -> Self {
         DisplacementEntry {
             configurations: found.configurations,
             position_mm: SpreadEntry::shown(Unit::Metre, &found.position_m),
@@ -97,7 +97,7 @@ impl DisplacementEntry {
 }
 
 impl ReadingChangeEntry {
-    fn of((name, kind, spread): &(String, JointKind, Spread)) -> Self {
+    fn from_spread((name, kind, spread): &(String, JointKind, Spread)) -> Self {
         let unit = if *kind == JointKind::Revolute { Unit::Radian } else { Unit::Metre };
         ReadingChangeEntry {
             reading: name.clone(),
@@ -109,20 +109,20 @@ impl ReadingChangeEntry {
 
 impl CompensationEntry {
     /// Of a calibration; none of one that is not to be used, and of a robot whose tip not every joint moves.
-    pub(crate) fn of(calibration: &Calibration) -> Option<Self> {
+    pub(crate) fn from_calibration(calibration: &Calibration) -> Option<Self> {
         let found: Workspace = workspace(calibration)?;
         let cells = found.cells.iter().map(|it| WorkspaceCellEntry {
             radius_m: it.radius_m,
             height_m: it.height_m,
-            displaced: DisplacementEntry::of(&it.displaced),
+            displaced: DisplacementEntry::from_displacements(&it.displaced),
             sigma_position_mm: it.expected_m.map(|sigma| 1e3 * sigma),
         });
         Some(CompensationEntry {
-            all: DisplacementEntry::of(&found.all),
+            all: DisplacementEntry::from_displacements(&found.all),
             within_expected_error: found.needless,
             beyond_limits: found.beyond_limits,
             not_correctable: found.unmended,
-            joints: found.joints.iter().map(ReadingChangeEntry::of).collect(),
+            joints: found.joints.iter().map(ReadingChangeEntry::from_spread).collect(),
             cells: cells.collect(),
             about: found.about,
             cell_m: found.cell_m,

@@ -166,7 +166,7 @@ impl CorrectedEntry {
     }
 
     /// Of a corrected model.
-    pub(crate) fn of(found: &Correction, data: &Dataset) -> Self {
+    pub(crate) fn from_correction(found: &Correction, data: &Dataset) -> Self {
         let (robot, model) = (&found.robot, &found.model);
         let geometry = found.tried.iter().find(|it| it.sizes == Sizes::NONE).map_or(0.0, |it| it.left_out);
         let tried = |it: &TriedSizes| TriedEntry {
@@ -211,10 +211,10 @@ impl CorrectedEntry {
             robot: RobotEntry::new(robot, &model.robot),
             joints: JointEntry::of_robot(robot, &model.robot),
             measurement_frame: FrameEntry { known: found.frame, base_from_device: (&first).into() },
-            stations: StationEntry::of(&found.stations, found.noise, &found.training),
+            stations: StationEntry::all_from_stations(&found.stations, found.noise, &found.training),
             tool: (&robot.last_joint_from_tip()).into(),
             targets: targets(robot, &found.targets),
-            instruments: InstrumentEntry::of(robot, &robot.instruments),
+            instruments: InstrumentEntry::all_from_mounts(robot, &robot.instruments),
         }
     }
 }
@@ -253,10 +253,10 @@ impl CalibrationFile {
 }
 
 impl GravityEntry {
-    pub(crate) fn of(robot: &Robot, gravity: &Gravity) -> Self {
+    pub(crate) fn from_gravity(robot: &Robot, gravity: &Gravity) -> Self {
         let entry = |weight: &Weight| WeightEntry {
             at: weight.name.clone(),
-            on: BodyEntry::of(robot, weight.body),
+            on: BodyEntry::from_body(robot, weight.body),
             place_m: weight.place.into(),
         };
         let statics = Statics::new(robot);

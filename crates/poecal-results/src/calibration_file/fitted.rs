@@ -57,7 +57,7 @@ struct Kept {
 
 impl Kept {
     /// Predictions are in the frame of the first station, so that those of others do not matter.
-    fn of(found: &Uncertainty, robot: &Robot, data: &Dataset) -> Self {
+    fn from_uncertainty(found: &Uncertainty, robot: &Robot, data: &Dataset) -> Self {
         let names = names(robot, data);
         let (mut kept, mut about) = (Vec::new(), None);
         for (parameter, places) in found.layout.parameters() {
@@ -82,7 +82,7 @@ impl Kept {
 
 impl UncertaintyEntry {
     /// Of the calibrated model.
-    pub(crate) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
+    pub(crate) fn from_calibration(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let trust = &calibration.trust;
         Self::of_model(
             &Predicting {
@@ -122,7 +122,7 @@ impl UncertaintyEntry {
         let Predicting { uncertainty: found, expected, held_out: judged, bootstrap, .. } = *model;
         let Predicting { robot, targets, measured, tells_correlations, .. } = *model;
         let n = found.layout.dim();
-        let Kept { places: kept, names: unknowns, about } = Kept::of(found, robot, data);
+        let Kept { places: kept, names: unknowns, about } = Kept::from_uncertainty(found, robot, data);
         let turns = model.turns();
         let turned = |matrix: &[f64]| -> Vec<f64> {
             let mut matrix = matrix.to_vec();
@@ -138,7 +138,7 @@ impl UncertaintyEntry {
         };
         let correlations = || {
             let whole = kept.iter().flat_map(|&i| kept.iter().map(move |&j| i * n + j));
-            CorrelationsEntry::of(&whole.map(|place| covariance[place]).collect::<Vec<f64>>(), &unknowns)
+            CorrelationsEntry::from_covariance(&whole.map(|place| covariance[place]).collect::<Vec<f64>>(), &unknowns)
         };
         let Discrepancy { scatter, extrapolation, standard_deviation, noise, attribution, freedom, lag_one } =
             found.discrepancy;
@@ -153,11 +153,11 @@ impl UncertaintyEntry {
             residuals: by_quantity(&|quantity| is_told(quantity).then_some(attribution[quantity])),
             freedom: by_quantity(&|quantity| is_finite(quantity).then_some(freedom[quantity])),
             lag_one_correlation: lag_one,
-            measured: ExpectedEntry::of(expected.measured.as_ref()?),
-            range: ExpectedEntry::of(expected.range.as_ref()?),
+            measured: ExpectedEntry::from_expected(expected.measured.as_ref()?),
+            range: ExpectedEntry::from_expected(expected.range.as_ref()?),
             held_out: judged.map(held_out),
-            bootstrap: bootstrap.map(BootstrapEntry::of),
-            parts: expected.parts.iter().map(|part| RangeEntry::of(robot, part)).collect(),
+            bootstrap: bootstrap.map(BootstrapEntry::from_bootstrap),
+            parts: expected.parts.iter().map(|part| RangeEntry::from_range(robot, part)).collect(),
             length_m: found.length_m,
             axes: found.estimate.base_from_axis.iter().map(PoseEntry::from).collect(),
             targets: targets.iter().map(|it| (it.name.clone().unwrap_or_default(), it.is_frame)).collect(),

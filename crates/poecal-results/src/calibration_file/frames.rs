@@ -164,9 +164,9 @@ impl RobotEntry {
             tip_link: robot.tip_name.clone(),
             base_from_tip_at_zero: (&robot.home).into(),
             nominal_base_from_tip_at_zero: (&nominal.home).into(),
-            tip_on: robot.tip.map(|body| BodyEntry::of(robot, body)),
-            gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::of(robot, gravity)),
-            masses: MassEntry::of(robot),
+            tip_on: robot.tip.map(|body| BodyEntry::from_body(robot, body)),
+            gravity: robot.gravity.as_ref().map(|gravity| GravityEntry::from_gravity(robot, gravity)),
+            masses: MassEntry::all_from_robot(robot),
             factors: robot.factors.clone(),
         }
     }
@@ -174,7 +174,7 @@ impl RobotEntry {
 
 impl StationEntry {
     /// Stations of a calibration; empty for a single one without a name.
-    pub(crate) fn of(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
+    pub(crate) fn all_from_stations(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
         let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
         let entry = |it: &CalibratedStation| StationEntry {
             instrument: it.name.clone(),

@@ -168,7 +168,7 @@ impl UncertaintyEntry {
         let names = self.names(robot, first_station);
         let target = |(target, (_, is_frame)): (usize, &(String, bool))| {
             let usual = if *is_frame { Freedom::FRAME } else { Freedom::PLACE };
-            match self.freedom(&names.of(Block::Target(target))).unwrap_or(usual) {
+            match self.freedom(&names.name_of_block(Block::Target(target))).unwrap_or(usual) {
                 Freedom::PLACE => Parameter::TargetPlace(TargetPlace { target }),
                 freedom => Parameter::TargetFrame(TargetFrame { target, freedom }),
             }
@@ -202,7 +202,7 @@ impl UncertaintyEntry {
         let has = |motion: usize| {
             NAMES.get(motion).is_some_and(|name| self.unknowns.contains(&format!("{block}.{name}")))
         };
-        Some(Freedom::of((0..NAMES.len()).filter(|&motion| has(motion)))).filter(|it| it.count() > 0)
+        Some(Freedom::from_motions((0..NAMES.len()).filter(|&motion| has(motion)))).filter(|it| it.count() > 0)
     }
 
     /// The names by which unknowns are called.

@@ -83,21 +83,21 @@ impl CalibrationFile {
             inputs,
             record: Record::default(),
             accuracy: calibration.accuracy,
-            blocks: BlocksEntry::of(calibration, data),
-            solver: SolverEntry::of(calibration),
-            identifiability: IdentifiabilityEntry::of(&calibration.identifiability),
+            blocks: BlocksEntry::from_calibration(calibration, data),
+            solver: SolverEntry::from_calibration(calibration),
+            identifiability: IdentifiabilityEntry::from_identifiability(&calibration.identifiability),
             acceptance: calibration.acceptance.clone(),
             verdict: Some(calibration.verdict.clone()),
             coverage: calibration.trust.coverage.clone(),
-            cross_validation: CrossValidationEntry::of(&calibration.trust),
+            cross_validation: CrossValidationEntry::from_trust(&calibration.trust),
             corrections: CorrectionEntry::of_all(&calibration.trust),
-            common: CommonDirectionEntry::of(calibration),
-            uncertainty: UncertaintyEntry::of(calibration, data),
-            robust: RobustEntry::of(calibration),
-            outliers: OutlierEntry::of(calibration, data),
-            suspected_configurations: SuspectedConfigurationEntry::of(calibration, data),
-            repeatability: RepeatabilityEntry::of(calibration, data),
-            pictures: PicturesEntry::of(data, &calibration.images),
+            common: CommonDirectionEntry::all_from_calibration(calibration),
+            uncertainty: UncertaintyEntry::from_calibration(calibration, data),
+            robust: RobustEntry::from_calibration(calibration),
+            outliers: OutlierEntry::all_from_calibration(calibration, data),
+            suspected_configurations: SuspectedConfigurationEntry::all_from_calibration(calibration, data),
+            repeatability: RepeatabilityEntry::from_calibration(calibration, data),
+            pictures: PicturesEntry::from_dataset(data, &calibration.images),
             warnings: calibration.warnings.clone(),
             diagnosis: calibration.diagnosis.iter().map(DiagnosisEntry::from).collect(),
             repairs: calibration.repairs.clone(),
@@ -114,14 +114,14 @@ impl CalibrationFile {
                 known: calibration.frame,
                 base_from_device: (&calibration.base_from_device).into(),
             },
-            stations: StationEntry::of(&calibration.stations, calibration.noise, measured_kinds),
-            clocks: ClockEntry::of(calibration, data),
+            stations: StationEntry::all_from_stations(&calibration.stations, calibration.noise, measured_kinds),
+            clocks: ClockEntry::all_from_calibration(calibration, data),
             tool: (&robot.last_joint_from_tip()).into(),
             move_tip: calibration.targets.iter().any(|it| it.name.is_none()),
             targets: bodies::targets(robot, &calibration.targets),
-            instruments: InstrumentEntry::of(robot, &robot.instruments),
-            compensation: CompensationEntry::of(calibration).map(Box::new),
-            corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::of(it, data))),
+            instruments: InstrumentEntry::all_from_mounts(robot, &robot.instruments),
+            compensation: CompensationEntry::from_calibration(calibration).map(Box::new),
+            corrected: calibration.correction.as_ref().map(|it| Box::new(CorrectedEntry::from_correction(it, data))),
         }
     }
 
@@ -182,7 +182,7 @@ impl CalibrationFile {
 
 /// Numbers in the unit of files from those in metres or radians.
 fn shown(mut si: impl FnMut(Quantity) -> Option<f64>) -> Measured<f64> {
-    Measured::of(|quantity| si(quantity).map(|number| quantity.unit().shown(number)))
+    Measured::from_fn(|quantity| si(quantity).map(|number| quantity.unit().shown(number)))
 }
 
 /// An error of a file that holds no valid robot, as a result.
@@ -207,7 +207,7 @@ impl From<&Diagnosis> for DiagnosisEntry {
 }
 
 impl SolverEntry {
-    fn of(calibration: &Calibration) -> Self {
+    fn from_calibration(calibration: &Calibration) -> Self {
         let (solver, words) = (&calibration.solver, &calibration.formulation.words);
         SolverEntry {
             formulation: words.formulation.to_owned(),
@@ -223,14 +223,14 @@ impl SolverEntry {
                 length_mm: 1e3 * it.length_m,
             }),
             trace: solver.trace.iter().copied().filter(|value| value.is_finite()).collect(),
-            joint_offsets: OffsetEntry::of(calibration),
+            joint_offsets: OffsetEntry::all_from_calibration(calibration),
         }
     }
 }
 
 impl BlocksEntry {
     /// Of a fit of other blocks than the usual.
-    fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
+    fn from_calibration(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let unknowns = &calibration.unknowns;
         if unknowns.are_usual() {
             return None;
@@ -251,11 +251,11 @@ impl BlocksEntry {
                 }
                 Block::Term(..) | Block::Range(..) | Block::Clock(..) => continue,
             };
-            if is_free { &mut free } else { &mut held }.push(names.of(block));
+            if is_free { &mut free } else { &mut held }.push(names.name_of_block(block));
         }
         let listed = names.blocks();
         let terms = unknowns.terms.iter().map(|&(joint, term)| Block::Term(joint, term));
-        free.extend(terms.filter(|block| !listed.contains(block)).map(|block| names.of(block)));
+        free.extend(terms.filter(|block| !listed.contains(block)).map(|block| names.name_of_block(block)));
         Some(BlocksEntry { free, held })
     }
 }
@@ -267,7 +267,7 @@ fn measured(errors: &ModelAccuracy, noise: Noise) -> Measured<f64> {
 
 impl OffsetEntry {
     /// Joint offsets of a formulation that has them.
-    fn of(calibration: &Calibration) -> Option<Vec<Self>> {
+    fn all_from_calibration(calibration: &Calibration) -> Option<Vec<Self>> {
         let offsets = calibration.solver.joint_offsets.as_ref()?;
         let entry = |(joint, &offset): (&Joint, &f64)| OffsetEntry {
             joint: joint.name.clone(),
@@ -291,7 +291,7 @@ impl JointEntry {
                 base_from_joint: (&joint.frame).into(),
                 limits: joint.limits.map(|limits| [limits.lower, limits.upper]),
                 reading: joint.reading.clone(),
-                on: joint.stands_on.map(|body| BodyEntry::of(robot, body)),
+                on: joint.stands_on.map(|body| BodyEntry::from_body(robot, body)),
                 compliance_of: joint.give_of.and_then(|of| robot.joints.get(of)).map(|of| of.name.clone()),
                 terms: BTreeMap::new(),
                 nominal_terms: BTreeMap::new(),

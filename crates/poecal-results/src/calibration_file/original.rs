@@ -36,7 +36,7 @@ pub struct OriginalUrdf {
 
 impl OriginalUrdf {
     /// Of a document.
-    fn of(document: &UrdfDocument) -> Self {
+    fn from_document(document: &UrdfDocument) -> Self {
         let ChainSelection { base_link, tip_link, instruments, targets } = document.selection();
         OriginalUrdf {
             sha256: sha256_of(document.text()),
@@ -65,7 +65,7 @@ impl Inputs {
     #[must_use]
     pub fn of_model(model: &Model) -> Self {
         let urdf = match &model.source {
-            ModelSource::Urdf(document) => Some(OriginalUrdf::of(document)),
+            ModelSource::Urdf(document) => Some(OriginalUrdf::from_document(document)),
             ModelSource::Calibration(file) => file.inputs.urdf.clone(),
             ModelSource::Toml => None,
         };

@@ -64,7 +64,7 @@ pub enum OutlierSet {
 
 impl RobustEntry {
     /// Outliers of a finished calibration.
-    pub(crate) fn of(calibration: &Calibration) -> Self {
+    pub(crate) fn from_calibration(calibration: &Calibration) -> Self {
         let robustness = &calibration.robustness;
         let suspected = |rows: &[u32]| rows.len() - robustness.rest(rows).len();
         RobustEntry {
@@ -99,7 +99,7 @@ impl CalibrationFile {
 impl OutlierEntry {
     /// Suspected rows of a finished calibration, the worst first, at most 1,000.
     #[must_use]
-    pub fn of(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
+    pub fn all_from_calibration(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let robustness = &calibration.robustness;
         let rows: Vec<u32> = robustness.suspects().collect();
         if rows.is_empty() {

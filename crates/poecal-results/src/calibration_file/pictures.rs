@@ -63,7 +63,7 @@ fn is_once(times: &f64) -> bool {
 
 impl PicturesEntry {
     /// Of a session; `None` without pictures.
-    pub fn of(data: &Dataset, images: &[ImageMap]) -> Option<Self> {
+    pub fn from_dataset(data: &Dataset, images: &[ImageMap]) -> Option<Self> {
         let pictures = &data.pictures;
         if pictures.is_empty() {
             return None;
@@ -80,8 +80,8 @@ impl PicturesEntry {
                 about: pictures.common.about,
                 corners: pictures.common.corners,
             },
-            cameras: pictures.cameras.iter().map(CameraEntry::of).collect(),
-            boards: pictures.boards.iter().map(BoardEntry::of).collect(),
+            cameras: pictures.cameras.iter().map(CameraEntry::from_camera).collect(),
+            boards: pictures.boards.iter().map(BoardEntry::from_board).collect(),
             found: pictures.found.clone(),
             images: images.to_vec(),
         })
@@ -116,14 +116,14 @@ impl PicturesEntry {
         let has = |kind: &str| self.found.iter().any(|it| it.name.starts_with(kind));
         let (lens, board) = (has("lens."), has("board.") || has("markers."));
         let differs = |a: &f64, b: &f64| (a - b).abs() > 1e-9 * (1.0 + a.abs());
-        let other_lens = data.pictures.cameras.iter().map(CameraEntry::of).any(|own| {
+        let other_lens = data.pictures.cameras.iter().map(CameraEntry::from_camera).any(|own| {
             let same = self.cameras.iter().find(|it| it.name == own.name);
             same.is_some_and(|it| {
                 let numbers = |it: &CameraEntry| [&it.focal_px[..], &it.centre_px, &it.distortion].concat();
                 numbers(it).iter().zip(&numbers(&own)).any(|(a, b)| differs(a, b))
             })
         });
-        let other_board = data.pictures.boards.iter().map(BoardEntry::of).any(|own| {
+        let other_board = data.pictures.boards.iter().map(BoardEntry::from_board).any(|own| {
             let same = self.boards.iter().find(|it| it.name == own.name);
             same.is_some_and(|it| {
                 let places = it.points.iter().flat_map(|it| it.place_mm);

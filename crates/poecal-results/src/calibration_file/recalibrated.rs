@@ -147,10 +147,10 @@ impl CalibrationFile {
     /// Both models of the file, moved.
     fn moved(&self, repair: &JointRepair, with_covariance: bool) -> Result<Self> {
         let mut file = self.clone();
-        Parts::of(&mut file).moved(&self.robot()?, repair, self, with_covariance)?;
+        Parts::new(&mut file).moved(&self.robot()?, repair, self, with_covariance)?;
         if let (Some(corrected), Some(entry)) = (self.corrected(), file.corrected.as_deref_mut()) {
             let mut moved = corrected.clone();
-            Parts::of(&mut moved).moved(&corrected.robot()?, repair, &corrected, with_covariance)?;
+            Parts::new(&mut moved).moved(&corrected.robot()?, repair, &corrected, with_covariance)?;
             entry.joints = moved.joints;
             entry.robot = moved.robot;
             entry.uncertainty = moved.uncertainty;
@@ -165,7 +165,7 @@ struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn of(file: &'a mut CalibrationFile) -> Self {
+    fn new(file: &'a mut CalibrationFile) -> Self {
         Parts { file }
     }
 

@@ -77,7 +77,7 @@ impl PoseRepeatability {
 
 impl RepeatabilityEntry {
     /// Repeatability of a finished calibration; `None` if nothing was measured three times.
-    pub(crate) fn of(calibration: &Calibration, data: &Dataset) -> Option<Self> {
+    pub(crate) fn from_calibration(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let mut poses = repeatability(calibration, data);
         poses.sort_by_key(|pose| std::cmp::Reverse(pose.rows.len()));
         let count = poses.len();
@@ -86,7 +86,7 @@ impl RepeatabilityEntry {
             Some(own.map(of).collect()).filter(|numbers: &Vec<f64>| !numbers.is_empty())
         };
         let mean = |of: fn(&RepeatedPose) -> f64| {
-            Measured::of(|quantity| {
+            Measured::from_fn(|quantity| {
                 let numbers = each(quantity, of)?;
                 Some(quantity.unit().shown(1.0) * numbers.iter().sum::<f64>() / numbers.len() as f64)
             })
@@ -105,13 +105,13 @@ impl RepeatabilityEntry {
                 repeatability: mean(|pose| pose.repeatability),
             },
             worst_repeatability: shown(worst),
-            listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::of(pose, data)).collect(),
+            listed: poses.iter().take(LISTED).map(|pose| RepeatedPoseEntry::from_pose(pose, data)).collect(),
         })
     }
 }
 
 impl RepeatedPoseEntry {
-    fn of(pose: &RepeatedPose, data: &Dataset) -> Self {
+    fn from_pose(pose: &RepeatedPose, data: &Dataset) -> Self {
         let first = pose.rows.first().and_then(|&row| data.observations.get(row as usize));
         let source = first.map(|observation| observation.source).unwrap_or_default();
         let file = data.files.get(source.file as usize);

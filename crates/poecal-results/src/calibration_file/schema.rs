@@ -306,7 +306,7 @@ impl IdentifiabilityEntry {
     }
 
     /// The entry of what measurements determine.
-    pub fn of(found: &Identifiability) -> Self {
+    pub fn from_identifiability(found: &Identifiability) -> Self {
         IdentifiabilityEntry {
             parameters: found.parameters,
             rank: found.rank,

@@ -59,7 +59,7 @@ impl CalibrationFile {
             .map(|q| (nominal_arm.forward_kinematics(&q), actual_arm.forward_kinematics(&q)))
             .collect();
         let base_is_known = self.frame() == DeviceFrameKnowledge::Base;
-        let taught = Taught::of(&tips, nominal_arm.reach_m() / 3.0, base_is_known);
+        let taught = Taught::from_tips(&tips, nominal_arm.reach_m() / 3.0, base_is_known);
         let base = taught.base;
         let tool = nominal.home.inverse() * own.home * taught.tool;
         let joints = nominal.joints.iter().map(|joint| Joint {

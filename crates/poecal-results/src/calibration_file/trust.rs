@@ -75,7 +75,7 @@ pub(crate) fn held_out(kept: &CoverageCheck) -> HeldOutEntry {
         expected_rms: part.expected_rms,
         inside_bound95: part.inside_bound95,
     };
-    Measured::of(|quantity| kept.parts.get(quantity).map(entry))
+    Measured::from_fn(|quantity| kept.parts.get(quantity).map(entry))
 }
 
 /// A part of a joint's range with the expected error there.
@@ -200,7 +200,7 @@ pub(crate) fn by_quantity<T>(value: &dyn Fn(Quantity) -> Option<T>) -> BTreeMap<
 }
 
 impl LeftOutEntry {
-    fn of(found: &LeftOut) -> Self {
+    fn from_left_out(found: &LeftOut) -> Self {
         LeftOutEntry {
             left_out: found.name.clone(),
             rows: found.rows,
@@ -210,22 +210,22 @@ impl LeftOutEntry {
 }
 
 impl CrossValidationEntry {
-    pub(crate) fn of(trust: &Trust) -> Option<Self> {
+    pub(crate) fn from_trust(trust: &Trust) -> Option<Self> {
         let found = trust.cross_validation.as_ref()?;
         Some(CrossValidationEntry {
-            random: LeftOutEntry::of(&found.random),
+            random: LeftOutEntry::from_left_out(&found.random),
             outside: found.outside.as_ref().map(|it| LeftOutEntry {
                 left_out: "beyond the range of the others".to_owned(),
                 rows: it.rows,
                 rms: shown(|quantity| it.rms.get(quantity)),
             }),
-            blocked: found.blocked.iter().map(LeftOutEntry::of).collect(),
+            blocked: found.blocked.iter().map(LeftOutEntry::from_left_out).collect(),
         })
     }
 }
 
 impl ExpectedEntry {
-    pub(crate) fn of(expected: &Expected) -> Self {
+    pub(crate) fn from_expected(expected: &Expected) -> Self {
         ExpectedEntry {
             sigma_position_mm: expected.sigma_m * 1e3,
             bound95_position_mm: expected.bound_m * 1e3,
@@ -235,7 +235,7 @@ impl ExpectedEntry {
 }
 
 impl RangeEntry {
-    pub(crate) fn of(robot: &Robot, part: &RangePart) -> Self {
+    pub(crate) fn from_range(robot: &Robot, part: &RangePart) -> Self {
         RangeEntry {
             joint: robot.joints[part.joint].name.clone(),
             from: part.range[0],
@@ -246,7 +246,7 @@ impl RangeEntry {
 }
 
 impl BootstrapEntry {
-    pub(crate) fn of(found: &Bootstrap) -> Self {
+    pub(crate) fn from_bootstrap(found: &Bootstrap) -> Self {
         BootstrapEntry {
             drawings: found.drawings,
             sigma_position_mm: found.sigma_m * 1e3,
@@ -258,10 +258,10 @@ impl BootstrapEntry {
 impl CorrectionEntry {
     /// Those of all joints.
     pub(crate) fn of_all(trust: &Trust) -> Vec<Self> {
-        trust.coverage.iter().zip(&trust.joints).map(Self::of).collect()
+        trust.coverage.iter().zip(&trust.joints).map(Self::from_correction).collect()
     }
 
-    fn of((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
+    fn from_correction((coverage, found): (&JointCoverage, &JointCorrection)) -> Self {
         CorrectionEntry {
             joint: coverage.joint.clone(),
             axis: AxisEntry::from_si(Some(found.tilt_rad), Some(found.shift_m)),

@@ -111,9 +111,9 @@ pub fn compare(first: &CalibrationFile, second: &CalibrationFile, limit_m: Optio
     let is_known = |file: &CalibrationFile| file.frame() == DeviceFrameKnowledge::Base;
     let base_is_free = !(is_known(first) && is_known(second));
     let base = if base_is_free { End::Free } else { End::Kept };
-    let changes = Changes::of(&a, &b, base).map_err(|error| other_robot(&a, &b, error))?;
+    let changes = Changes::from_robots(&a, &b, base).map_err(|error| other_robot(&a, &b, error))?;
     check_nominal(&first.nominal_robot()?, &second.nominal_robot()?)?;
-    let spread = Spread::of(&changes, [first, second])?;
+    let spread = Spread::from_changes(&changes, [first, second])?;
     let chance = CHANCE / a.joints.len().max(1) as f64;
     let joints = a.joints.iter().zip(&changes.joints).enumerate();
     let joints = joints.map(|(index, (joint, change))| ComparedJoint {
@@ -209,7 +209,7 @@ fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDiffere
         readings.iter().map(|q| (b.forward_kinematics(q), a.forward_kinematics(q))).collect();
     // Points do not show how a tip is turned: its place alone decides the base and where the tool is.
     let (placed, taught) =
-        (Taught::of_places(&pairs, !base_is_free), Taught::of(&pairs, a.arm_m() / 3.0, !base_is_free));
+        (Taught::of_places(&pairs, !base_is_free), Taught::from_tips(&pairs, a.arm_m() / 3.0, !base_is_free));
     let differences = pairs.iter().map(|(b, a)| {
         let turn = rotation::log(&(taught.tip(b).rotation * a.rotation.transpose())).norm();
         ((placed.tip(b).translation - a.translation).norm(), turn)

@@ -26,7 +26,7 @@ pub(crate) struct Spread {
 
 impl Spread {
     /// The sum of those of both calibrations; `None` if one has no uncertainty.
-    pub(crate) fn of(changes: &Changes, files: [&CalibrationFile; 2]) -> Result<Option<Self>> {
+    pub(crate) fn from_changes(changes: &Changes, files: [&CalibrationFile; 2]) -> Result<Option<Self>> {
         let length_m = changes.length_m();
         let size = PARTS * changes.joints.len();
         let mut covariance = DMatrix::zeros(size, size);

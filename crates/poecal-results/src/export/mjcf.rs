@@ -13,7 +13,7 @@ use poecal_storage::numbers::{shortest, tidy};
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::with_followers(robot)?;
-    let (names, plain) = (Names::of(robot), frames.robot(robot)?);
+    let (names, plain) = (Names::from_robot(robot), frames.robot(robot)?);
     let mut text = format!("<mujoco model=\"{}\">\n", escaped(&robot.name));
     text.push_str("  <compiler angle=\"radian\" autolimits=\"true\"/>\n  <worldbody>\n");
     let _ = writeln!(text, "    <body name=\"{}\">", escaped(&names.base));

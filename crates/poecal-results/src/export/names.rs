@@ -17,7 +17,7 @@ pub(crate) struct Names {
 
 impl Names {
     /// Those of a robot, changed as little as possible: joints stay if they can.
-    pub(crate) fn of(robot: &Robot) -> Self {
+    pub(crate) fn from_robot(robot: &Robot) -> Self {
         let mut taken = BTreeSet::from(["world".to_owned()]);
         let mut free = |name: &str| {
             let mut name = name.replace("::", "_");

@@ -78,7 +78,7 @@ pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     {
         return Ok(written);
     }
-    let mut frames = AxisFrames::of(robot)?;
+    let mut frames = AxisFrames::from_robot(robot)?;
     // A table of screws has no frames; that of a URDF is the flange.
     if document.is_none() && matches!(flavour, Flavour::Ur(_) | Flavour::Xarm) {
         frames.end_at_tip();
@@ -137,9 +137,9 @@ fn frames_of(text: &str, flavour: &Flavour<'_>, keys: &[String], last_from_tip: 
             let joints = read(text, keys)?.into_iter().map(|(xyz, rpy)| Pose::from_xyz_rpy(xyz, rpy));
             Ok(AxisFrames { joints: joints.collect(), last_from_tip })
         }
-        Flavour::Franka => AxisFrames::of(&read_back(text, "arm.yaml", None)?),
+        Flavour::Franka => AxisFrames::from_robot(&read_back(text, "arm.yaml", None)?),
         Flavour::Ur(_) | Flavour::Xarm => {
-            let read = AxisFrames::of(&read_back(text, "arm.yaml", None)?)?;
+            let read = AxisFrames::from_robot(&read_back(text, "arm.yaml", None)?)?;
             Ok(AxisFrames { last_from_tip, ..read })
         }
     }
@@ -291,7 +291,7 @@ fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
 
 /// Origins as a table.
 pub(crate) fn write_csv(robot: &Robot) -> Result<Written> {
-    let frames = AxisFrames::of(robot)?;
+    let frames = AxisFrames::from_robot(robot)?;
     let mut text = "joint,kind,x[m],y[m],z[m],roll[rad],pitch[rad],yaw[rad]\n".to_owned();
     let names = robot.joints.iter().map(|it| (it.name.as_str(), it.kind.word()));
     let rows = names.chain([(robot.tip_name.as_str(), "tip")]);

@@ -35,7 +35,7 @@ struct JointScrew {
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
     // With offsets of readings taken in.
-    let plain = AxisFrames::of(robot)?.robot(robot)?;
+    let plain = AxisFrames::from_robot(robot)?.robot(robot)?;
     let file = File {
         form: "poe".to_owned(),
         formula: "T(q) = exp([S1] q1) ... exp([Sn] qn) home, with S = (v, w) in the base at zero and v = p x w of an axis through p"

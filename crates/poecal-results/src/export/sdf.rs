@@ -17,7 +17,7 @@ const UNLIMITED: f64 = 1e16;
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
     let frames = AxisFrames::with_followers(robot)?;
-    let (names, plain) = (Names::of(robot), frames.robot(robot)?);
+    let (names, plain) = (Names::from_robot(robot), frames.robot(robot)?);
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<sdf version=\"{}\">\n  <model name=\"{}\">\n",
         // Joints that follow others came later.

@@ -24,7 +24,7 @@ struct File {
 }
 
 pub(crate) fn write(robot: &Robot, convention: DhConvention) -> Result<Written> {
-    let table = DhTable::of(robot, convention)?;
+    let table = DhTable::from_robot(robot, convention)?;
     let file = File {
         form: "dh".to_owned(),
         convention,

@@ -12,7 +12,7 @@ use poecal_numerics::error::Result;
 use poecal_storage::numbers::shortest;
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
-    let frames = AxisFrames::of(robot)?;
+    let frames = AxisFrames::from_robot(robot)?;
     let plain = frames.robot(robot)?;
     let mut text = String::new();
     text.push_str("def Xform \"robot\" (\n    prepend apiSchemas = [\"PhysicsArticulationRootAPI\"]\n)\n{\n");

@@ -42,7 +42,7 @@ pub(crate) enum Proof {
 
 /// How far a robot that was read back is off.
 pub(crate) fn remaining(robot: &Robot, again: &Robot) -> Difference {
-    Difference::of(robot, again, CONFIGURATIONS)
+    Difference::from_robots(robot, again, CONFIGURATIONS)
 }
 
 /// The robot that the reader of models finds in a text, as a file of this name, between two links.

@@ -76,7 +76,7 @@ impl Ledger {
 
     /// The last row of the same robot and date.
     #[must_use]
-    pub fn of(&self, row: &LedgerRow) -> Option<&LedgerRow> {
+    pub fn latest_match(&self, row: &LedgerRow) -> Option<&LedgerRow> {
         self.alike(row).next()
     }
 

@@ -98,8 +98,8 @@ impl TruthFile {
                 base_from_device: (&made.device_from_base.inverse()).into(),
             },
             tool: (&made.actual.last_joint_from_tip()).into(),
-            instruments: InstrumentEntry::of(&made.actual, &made.actual.instruments),
-            targets: InstrumentEntry::of(&made.actual, &made.actual.mounted),
+            instruments: InstrumentEntry::all_from_mounts(&made.actual, &made.actual.instruments),
+            targets: InstrumentEntry::all_from_mounts(&made.actual, &made.actual.mounted),
         }
     }
 }
@@ -139,7 +139,7 @@ pub(crate) fn actual_files<'a>(
     notes: &mut Vec<String>,
 ) -> Result<Vec<NewFile<'a>>> {
     if rigid.joints.len() < actual.joints.len() {
-        let off = Difference::of(actual, rigid, CONFIGURATIONS).position_m * 1e3;
+        let off = Difference::from_robots(actual, rigid, CONFIGURATIONS).position_m * 1e3;
         notes.push(format!(
             "the actual model is written without what its joints do beyond geometry, which moves the tip by up to {off:.3} mm: truth.json has it"
         ));

@@ -226,7 +226,7 @@ impl<'a> Cells<'a> {
         for quantity in quantities {
             found[quantity] = self.errors_of(quantity, has_corrected)?;
         }
-        let errors = Measured::of(|quantity| found[quantity]);
+        let errors = Measured::from_fn(|quantity| found[quantity]);
         if errors.leading().is_none() {
             return Err(self.wrong("", "a number"));
         }

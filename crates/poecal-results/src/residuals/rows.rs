@@ -224,7 +224,7 @@ impl Residuals {
     #[must_use]
     pub fn leading(&self) -> Option<Quantity> {
         let measured = self.measured();
-        Measured::of(|quantity| measured.contains(&quantity).then_some(()))
+        Measured::from_fn(|quantity| measured.contains(&quantity).then_some(()))
             .leading()
             .map(|(quantity, ())| quantity)
     }

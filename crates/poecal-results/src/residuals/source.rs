@@ -46,7 +46,7 @@ impl<'a> RowSource<'a> {
         let [nominal, registered, calibrated] =
             [&models.nominal, &models.registered, &models.calibrated].map(errors);
         let corrected = self.calibration.correction.as_ref().map(|it| it.errors(self.data, &indices));
-        let influences = self.influence.of(&indices);
+        let influences = self.influence.influence_of_rows(&indices);
         let row = |(at, &row): (usize, &u32)| {
             let row = row as usize;
             let observation = &self.data.observations[row];
@@ -58,7 +58,7 @@ impl<'a> RowSource<'a> {
                 held_out: self.held_out[row],
                 target: observation.target,
                 station: observation.station,
-                errors: Measured::of(|quantity| {
+                errors: Measured::from_fn(|quantity| {
                     let corrected = corrected.as_ref().map(|all| &all[at]);
                     let length = corrected.and_then(|it| it.length(quantity));
                     let length = length.map(|value| quantity.unit().shown(value));

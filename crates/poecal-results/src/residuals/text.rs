@@ -12,7 +12,7 @@ use poecal_model::measurement::Dataset;
 impl Residuals {
     /// Residuals of a finished calibration.
     #[must_use]
-    pub fn of(data: &Dataset, calibration: &Calibration) -> Self {
+    pub fn from_calibration(data: &Dataset, calibration: &Calibration) -> Self {
         let source = RowSource::new(data, calibration);
         let mut all = source.rows(0..0);
         all.rows.reserve_exact(data.len());

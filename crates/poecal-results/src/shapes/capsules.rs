@@ -29,7 +29,7 @@ pub fn capsules_of(model: &Model) -> (Vec<Capsule>, Vec<String>) {
 /// there or cannot be read, beside the URDF.
 #[must_use]
 fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
-    let folders = Folders::of(&[path]);
+    let folders = Folders::from_files(&[path]);
     let (mut found, mut notes, mut triangles) = (Vec::new(), Vec::new(), 0);
     for Visual { link, body, base_from_shape, geometry } in urdf.collisions() {
         let (points, grown) = match geometry {

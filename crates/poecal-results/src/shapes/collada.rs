@@ -28,7 +28,7 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Re
         .flat_map(|asset| children(asset, "unit"))
         .find_map(|unit| number(unit, "meter"));
     let metre = metre.filter(|metre| *metre > 0.0).unwrap_or(1.0);
-    let mut library = Library::of(root);
+    let mut library = Library::from_root(root);
     let mut instances: Vec<(Node, Rows)> = root
         .descendants()
         .filter(|node| is(*node, "instance_geometry"))
@@ -68,7 +68,7 @@ struct Library<'a> {
 }
 
 impl<'a> Library<'a> {
-    fn of(root: Node<'a, 'a>) -> Self {
+    fn from_root(root: Node<'a, 'a>) -> Self {
         let by_id = root.descendants().filter_map(|node| Some((node.attribute("id")?, node))).collect();
         Library { by_id, places: BTreeMap::new() }
     }

@@ -11,7 +11,7 @@ pub(crate) struct Folders {
 
 impl Folders {
     /// Of some files, which need not be there.
-    pub(crate) fn of(files: &[&Path]) -> Self {
+    pub(crate) fn from_files(files: &[&Path]) -> Self {
         let mut ways: Vec<Vec<PathBuf>> = Vec::new();
         for file in files {
             let Some(way) = way(file.parent().unwrap_or(Path::new(""))) else { continue };

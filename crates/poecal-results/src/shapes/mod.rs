@@ -74,7 +74,7 @@ pub struct Shapes {
 impl Shapes {
     /// Boxes, cylinders and spheres of the URDF that was calibrated, without opening any file. Nothing if the model was no URDF.
     #[must_use]
-    pub fn of(file: &CalibrationFile) -> Self {
+    pub fn from_calibration(file: &CalibrationFile) -> Self {
         collected(file, &mut |_, _| None)
     }
 
@@ -82,7 +82,7 @@ impl Shapes {
     /// mesh that is missing or broken gives a note; if all would be larger than [`MOST_CHARACTERS`], they are made coarser.
     #[must_use]
     pub fn read(file: &CalibrationFile, path: &Path) -> Self {
-        let folders = Folders::of(&[Path::new(&file.inputs.model), path]);
+        let folders = Folders::from_files(&[Path::new(&file.inputs.model), path]);
         let (mut read, mut missing, mut notes) = (Vec::<Triangles>::new(), Vec::new(), Vec::new());
         let mut known: BTreeMap<(String, [u64; 3]), Option<usize>> = BTreeMap::new();
         let mut triangles = 0;

@@ -233,7 +233,7 @@ impl Tests {
 
 impl Level {
     /// Variance of a number with so many squares left, and its degrees of freedom.
-    fn of(self, (squares, freedom): (f64, f64)) -> (f64, f64) {
+    fn variance(self, (squares, freedom): (f64, f64)) -> (f64, f64) {
         match self {
             Level::Known(variance) => (variance, KNOWN),
             Level::Found(own, count) => {
@@ -287,14 +287,14 @@ fn judged(
     tried: &[Tried],
 ) -> Verdict {
     let left = evidence.left();
-    let with = |it: &Tried| level.of((left.0 - it.gain, left.1 - it.rank as f64));
+    let with = |it: &Tried| level.variance((left.0 - it.gain, left.1 - it.rank as f64));
     // How far each exceeds what noise is allowed, by what it leaves itself.
     let excess = |it: &Tried| {
         let (variance, freedom) = with(it);
         it.gain / variance / tests.quantile(it.at, it.rank, freedom)
     };
     let ratio = tried.iter().map(excess).fold(0.0, f64::max);
-    let nothing = level.of(left);
+    let nothing = level.variance(left);
     let found = Verdict {
         best: None,
         nearly: Vec::new(),

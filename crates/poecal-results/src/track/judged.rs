@@ -50,15 +50,15 @@ pub(crate) struct Judged {
 
 impl Judged {
     /// Of the rows of a visit: compared with earlier ones where enough of them repeat, with the model elsewhere.
-    pub(crate) fn of(
+    pub(crate) fn from_rows(
         file: &CalibrationFile,
         data: &Dataset,
         earlier: Option<Earlier<'_>>,
         options: &TrackOptions,
     ) -> Result<Self> {
-        let model = Model::of(file, options)?;
+        let model = Model::from_calibration(file, options)?;
         let data = file.at_stage(data, file.stages()).into_owned();
-        let visit = Visit::of(&model, &data, options.device_is_known, options)?;
+        let visit = Visit::from_measurements(&model, &data, options.device_is_known, options)?;
         let before = earlier.map(|it| before(file, &model, it, options)).transpose()?;
         let earlier = before.as_ref().map(|(visit, data)| (visit, data));
         let mut notes = Vec::new();
@@ -105,14 +105,14 @@ fn before(
     if !earlier.is_own || file.recalibrated.is_empty() {
         return Ok((earlier_visit(model, &data, &same_tool)?, data));
     }
-    let model = Model::of(&file.before_repairs()?, options)?;
+    let model = Model::from_calibration(&file.before_repairs()?, options)?;
     Ok((earlier_visit(&model, &data, &same_tool)?, data))
 }
 
 /// The earlier visit: from where its devices are by the calibration, if that has them; else as they fit.
 pub(crate) fn earlier_visit(model: &Model, data: &Dataset, options: &TrackOptions) -> Result<Visit> {
-    match Visit::of(model, data, true, options) {
+    match Visit::from_measurements(model, data, true, options) {
         Ok(found) if found.rms() < MUCH * model.own_m() => Ok(found),
-        _ => Visit::of(model, data, false, options),
+        _ => Visit::from_measurements(model, data, false, options),
     }
 }

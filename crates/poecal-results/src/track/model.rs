@@ -20,7 +20,7 @@ pub(crate) struct Model {
 
 impl Model {
     /// Of a calibration, with the noise of a visit where that is stated.
-    pub(crate) fn of(file: &CalibrationFile, options: &TrackOptions) -> Result<Self> {
+    pub(crate) fn from_calibration(file: &CalibrationFile, options: &TrackOptions) -> Result<Self> {
         let corrected = file.corrected();
         let is_corrected = corrected.is_some();
         let file = corrected.unwrap_or_else(|| file.clone());

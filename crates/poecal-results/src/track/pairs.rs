@@ -60,7 +60,7 @@ fn shared_numbers((a, rows): (&Dataset, &[u32]), (b, others): (&Dataset, &[u32])
     }
     // Numbers of a place are along the axes of the base, unless its noise has a shape.
     let is_place = |it: &Observation| {
-        it.measurement.channels().of(Quantity::Position) == (0..PLACE) && it.noise_shape.is_none()
+        it.measurement.channels().range(Quantity::Position) == (0..PLACE) && it.noise_shape.is_none()
     };
     if all().all(|it| is_place(&it)) { PLACE } else { 0 }
 }

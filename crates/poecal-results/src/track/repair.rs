@@ -45,7 +45,7 @@ pub fn recalibrate(
     sources: RecalibrationSources,
 ) -> Result<Repaired> {
     let Judged { model, data, visit, changes, level, judged_by, repeated, notes } =
-        Judged::of(file, data, earlier, options)?;
+        Judged::from_rows(file, data, earlier, options)?;
     let at = find_joint(&model, joint)?;
     let (of, what) = match part {
         RepairedPart::Zero => (Of::Zero(at), "zero"),

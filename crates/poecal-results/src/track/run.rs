@@ -53,7 +53,7 @@ pub fn track(
     earlier: Option<Earlier<'_>>,
     options: &TrackOptions,
 ) -> Result<Tracked> {
-    let judged = Judged::of(file, data, earlier, options)?;
+    let judged = Judged::from_rows(file, data, earlier, options)?;
     let Judged { model, visit, data, changes, level, .. } = &judged;
     let evidence = Evidence::new(&changes.residual, &free(&changes.jacobian, visit, options));
     let mut hypotheses = hypotheses(&changes.jacobian, visit, options);
@@ -119,7 +119,7 @@ fn sights(
 
 /// Which part of each joint's range the rows sample.
 fn ranges(model: &Model, data: &Dataset) -> Vec<JointCoverage> {
-    let packed = Packed::of(&model.robot, data);
+    let packed = Packed::from_dataset(&model.robot, data);
     let mut all = coverage(&Session::new(&model.robot, data, &packed, false), &data.all_rows());
     let gives = |name: &str| model.robot.joints.iter().any(|it| it.name == name && it.give_of.is_some());
     all.retain(|it| !gives(&it.joint));

@@ -80,7 +80,7 @@ impl Visit {
 
     /// The rows of some measurements about the model. The frames of the devices are those of the calibration where `device_is_known`, and
     /// fitted elsewhere, as targets are where `tool_is_anew`.
-    pub(crate) fn of(
+    pub(crate) fn from_measurements(
         model: &Model,
         original: &Dataset,
         device_is_known: bool,
@@ -99,7 +99,7 @@ impl Visit {
         let devices = if device_is_known { file.devices_of(&data)? } else { Vec::new() };
         let data = faces_on_known_planes(&data, &model.robot, &devices).into_owned();
         let (robot, rows) = (&model.robot, data.all_rows());
-        let packed = Packed::of(robot, &data);
+        let packed = Packed::from_dataset(robot, &data);
         let session = Session::new(robot, &data, &packed, !device_is_known);
         let estimate = place(model, session, (&data, &rows), &devices, options)?;
         let free = unknowns(model, &session, &estimate, &rows);
@@ -197,7 +197,7 @@ fn unwhiten(
             sigma[start + at] = noise[channel.quantity];
             quantities.push(channel.quantity);
         }
-        let of_places = channels.of(Quantity::Position);
+        let of_places = channels.range(Quantity::Position);
         let on_base = matches!(estimate.tree.instruments().get(seen.station), Some(Stand::On(Body::Base)));
         if of_places.len() == 3 && on_base && seen.noise_shape.is_none() {
             let turn = estimate.device(seen.station).rotation.transpose();

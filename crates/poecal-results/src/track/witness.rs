@@ -130,7 +130,7 @@ pub fn witnesses(
     target: Option<&str>,
     options: &TrackOptions,
 ) -> Result<Witnesses> {
-    let model = Model::of(file, options)?;
+    let model = Model::from_calibration(file, options)?;
     let elsewhere = new.map(|readings| elsewhere(&model, measured, readings)).transpose()?;
     let measured = elsewhere.as_ref().unwrap_or(measured);
     let data = &*file.at_stage(measured, file.stages());
@@ -138,7 +138,7 @@ pub fn witnesses(
     let visit = match new {
         None => earlier_visit(&model, data, &same_tool)?,
         // What was not measured shows no device: it is where the calibration has it.
-        Some(_) => Visit::of(&model, data, true, &same_tool)?,
+        Some(_) => Visit::from_measurements(&model, data, true, &same_tool)?,
     };
     let visit = Visit { device_is_known: options.device_is_known, ..visit };
     let rows = rows_of_target(data, target)?;

@@ -127,7 +127,7 @@ impl Validation {
     ///
     /// # Errors
     /// As [`CalibrationFile::judge`] and [`CalibrationFile::accept`].
-    pub fn of(
+    pub fn from_measurements(
         file: &CalibrationFile,
         original: &Dataset,
         judging: &Judging<'_>,
@@ -191,7 +191,7 @@ impl Validation {
             robot: file.robot.name.clone(),
             inputs,
             record: Record::default(),
-            verdict: ValidationVerdict::of(&judgement),
+            verdict: ValidationVerdict::from_judgement(&judgement),
             stage: None,
             fitted,
             doubt: file.doubt(&judgement),
@@ -222,10 +222,10 @@ impl Validation {
 }
 
 impl ValidationVerdict {
-    fn of(judgement: &Judgement) -> Self {
+    fn from_judgement(judgement: &Judgement) -> Self {
         let found = judgement.delivered();
         let (level, reasons) = judgement.confirmed();
-        let errors = Measured::of(|quantity: Quantity| {
+        let errors = Measured::from_fn(|quantity: Quantity| {
             let own = found.errors.get(quantity)?;
             let part = found.promised.and_then(|it| it.parts.get(quantity));
             let (rms, max) = (own.rms, own.max);

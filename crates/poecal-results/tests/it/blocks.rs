@@ -181,7 +181,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 
     // The robot, and the uncertainty with the device's frame and the term among its unknowns.
     let robot = again.robot().unwrap();
-    assert!(Difference::of(&found.robot, &robot, 100).is_within(1e-12, 1e-12));
+    assert!(Difference::from_robots(&found.robot, &robot, 100).is_within(1e-12, 1e-12));
     let before = found.trust.uncertainty.as_ref().unwrap();
     let (after, _) = again.uncertainty(&[None]).unwrap();
     let unknowns = again.unknowns().unwrap();
@@ -189,7 +189,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
     assert_eq!(unknowns, file.uncertainty.as_ref().unwrap().unknowns);
     assert!(unknowns.contains(&"joint3.offset".to_owned()) && unknowns.contains(&"frame.rx".to_owned()));
     assert!(!unknowns.iter().any(|name| name.starts_with("joint1.")));
-    let packed = Packed::of(&made.nominal, &made.data);
+    let packed = Packed::from_dataset(&made.nominal, &made.data);
     for (a, b) in before.predictions(&packed, 0).iter().zip(after.predictions(&packed, 0)) {
         // Texts hold numbers to the last digit.
         assert!((a.position - b.position).norm() <= 1e-9 * a.position.norm());
@@ -207,7 +207,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
     let urdf = convert(&model, ModelFormat::Urdf).unwrap();
     println!("{:?}", urdf.notes);
     let plain = robot.without_offsets();
-    assert!(plain.terms.is_empty() && Difference::of(&robot, &plain, 100).is_within(1e-12, 1e-12));
+    assert!(plain.terms.is_empty() && Difference::from_robots(&robot, &plain, 100).is_within(1e-12, 1e-12));
 }
 
 /// Terms with a coefficient to be found.

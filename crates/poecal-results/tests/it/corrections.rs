@@ -122,7 +122,7 @@ fn residuals_are_those_of_the_delivered_model() {
     let options = CalibrationOptions { corrections: Corrections::Off, ..options };
     let geometry = calibrate(&robot, &data, &options).unwrap();
     for calibration in [&corrected, &geometry] {
-        for row in Residuals::of(&data, calibration).rows() {
+        for row in Residuals::from_calibration(&data, calibration).rows() {
             let errors = row.errors.get(Quantity::Position).unwrap();
             let length = errors.residual().iter().map(|it| it * it).sum::<f64>().sqrt();
             // Sums of three squares in another order.
@@ -143,10 +143,10 @@ fn a_written_corrected_model_predicts_as_the_fit() {
     let file = CalibrationFile::parse(&text, "calibration.json").unwrap().corrected().unwrap();
     let read = file.robot().unwrap();
     let (mut apart, mut wider): (f64, f64) = (0.0, 0.0);
-    let packed = Packed::of(&found.model.robot, &data);
+    let packed = Packed::from_dataset(&found.model.robot, &data);
     let own = found.uncertainty.as_ref().unwrap().predictions(&packed, 0);
     let (again, targets) = file.uncertainty(&[Some("measured")]).unwrap();
-    let packed = Packed::of(&read, &data);
+    let packed = Packed::from_dataset(&read, &data);
     let written = again.predictions(&packed, targets[0]);
     for (row, (own, written)) in own.iter().zip(&written).enumerate() {
         let readings = data.readings(row);
@@ -228,7 +228,7 @@ fn what_is_planted_is_found_and_nothing_else() {
                 let calibration = calibrate(&made.nominal, &made.data, &options).unwrap();
                 let found = calibration.correction.as_ref().unwrap();
                 let missed = |robot: &Robot, estimate: &Estimate| {
-                    let packed = Packed::of(robot, &unseen);
+                    let packed = Packed::from_dataset(robot, &unseen);
                     let session = Session::new(robot, &unseen, &packed, true);
                     mean_mm(&session.errors(&unseen.all_rows(), estimate))
                 };
@@ -366,7 +366,7 @@ fn noise_of_few_poses_stays() {
         let options = CalibrationOptions { held_out: Some(0.0), diagnose: false, ..Default::default() };
         let found = with_sizes(&robot, &data, sizes, &options);
         let bounds =
-            found.uncertainty.as_ref().map(|it| it.predictions(&Packed::of(&found.model.robot, &data), 0));
+            found.uncertainty.as_ref().map(|it| it.predictions(&Packed::from_dataset(&found.model.robot, &data), 0));
         let widest = bounds.iter().flatten().map(|it| it.bound_position_m()).fold(0.0, f64::max);
         let noise = 1e3 * found.noise[Quantity::Position];
         println!(

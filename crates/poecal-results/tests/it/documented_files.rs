@@ -99,7 +99,7 @@ fn both_documented_dh_tables_are_the_same_arm() {
     let robot = |block: usize| robot_toml::parse(blocks("Robot models", "toml")[block], "dh.toml").unwrap();
     let (standard, modified) = (robot(1), robot(2));
     assert_eq!(standard.reading_names(), modified.reading_names());
-    let difference = Difference::of(&standard, &modified, 100);
+    let difference = Difference::from_robots(&standard, &modified, 100);
     assert!(difference.is_within(1e-14, 1e-14), "{difference:?}");
     assert!(
         (standard.home.translation - Vector3::new(0.445, 0.0, 0.99)).norm() < 1e-14,
@@ -132,7 +132,7 @@ fn results_have_the_documented_columns_and_keys() {
     let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let documented = blocks("Results", "text")[0].lines().next().unwrap();
-    assert_eq!(Residuals::of(&made.data, &calibration).text().lines().next().unwrap(), documented);
+    assert_eq!(Residuals::from_calibration(&made.data, &calibration).text().lines().next().unwrap(), documented);
     assert!(blocks("Results", "text")[0].lines().all(|line| line.matches(',').count() == 28));
 
     let inputs = Inputs::default();

@@ -103,7 +103,7 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
         let some = judgement.in_sampled_range.as_mut().unwrap();
         let parts = some.promised.parts;
         some.promised.parts =
-            Measured::of(|it| parts.get(it).map(|part| PartCoverage { inside_bound95: 0.41, ..part }));
+            Measured::from_fn(|it| parts.get(it).map(|part| PartCoverage { inside_bound95: 0.41, ..part }));
         some.count = count;
         judgement
     };

@@ -53,7 +53,7 @@ fn fit(robot: &Robot, data: &Dataset, robust: Robust) -> Calibration {
 
 /// Root mean square position error of an estimate, metres.
 fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f64 {
-    let packed = Packed::of(robot, data);
+    let packed = Packed::from_dataset(robot, data);
     let errors = Session::new(robot, data, &packed, true).errors(rows, estimate);
     (errors.iter().map(|e| e.position_m().norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
 }
@@ -174,7 +174,7 @@ fn registration_survives_three_tenths_of_the_rows_wrong() {
                 };
                 let made = exact.run(&robot, kind).unwrap();
                 let (data, gross) = spoilt(&made, 0.3, seed);
-                let packed = Packed::of(&robot, &data);
+                let packed = Packed::from_dataset(&robot, &data);
                 let rows = data.all_rows();
                 let clean: Vec<u32> =
                     rows.iter().copied().filter(|row| gross.binary_search(row).is_err()).collect();

@@ -80,7 +80,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     println!("shapes stand on their joints within {apart:?}, which the calibration moved by {moved:?}");
     // Rounding of frames about 1 m.
     assert!(apart.0 < 1e-12 && apart.1 < 1e-7 && moved.0 > 1e-6, "{apart:?}, {moved:?}");
-    assert_eq!((Shapes::of(&file).shapes.len(), Shapes::of(&file).notes.len()), (0, 0));
+    assert_eq!((Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()), (0, 0));
 
     // Beside the calibration, where the URDF is no more.
     fs::rename(cell.join("robot"), cell.join("out")).unwrap();
@@ -100,7 +100,7 @@ fn a_box_is_drawn_without_any_file() {
     let made = Simulation::default().run(&model.robot, Kind::POSE).unwrap();
     let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     let mut file = CalibrationFile::new(&calibration, &made.data, Inputs::of_model(&model));
-    let found = Shapes::of(&file).shapes;
+    let found = Shapes::from_calibration(&file).shapes;
     assert_eq!(
         (found.len(), found[0].link.as_str(), found[0].form),
         (1, "upper", Form::Box([0.4, 0.05, 0.05]))

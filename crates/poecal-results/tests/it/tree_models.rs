@@ -156,7 +156,7 @@ fn moved(robot: &Robot, seed: u64) -> Robot {
 }
 
 fn alike(robot: &Robot, other: &Robot, what: &str) {
-    let difference = Difference::of(robot, other, 200);
+    let difference = Difference::from_robots(robot, other, 200);
     println!("{what}: {:.1e} m, {:.1e} rad", difference.position_m, difference.rotation_rad);
     assert!(difference.is_within(1e-12, 1e-12), "{what}: {difference:?}");
 }
@@ -192,12 +192,12 @@ fn branches_are_written_into_the_urdf_and_into_new_models() {
     for index in 0..2 {
         let mut other = robot.clone();
         other.mounted[index].pose.translation += Vector3::new(0.0, 1e-3, 0.0);
-        assert!((Difference::of(robot, &other, 20).position_m - 1e-3).abs() < 1e-12);
+        assert!((Difference::from_robots(robot, &other, 20).position_m - 1e-3).abs() < 1e-12);
         let mut other = robot.clone();
         other.instruments[index].pose.translation.x += 1e-3;
-        assert!((Difference::of(robot, &other, 20).position_m - 1e-3).abs() < 1e-12);
+        assert!((Difference::from_robots(robot, &other, 20).position_m - 1e-3).abs() < 1e-12);
         other.instruments.remove(index);
-        assert!(Difference::of(robot, &other, 20).position_m.is_nan());
+        assert!(Difference::from_robots(robot, &other, 20).position_m.is_nan());
     }
 }
 

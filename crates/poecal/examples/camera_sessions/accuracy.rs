@@ -17,7 +17,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
             let geometry = CalibrationOptions { corrections: Corrections::Off, ..all_rows() };
             let (_, data, geometric) = judged(&session, &session.data, &geometry)?;
             let (usual, _, all) = judged(&session, &session.data, &all_rows())?;
-            let information = Information::of(&session, session.simulation.common);
+            let information = Information::from_session(&session, session.simulation.common);
             let (least, least_registered) = (information.least(), information.registered(&session).least());
             let at = places(&session);
             let shown = |[shift, turn]: [f64; 2]| [1e3 * shift, 1e3 * turn];

@@ -77,7 +77,7 @@ fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
 /// Shares of the errors of exact poses inside the 95 % bounds that independent corners promise.
 fn by_rule(session: &Session, deviations: &[Vector6<f64>]) -> [f64; 2] {
     let none = CommonError { shift_m: 0.0, turn_rad: 0.0, ..session.simulation.common };
-    let spreads = Information::of(session, none).spreads();
+    let spreads = Information::from_session(session, none).spreads();
     [0, 3].map(|first| {
         let is_inside = |(spread, error): (&Matrix6<f64>, &Vector6<f64>)| {
             let limit = bound(&spread.fixed_view::<3, 3>(first, first).into_owned());

@@ -26,7 +26,7 @@ pub(crate) struct Information {
 
 impl Information {
     /// By the known noise of the corners, and an error that those of a picture have in common.
-    pub(crate) fn of(session: &Session, common: CommonError) -> Self {
+    pub(crate) fn from_session(session: &Session, common: CommonError) -> Self {
         let Session { made, data, others, .. } = session;
         let unknowns = 0..6 * (made.actual.joints.len() + 2);
         let changed: Vec<[Photographed; 2]> =

@@ -12,7 +12,7 @@ use rand_core::SeedableRng;
 use serde_json::{Value, json};
 
 use crate::session::{
-    COUNT, Session, all_rows, judged, of, places, rebuilt, registered, rms, shape, simulation,
+    COUNT, Session, all_rows, judged, simulate_session, places, rebuilt, registered, rms, shape, simulation,
 };
 
 /// The stretch of a board along x.
@@ -28,7 +28,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut lines = Vec::new();
     let true_lens = poecal_model::simulate::PictureSimulation { lens, ..base };
-    let session = of(true_lens)?;
+    let session = simulate_session(true_lens)?;
     let (_, _, known) = judged(&session, &session.data, &all_rows())?;
     let known = rms(&shape(&session, &known))[0];
     let numbers = lens.numbers();

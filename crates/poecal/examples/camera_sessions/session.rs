@@ -42,7 +42,7 @@ pub(crate) fn common(millis: f64, in_hand: bool) -> CommonError {
 /// A usual session of the elbow.
 pub(crate) fn session(in_hand: bool, millis: f64, seed: u64) -> Result<Session, Error> {
     let simulation = simulation(in_hand, millis, seed);
-    of(simulation)
+    simulate_session(simulation)
 }
 
 /// A usual simulation of the elbow.
@@ -58,7 +58,7 @@ pub(crate) fn simulation(in_hand: bool, millis: f64, seed: u64) -> PictureSimula
 }
 
 /// The session of a simulation; of another seed if the robot cannot be moved so that the camera sees the board.
-pub(crate) fn of(simulation: PictureSimulation) -> Result<Session, Error> {
+pub(crate) fn simulate_session(simulation: PictureSimulation) -> Result<Session, Error> {
     let other = Simulation { seed: simulation.session.seed + 1_000_000, ..simulation.session };
     let again = PictureSimulation { session: other, ..simulation.clone() };
     let mut made = simulation.run(&elbow()).or_else(|_| again.run(&elbow()))?;

@@ -83,7 +83,7 @@ fn programs_of_fanuc_are_corrected_in_place() {
     for frame in ["1=350,-220,-180,0,0,90", "2=-150,260.5,40,2,-3,15"] {
         given.add_frame(frame, Language::Fanuc).unwrap();
     }
-    let options = ProgramOptions { check: true, given, ..ProgramOptions::of(Language::Fanuc) };
+    let options = ProgramOptions { check: true, given, ..ProgramOptions::new(Language::Fanuc) };
     let paths = files("fanuc", &["ls"]);
     let (mut metres, mut radians, mut targets) = (0.0_f64, 0.0_f64, 0);
     for path in &paths {

@@ -398,7 +398,7 @@ fn the_status_of_the_home_position_is_that_of_the_manual() {
     let pose = (FORM.pose)('P', &nominal.forward_kinematics(&q), &q);
     for (words, is_taken) in [("S 2,T 2", true), ("S 0,T 2", false), ("S 6,T 2", false), ("S 2,T 3", false)] {
         let text = format!("DEF p()\n$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP {{{pose},{words}}}\nEND\n");
-        let options = ProgramOptions::of(Language::Krl);
+        let options = ProgramOptions::new(Language::Krl);
         let (_, summary) = compensate_program(text.as_bytes(), (&nominal, &nominal), &[], &options).unwrap();
         assert_eq!(summary.corrected == 1, is_taken, "{words}: {:?}", summary.changes.listed);
     }

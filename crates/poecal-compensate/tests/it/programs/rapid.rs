@@ -66,7 +66,7 @@ const READER: Reader = Reader {
 #[test]
 fn programs_in_rapid_are_corrected_in_place() {
     let nominal = nominal();
-    let options = ProgramOptions { check: true, ..ProgramOptions::of(Language::Rapid) };
+    let options = ProgramOptions { check: true, ..ProgramOptions::new(Language::Rapid) };
     let paths = files("rapid", &["mod", "prg", "sys"]);
     let (mut metres, mut radians, mut targets) = (0.0_f64, 0.0_f64, 0);
     for path in &paths {
@@ -88,7 +88,7 @@ fn targets_without_moves_have_what_the_user_states() {
     let nominal = nominal();
     let text = "MODULE Data\n  CONST robtarget p10:=[[1628.128,-12.5,1705.665],[0.13052562,0,0.99144494,0],\
                 [-1,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nENDMODULE\n";
-    let mut options = ProgramOptions::of(Language::Rapid);
+    let mut options = ProgramOptions::new(Language::Rapid);
     let run = |options: &ProgramOptions| {
         compensate_program(text.as_bytes(), (&nominal, &actual(&nominal)), &[], options).unwrap()
     };

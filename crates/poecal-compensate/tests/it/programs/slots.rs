@@ -205,7 +205,7 @@ pub(super) fn actual(nominal: &Robot) -> Robot {
 
 /// Options of a case.
 pub(super) fn options(case: &Case, language: Language) -> ProgramOptions {
-    let mut options = ProgramOptions { check: true, ..ProgramOptions::of(language) };
+    let mut options = ProgramOptions { check: true, ..ProgramOptions::new(language) };
     for words in case.options {
         let (what, words) = words.split_once(' ').unwrap();
         match what {

@@ -262,7 +262,7 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
     let nominal = nominal();
     let actual = actual(&nominal);
     let text = "movej( [ d2r(10), - 1.25 , +1.4 ,d2r( -100 ), -d2r(80),.35 ] , a = 1.4 )\n";
-    let options = ProgramOptions::of(Language::UrScript);
+    let options = ProgramOptions::new(Language::UrScript);
     let (written, summary) = compensate_program(text.as_bytes(), (&nominal, &actual), &[], &options).unwrap();
     let written = String::from_utf8(written).unwrap();
     assert!(summary.is_whole() && summary.corrected == 1, "{:?}", summary.changes.listed);
@@ -284,7 +284,7 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
 fn a_long_program_takes_time_by_its_length() {
     let nominal = nominal();
     let actual = actual(&nominal);
-    let options = ProgramOptions::of(Language::UrScript);
+    let options = ProgramOptions::new(Language::UrScript);
     let program = |count: usize| {
         let line =
             |at: usize| format!("movej([0.1, -1.2, 1.4, {}, -1.4, 0.3])\n", -1.7 + 1e-4 * (at % 1000) as f64);

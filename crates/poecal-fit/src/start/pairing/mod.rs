@@ -146,7 +146,7 @@ impl<'a> Unpaired<'a> {
         if data.is_empty() {
             return None;
         }
-        let packed = Packed::of(self.robot, &data);
+        let packed = Packed::from_dataset(self.robot, &data);
         let session = Session::new(self.robot, &data, &packed, true);
         let mut rows = data.all_rows();
         let mut best = None;
@@ -178,7 +178,7 @@ impl<'a> Unpaired<'a> {
     /// Errors of pairs by an estimate, each the root mean square of its rows, metres.
     fn errors_of(&self, pairs: &[Pair], estimate: &Estimate) -> Vec<f64> {
         let (data, of) = self.paired(pairs);
-        let packed = Packed::of(self.robot, &data);
+        let packed = Packed::from_dataset(self.robot, &data);
         let session = Session::new(self.robot, &data, &packed, true);
         let mut sums = vec![(0.0, 0.0); pairs.len()];
         for (error, at) in session.errors(&data.all_rows(), estimate).iter().zip(of) {

@@ -247,7 +247,7 @@ impl<'a> Motion<'a> {
     /// The nominal robot registered at a clock, with the median error, metres.
     fn registered(&self, guess: &Guess, most: usize) -> Option<(Estimate, f64)> {
         let (data, _) = self.session(guess, most)?;
-        let packed = Packed::of(self.robot, &data);
+        let packed = Packed::from_dataset(self.robot, &data);
         let held = unknowns(&data, true);
         let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
         let problem = registration(session);
@@ -264,7 +264,7 @@ impl<'a> Motion<'a> {
         let begun = guess.lag_s;
         for _ in 0..ROUNDS_OF_EACH {
             let (data, _) = self.session(&guess, SOME)?;
-            let packed = Packed::of(self.robot, &data);
+            let packed = Packed::from_dataset(self.robot, &data);
             let (held, free) = (unknowns(&data, true), unknowns(&data, false));
             let all = data.all_rows();
             let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
@@ -295,7 +295,7 @@ impl<'a> Motion<'a> {
         let (mut jitter_s, mut fitted_m) = (0.0, f64::INFINITY);
         for _ in 0..ROUNDS {
             let (data, _) = self.session(&guess, MOST)?;
-            let packed = Packed::of(self.robot, &data);
+            let packed = Packed::from_dataset(self.robot, &data);
             let (held, free) = (unknowns(&data, true), Unknowns::USUAL);
             let all = data.all_rows();
             let session = Session::new(self.robot, &data, &packed, true).with_unknowns(&held);
@@ -304,7 +304,7 @@ impl<'a> Motion<'a> {
                 &delivered(self.robot, &data),
             );
             let session = session.with_unknowns(&free);
-            let prior = Prior::of(&session, Tolerance::default());
+            let prior = Prior::from_session(&session, Tolerance::default());
             let mut rows = all.clone();
             for _ in 0..2 {
                 let errors = session.errors(&all, &estimate);

@@ -146,7 +146,7 @@ impl Stream {
             return Vec::new();
         }
         let sums: Vec<Vec<Sums>> =
-            self.channels.iter().map(|it| it.values.iter().map(|it| Sums::of(it)).collect()).collect();
+            self.channels.iter().map(|it| it.values.iter().map(|it| Sums::from_values(it)).collect()).collect();
         let mut still = vec![true; windows.len()];
         let mut tolerances = Vec::with_capacity(self.channels.len());
         for (channels, sums) in self.channels.iter().zip(&sums) {
@@ -240,7 +240,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(values: &[f64]) -> Self {
+    fn from_values(values: &[f64]) -> Self {
         let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let running = |of: &dyn Fn(f64) -> f64| {
             let mut sum = 0.0;

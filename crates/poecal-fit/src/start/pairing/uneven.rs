@@ -58,7 +58,7 @@ impl Unpaired<'_> {
         let (mut estimate, mut usual) = self.best_window(band)?;
         let mut pairs: Vec<Pair> = Vec::new();
         for _ in 0..ROUNDS {
-            let costs = Costs::of(self, &estimate, band);
+            let costs = Costs::from_rows(self, &estimate, band);
             let (found, missed) = costs.cheapest(usual, (joints, shots))?;
             let next = self.registered(&found)?;
             let same = found == pairs;
@@ -68,7 +68,7 @@ impl Unpaired<'_> {
                 break;
             }
         }
-        let costs = Costs::of(self, &estimate, band);
+        let costs = Costs::from_rows(self, &estimate, band);
         let is_clear = |&(joint, shot): &Pair| {
             let own = costs.at(joint, shot);
             let neighbours = [joint.checked_sub(1), Some(joint + 1)].into_iter().flatten();
@@ -118,7 +118,7 @@ struct Costs {
 }
 
 impl Costs {
-    fn of(rows: &Unpaired<'_>, estimate: &Estimate, band: usize) -> Self {
+    fn from_rows(rows: &Unpaired<'_>, estimate: &Estimate, band: usize) -> Self {
         let (joints, shots) = (rows.joint_rows(), rows.shots.len());
         let width = 2 * band + 1;
         let mut pairs = Vec::new();

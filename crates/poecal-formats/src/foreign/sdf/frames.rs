@@ -37,7 +37,7 @@ pub(crate) struct Frames<'a> {
 
 impl<'a> Frames<'a> {
     /// Those of a model.
-    pub(crate) fn of(source: XmlSource<'a>, model: Node<'a, 'a>) -> Result<Self> {
+    pub(crate) fn from_model(source: XmlSource<'a>, model: Node<'a, 'a>) -> Result<Self> {
         let (found, placed) = (BTreeMap::new(), RefCell::default());
         let mut frames = Frames { source, found, placed, links: Vec::new(), joints: Vec::new() };
         let (pose, base, on) = (Pose::identity(), String::new(), Some(WORLD.to_owned()));

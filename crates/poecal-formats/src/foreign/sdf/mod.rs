@@ -34,7 +34,7 @@ pub(crate) fn read(text: &str, path: &Path, named: &[&str]) -> Result<Links> {
         root.attribute("version").and_then(|it| it.split_once('.')?.1.parse::<u32>().ok()).unwrap_or(12);
     let unread = unread::sentence(&source, root, unread::SDF)?;
     let mut links =
-        Frames::of(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)?;
+        Frames::from_model(source, model)?.links(model.attribute("name").unwrap_or("robot"), version, named)?;
     links.unread = unread;
     Ok(links)
 }

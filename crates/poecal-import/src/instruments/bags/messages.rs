@@ -23,7 +23,7 @@ const TYPES: [(&str, Kind); 5] = [
 
 impl Kind {
     /// By the name of a type.
-    pub(crate) fn of(name: &str) -> Option<Self> {
+    pub(crate) fn from_type_name(name: &str) -> Option<Self> {
         let is_same = |known: &str| known == name || known.replace("/msg/", "/") == name;
         TYPES.iter().find(|it| is_same(it.0)).map(|it| it.1)
     }
@@ -194,8 +194,8 @@ pub(crate) mod tests {
 
     #[test]
     fn types_are_known_in_either_form() {
-        assert_eq!(Kind::of("sensor_msgs/msg/JointState"), Some(Kind::Joints));
-        assert_eq!(Kind::of("geometry_msgs/PoseStamped"), Some(Kind::Pose));
-        assert_eq!(Kind::of("std_msgs/msg/String"), None);
+        assert_eq!(Kind::from_type_name("sensor_msgs/msg/JointState"), Some(Kind::Joints));
+        assert_eq!(Kind::from_type_name("geometry_msgs/PoseStamped"), Some(Kind::Pose));
+        assert_eq!(Kind::from_type_name("std_msgs/msg/String"), None);
     }
 }

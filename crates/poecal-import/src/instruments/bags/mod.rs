@@ -34,7 +34,7 @@ const EXPECTED: &str = "a ROS 2 bag (MCAP)";
 pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
-    let (parts, left) = parts::of(path)?;
+    let (parts, left) = parts::files_of_bag(path)?;
     let mut warned: Vec<String> = left.iter().map(ToString::to_string).collect();
     let mut hashing = Hashing::new(Box::new(io::empty()) as Box<dyn io::Read>);
     let mut unpacked = 0_u64;

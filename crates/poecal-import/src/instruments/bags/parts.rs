@@ -37,7 +37,7 @@ fn names(folder: &Path) -> std::io::Result<(Vec<String>, Vec<LeftOut>)> {
 }
 
 /// The files of a bag by their numbers, and what is left out of its folder.
-pub(crate) fn of(path: &Path) -> Result<(Vec<PathBuf>, Vec<LeftOut>)> {
+pub(crate) fn files_of_bag(path: &Path) -> Result<(Vec<PathBuf>, Vec<LeftOut>)> {
     if !is_folder(path) {
         return Ok((vec![path.to_path_buf()], Vec::new()));
     }

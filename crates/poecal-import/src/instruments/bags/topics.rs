@@ -173,7 +173,7 @@ impl Records for Topics<'_> {
         }
         let at = known.unwrap_or_else(|| {
             self.places.insert(key, self.all.len());
-            let content = match Kind::of(of).filter(|_| is_cdr) {
+            let content = match Kind::from_type_name(of).filter(|_| is_cdr) {
                 Some(Kind::Joints) => Content::Joints(Readings::new(self.joints)),
                 Some(kind) => Content::Bodies(Bodies::new(kind)),
                 None => Content::Other,

@@ -30,7 +30,7 @@ impl Parts {
     ///
     /// # Errors
     /// A binary workbook, or the sentence of the limit that is exceeded. An archive that cannot be read is no matter of limits.
-    pub(crate) fn of(bytes: &[u8]) -> Result<Self, String> {
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Parts::default()) };
         let most = Limit::Unpacked.most();
         let (mut sum, mut parts) = (0_u64, Parts::default());
@@ -237,7 +237,7 @@ mod tests {
     fn a_binary_workbook_is_refused_by_name() {
         let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
         archive.start_file(BINARY, zip::write::SimpleFileOptions::default()).unwrap();
-        let error = Parts::of(&archive.finish().unwrap().into_inner()).unwrap_err();
+        let error = Parts::from_bytes(&archive.finish().unwrap().into_inner()).unwrap_err();
         assert!(error.starts_with("found a binary workbook (.xlsb)"), "{error}");
     }
 

@@ -41,7 +41,7 @@ impl<'b> Workbook<'b> {
         if bytes.starts_with(office::MAGIC) {
             return old::sheets(bytes).map(Workbook::Read);
         }
-        let parts = Parts::of(bytes)?;
+        let parts = Parts::from_bytes(bytes)?;
         let cursor = Cursor::new(bytes);
         let book = Xlsx::new(cursor.clone()).map(Sheets::Xlsx).or_else(|_| Ods::new(cursor).map(Sheets::Ods)).map_err(|_| {
             "found a ZIP archive that is no workbook such as .xlsx, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
@@ -88,7 +88,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
     }
     let mut tables = Vec::new();
     for name in wanted.map_or(names.iter().collect(), |it| vec![it]) {
-        tables.extend(Found::of(book.range(name)?, name));
+        tables.extend(Found::from_range(book.range(name)?, name));
     }
     if let [found] = tables.as_slice() {
         return found.sets(&book.formulas(&found.sheet.name, &found.range), opening);
@@ -128,7 +128,7 @@ struct Found {
 
 impl Found {
     /// The first head with numbers below.
-    fn of(range: Range<Data>, name: &str) -> Option<Self> {
+    fn from_range(range: Range<Data>, name: &str) -> Option<Self> {
         let rows: Vec<&[Data]> = range.rows().collect();
         let Head { names, header, units, begin, is_two } = head(&rows)?;
         let is_filled =

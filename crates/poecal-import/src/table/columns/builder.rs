@@ -113,7 +113,7 @@ impl<'a> Builder<'a> {
         quantity: Unit,
         purpose: &str,
     ) -> Result<usize> {
-        if let Some(unit) = spec.unit.filter(|unit| unit.of() != quantity) {
+        if let Some(unit) = spec.unit.filter(|unit| unit.si_unit() != quantity) {
             NamedUnit::parse_for(unit.symbol(), quantity, &format!(" {purpose}"))
                 .map_err(|error| error.in_file(&self.map.path))?;
         }
@@ -128,7 +128,7 @@ impl<'a> Builder<'a> {
             self.add_offset(at, spec.offset, purpose)?;
             return Ok(at);
         };
-        let stated = spec.unit.or(self.map.units.of(quantity));
+        let stated = spec.unit.or(self.map.units.unit_of_quantity(quantity));
         let unit = stated.unwrap_or(NamedUnit::from(quantity));
         let unit_from = if stated.is_some() { UnitSource::Mapping } else { UnitSource::Si };
         if unit.to_si(value).abs() > LARGEST_NUMBER {
@@ -194,7 +194,7 @@ impl<'a> Builder<'a> {
             Some(unit) => Some((unit, UnitSource::Mapping)),
             None => self.header.unit(index, quantity, purpose)?,
         };
-        let of_all = || self.map.units.of(quantity).map(|unit| (unit, UnitSource::Mapping));
+        let of_all = || self.map.units.unit_of_quantity(quantity).map(|unit| (unit, UnitSource::Mapping));
         let default = match unstated {
             Some((_, UnitSource::Maker)) => of_all().or(unstated),
             _ => unstated.or_else(of_all),

@@ -85,7 +85,7 @@ pub(crate) struct UnitDefaults {
 }
 
 impl UnitDefaults {
-    pub(crate) fn of(self, quantity: Unit) -> Option<NamedUnit> {
+    pub(crate) fn unit_of_quantity(self, quantity: Unit) -> Option<NamedUnit> {
         match quantity {
             Unit::Metre => self.length,
             Unit::Radian => self.angle,
@@ -188,7 +188,7 @@ impl ColumnMap {
         let mut found = UnitDefaults::default();
         for word in words.split(',').map(str::trim) {
             let unit = NamedUnit::parse_any(word)?;
-            let place = if unit.of() == Unit::Metre { &mut found.length } else { &mut found.angle };
+            let place = if unit.si_unit() == Unit::Metre { &mut found.length } else { &mut found.angle };
             if place.replace(unit).is_some() {
                 return ErrorKind::Unit.refuse(format!(
                     "found two units of one kind in `{words}`, expected one of lengths, one of angles, or both, like mm,deg"

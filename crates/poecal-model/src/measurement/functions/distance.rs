@@ -155,7 +155,7 @@ impl Measurement {
 
     /// The same with the zero of its readings unknown, if it is a distance.
     pub fn with_unknown_zero(self) -> Self {
-        if *self.function() == DISTANCE { self.of(&CHANGE) } else { self }
+        if *self.function() == DISTANCE { self.with_function(&CHANGE) } else { self }
     }
 }
 

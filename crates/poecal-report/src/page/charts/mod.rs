@@ -79,7 +79,7 @@ pub(crate) struct Charts<'a> {
 
 impl<'a> Charts<'a> {
     pub(crate) fn new(residuals: &'a Residuals, rows: &'a [Drawn]) -> Self {
-        Charts { residuals, rows, lead: Lead::of(residuals) }
+        Charts { residuals, rows, lead: Lead::from_residuals(residuals) }
     }
 
     fn row(&self, drawn: &Drawn) -> Option<&ResidualRow> {

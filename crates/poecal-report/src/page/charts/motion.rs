@@ -37,7 +37,7 @@ pub(crate) struct Motions<'a> {
 impl<'a> Motions<'a> {
     pub(crate) fn new(file: &CalibrationFile, residuals: &'a Residuals) -> Result<Self> {
         let robot = file.robot()?;
-        let frames = Frames::of(file, &robot, residuals)?;
+        let frames = Frames::from_calibration(file, &robot, residuals)?;
         let mounted = |frame: &FrameData<'_>| {
             let body = frame.on.map_or(Body::Base, Body::Link);
             let path = robot.joints_to(body);

@@ -99,7 +99,7 @@ fn sheet(file: &CalibrationFile, record: &Record, attest: &Attest, title: &Marku
 
 /// Errors before and after, and the uncertainty.
 fn result(file: &CalibrationFile) -> Markup {
-    let Leading { set, models, without, .. } = Leading::of(file);
+    let Leading { set, models, without, .. } = Leading::from_calibration(file);
     let lead = set.calibrated.leading().map(|(quantity, _)| quantity);
     let unit = match lead.map(Quantity::unit) {
         Some(Unit::Radian) => "°",
@@ -233,7 +233,7 @@ mod tests {
         let made = Simulation::default().run(&elbow(), Kind::POINT).unwrap();
         let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
         let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-        let record = Record::of([("serial", "<b>4711</b>"), ("valid_until", "2027-11-28")]).unwrap();
+        let record = Record::from_pairs([("serial", "<b>4711</b>"), ("valid_until", "2027-11-28")]).unwrap();
         let attest = Attest { sha256: Some("ab".repeat(32)), logo: Some(("image/png", vec![0x89, 0x50])) };
         let page = certificate_page(&file, &record, &attest).concat();
         for words in [

@@ -105,7 +105,7 @@ fn then_and_now(told: &Track, file: &CalibrationFile, day: Option<&str>) -> Mark
         let now = text(&told.record, key).or(today);
         table.cells([label.to_owned(), text(&file.record, key).unwrap_or_default(), now.unwrap_or_default()]);
     }
-    let leading = Leading::of(file);
+    let leading = Leading::from_calibration(file);
     let (set, then) = (leading.set, leading.models.last());
     let then = then.and_then(|(_, model, _)| model.get(Quantity::Position));
     let then = then.map(|it| format!("{} mm (RMS), on {} {}", number(it.rms), set.count, judged_on(file)));
