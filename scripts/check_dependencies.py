@@ -1,7 +1,7 @@
 """Checks licences, versions and sources of all crates by deny.toml, as `cargo deny check licenses bans sources` does, in a second.
 
-cargo-deny itself runs in .github/workflows/ci.yml; here is what is worth knowing before that. Fails on a key of deny.toml that it does
-not apply, so that no rule is left out unseen. Needs tomli for Python 3.10 (requirements-test.lock has it).
+cargo-deny itself runs in .github/workflows/ci.yml; this is the part that is useful before that. Fails on a key of deny.toml that it does not apply,
+so that no rule is left out unseen. Needs tomli for Python 3.10 (requirements-test.lock has it).
 """
 
 import json
@@ -16,10 +16,10 @@ except ModuleNotFoundError:
     import tomli as tomllib
 
 ROOT = Path(__file__).resolve().parents[1]
-# What is applied; of advisories, which need the network, and confidence-threshold, which is about texts, only cargo-deny knows.
+# Keys that are applied; advisories, which need the network, and confidence-threshold, which is about texts, are left to cargo-deny.
 KNOWN = {
     "graph": {"all-features"},
-    # What only cargo-deny applies.
+    # Keys that only cargo-deny applies.
     "advisories": {"yanked", "ignore"},
     "licenses": {"allow", "confidence-threshold", "exceptions"},
     "bans": {"multiple-versions", "wildcards", "allow-wildcard-paths", "deny", "skip"},
@@ -28,7 +28,7 @@ KNOWN = {
 
 
 def is_allowed(expression, allow):
-    """Whether an SPDX expression can be satisfied by the licences allowed; `A/B`, as crates once wrote, means either."""
+    """True if an SPDX expression can be satisfied by the licences allowed; `A/B`, as crates once wrote, means either."""
     tokens = re.findall(r"[()]|[^\s()/]+|/", expression)
     at = 0
 
@@ -117,7 +117,7 @@ def complaints(rules, packages, shipped):
 
 
 def reached(metadata, kinds):
-    """The packages that those of the workspace lead to by dependencies of these kinds (None: the usual ones)."""
+    """The packages that those of the workspace depend on by dependencies of these kinds (None: the default ones)."""
     def counts(dependency):
         # `cfg(any())` is true nowhere: such a dependency only ties two versions together.
         return any(kind["kind"] in kinds and kind["target"] != "cfg(any())" for kind in dependency["dep_kinds"])
@@ -145,10 +145,10 @@ def in_tree(*arguments):
 def main():
     rules = tomllib.loads((ROOT / "deny.toml").read_text(encoding="utf-8"))
     metadata = json.loads(cargo("metadata", "--locked", "--all-features", "--format-version", "1"))
-    # The metadata name what a feature of an optional dependency alone mentions; the tree does not.
+    # The metadata contain packages that only a feature of an optional dependency mentions; the tree does not.
     used = in_tree("--workspace", "--all-features")
     sets = []
-    # As for cargo-deny, what only tests need may be there in a second version, but in no other way.
+    # As for cargo-deny, packages that only tests need may be present in a second version, but without other exceptions.
     for kinds in [(None, "build", "dev"), (None, "build")]:
         packages = reached(metadata, kinds)
         sets.append([it for it in packages if (it["name"], f"v{it['version']}") in used])

@@ -23,7 +23,7 @@ def listed(text):
         line = line.split("#")[0].strip()
         if not line:
             continue
-        # Extras choose further packages, which are locked as what they are.
+        # Extras select further packages, which are locked by their own names.
         name, ranges = re.fullmatch(r"([A-Za-z0-9._-]+)(?:\[[a-z,]+\])?((?:>=|<|==).+)", line).groups()
         ranges = [re.fullmatch(r"(>=|<|==)([0-9.]+)", part.strip()).groups() for part in ranges.split(",")]
         found[normal(name)] = ranges
@@ -31,7 +31,7 @@ def listed(text):
 
 
 def locked(text):
-    """What is locked: [(name, version, number of checksums, who wants it)]."""
+    """The locked packages: [(name, version, number of checksums, packages that require it)]."""
     found = []
     for block in re.split(r"\n(?=[A-Za-z0-9])", "\n" + text):
         entry = re.match(r"\s*([A-Za-z0-9._-]+)==(\S+)", block)
@@ -45,7 +45,7 @@ def normal(name):
 
 
 def number(version):
-    """Comparable, without what follows the release's numbers."""
+    """Comparable, without the part after the release's numbers."""
     parts = [int(part) for part in re.match(r"\d+(?:\.\d+)*", version)[0].split(".")]
     while parts and parts[-1] == 0:
         parts.pop()

@@ -14,7 +14,7 @@ FOR_USERS = {"poecal", "poecal-arm", "poecal-detect", "poecal-lou2009"}
 
 
 def one(pattern, name):
-    """What a pattern finds in a file of the repository, with the line."""
+    """The match of a pattern in a file of the repository, with the line."""
     text = (ROOT / name).read_text(encoding="utf-8")
     match = re.search(pattern, text, re.M)
     if not match:

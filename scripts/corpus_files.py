@@ -15,7 +15,7 @@ SEEDS = ROOT / "fuzz/seeds"
 
 Rows = list[list[str]]
 
-# Arms of makers of controllers: of each axis a point on it and its direction, then where the flange is at zero (mm, degrees), and limits.
+# Arms of makers of controllers: for each axis a point on it and its direction, then the pose of the flange at zero (mm, degrees), and limits.
 ARMS: dict[str, tuple[list[tuple[list[float], list[int]]], list[float], list[int], list[list[int]]]] = {
     "kuka": (
         [([0, 0, 0], [0, 0, -1]), ([25, 0, 400], [0, 1, 0]), ([585, 0, 400], [0, 1, 0]),
@@ -166,7 +166,7 @@ WIDTH, HEIGHT = 112, 88
 
 
 def written(path: Path) -> Path:
-    """A path whose folder is there."""
+    """A path whose folder exists."""
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
 
@@ -272,13 +272,13 @@ def lost(header: list[str], rows: Rows) -> None:
 
 
 def joints(header: list[str], rows: Rows) -> None:
-    """Without what was measured, of six joints."""
+    """The table without measured columns, of six joints."""
     for line in [header, *rows]:
         del line[6:]
 
 
 def places(header: list[str], rows: Rows) -> None:
-    """Without the joints, of which there are six."""
+    """The table without the joints, of which there are six."""
     for line in [header, *rows]:
         del line[:6]
 
@@ -293,7 +293,7 @@ def with_column(header: list[str], rows: Rows, name: str, values: Callable[[int]
         row.append(values(at))
 
 
-# What is done to the header and the rows of a table.
+# Changes of the header and the rows of a table.
 CHANGES: dict[str, Callable[[list[str], Rows], object]] = {
     "outliers": outliers,
     "moved": lambda header, rows: add(rows[50:], first_of_place(header), 3.0),
@@ -355,7 +355,7 @@ def line_of_robots(folder: Path, source: str, count: str) -> None:
 
 
 def chessboard(x: float, y: float) -> bool:
-    """Whether a place of the picture is dark: 5 x 4 squares of 19 pixels, turned by 0.12 rad."""
+    """True if a point of the picture is dark: 5 x 4 squares of 19 pixels, turned by 0.12 rad."""
     across, down = x - WIDTH / 2, y - HEIGHT / 2
     i = (across * math.cos(0.12) + down * math.sin(0.12)) / 19 + 2.5
     j = (down * math.cos(0.12) - across * math.sin(0.12)) / 19 + 2
@@ -398,7 +398,7 @@ def palette() -> bytes:
 
 
 def jpeg(content: str, orientation: int = 0) -> bytes:
-    """A JPEG, with how it is turned in its EXIF."""
+    """A JPEG, with its rotation in its EXIF."""
     picture = base64.b64decode(content.replace("\n", ""))
     if not orientation:
         return picture

@@ -1,7 +1,7 @@
-"""Command lines whose results scripts/corpus keeps, in groups: those of a group run one after the other, in one folder.
+"""Command lines whose results scripts/corpus keeps, in groups: those of a group run in sequence, in one folder.
 
-A line that begins with `@` makes files (corpus_files.py); the others are for poecal. `{a|b}` stands for a line of each word, and `{}` in the
-same line for that word; KINDS and the like are lists of words. What follows `#` behind a space is a remark.
+A line that begins with `@` makes files (corpus_files.py); the others are for poecal. `{a|b}` represents a line of each word, and `{}` in the same
+line that word; KINDS and the like are lists of words. Text after `#` behind a space is a remark.
 """
 
 import re
@@ -544,7 +544,7 @@ GROUPS = {
 
 
 def lists(line: str) -> str:
-    """A line with lists of words in the place of their names."""
+    """A line with lists of words in place of their names."""
     return re.sub(r"\{([A-Z]+)\}", lambda found: "{" + WORDS[found[1]] + "}", line)
 
 

@@ -1,9 +1,9 @@
-"""Packs the program as it is handed out: with licences, completions for shells and manual pages, in one archive, beside its checksum.
+"""Packs the program for distribution: with licences, completions for shells and manual pages, in one archive, beside its checksum.
 
     python scripts/package.py PROGRAM TARGET FOLDER
 
-PROGRAM must run on this machine, TARGET names the machines that it is for (rustc's name). Writes poecal-VERSION-TARGET.tar.gz, or .zip
-for Windows, and the same name with .sha256, into FOLDER.
+PROGRAM must run on this machine, TARGET names the target machines (rustc's name). Writes poecal-VERSION-TARGET.tar.gz, or .zip for Windows, and the
+same name with .sha256, into FOLDER.
 """
 
 import hashlib
@@ -16,9 +16,9 @@ from pathlib import Path
 from docs.commands import names
 
 ROOT = Path(__file__).resolve().parents[1]
-# The page of the program's crate: its links lead somewhere from anywhere.
+# The page of the program's crate: its links are valid from anywhere.
 TEXTS = ["crates/poecal-cli/README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"]
-# Shells, each with the name that it looks for.
+# Shells, each with the file name that it searches.
 SHELLS = {"bash": "poecal.bash", "elvish": "poecal.elv", "fish": "poecal.fish", "powershell": "poecal.ps1", "zsh": "_poecal"}
 
 

@@ -16,7 +16,7 @@ from steps import Run, Step
 
 PYTHON = ".venv/bin/python"
 PYTEST = [PYTHON, "-m", "pytest", "-rs", "--rootdir", ".", "-p", "no:cacheprovider", "--durations=5"]
-# Lines of pytest, and of Node's test runner, that say what was done.
+# Lines of pytest, and of Node's test runner, that report the tests done.
 PYTEST_SHOWS = r"^=+ .* in [0-9.]+s|^documentation: \d|^SKIPPED |^(FAILED|ERROR) "
 NODE_SHOWS = r"^# (tests|pass|fail|skipped) |^# .*(bytes|differs? by|processor time|MB)|^# real robots|^# .* s after the drop|^[^ ].*# SKIP|^ *not ok"
 CARGO_SHOWS = r"^ *Finished|^(error|warning):"
@@ -25,12 +25,13 @@ DOCUMENTED = ["poecal", "poecal-arm", "poecal-detect", "poecal-lou2009", "poecal
               "poecal-calibrate", "poecal-plan", "poecal-storage", "poecal-formats", "poecal-import", "poecal-results", "poecal-compensate",
               "poecal-report"]  # fmt: skip
 DOCUMENTATION = ["cargo", "doc", "--locked", "--quiet", "--no-deps", *(word for crate in DOCUMENTED for word in ("-p", crate))]
-# What only ./test packages needs.
+# Tests that only ./test packages needs.
 INSTALL = "tests/python/test_install.py"
 SITE = "tests/python/test_site.py"
 WASM = "wasm32-unknown-unknown"
-# Levels of vector instructions, the best first (crates/poecal-numerics/src/kernels/simd.rs), and what compares digits: programs of Rust tests, Python
-# files, and what web/ compares with the program. Every change is tried by a few of them at each level, and by all at the best.
+# Levels of vector instructions, the best first (crates/poecal-numerics/src/kernels/simd.rs), and the tests that compare digits: programs of Rust
+# tests, Python files, and the part of web/ that compares with the program. Every change is tried by a few of them at each level, and by all at the
+# best.
 LEVELS = ["avx512", "avx2", "neon", "plain"]
 DIGITS_OF_RUST = ["poecal-cli it ", "poecal-lou2009 it ", "it determinism", "-simulated_disk", "-hostile",
                   "-detect::", "-photographs::"]  # pictures: no vector instructions but those of the calibration
@@ -40,7 +41,7 @@ SOME_OF_PYTHON = ["tests/python/test_package_and_program.py", "tests/python/test
 
 
 def has(*command: str) -> bool:
-    """Whether a command is there and ends well."""
+    """True if a command exists and succeeds."""
     return shutil.which(command[0]) is not None and subprocess.run(command, cwd=ROOT, capture_output=True, check=False).returncode == 0
 
 
@@ -49,7 +50,7 @@ def lack(tool: str, is_there: bool) -> str | None:
 
 
 def has_chromium() -> bool:
-    """Whether there is a browser, where web/test/browser.mjs looks for it."""
+    """True if there is a browser, where web/test/browser.mjs searches for it."""
     names = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"]
     given = os.environ.get("CHROMIUM")
     return any(os.access(name, os.X_OK) for name in ([given] if given else names))
@@ -65,7 +66,7 @@ def has_standard_library(name: str) -> bool:
 
 
 def tools() -> list[Step]:
-    """What is tested with: Python packages and, where Node.js is, npm packages."""
+    """Tools of the tests: Python packages and, if Node.js is available, npm packages."""
     installed = ROOT / "web/node_modules/package-lock.json"
     is_current = installed.is_file() and installed.read_bytes() == (ROOT / "web/package-lock.json").read_bytes()
     install = [["npm", "ci", "--prefix", "web", "--ignore-scripts", "--no-audit", "--no-fund"], ["cp", "web/package-lock.json", "web/node_modules/"]]
@@ -146,24 +147,24 @@ def change() -> list[Step]:
 
 
 def digits(name: str, kind: str) -> Step:
-    """What compares digits, at every level of vector instructions."""
+    """Tests that compare digits, at every level of vector instructions."""
     return Step(name, [[sys.executable, "scripts/run_tests.py", kind]], after=["package build"], shows=r"^level |" + PYTEST_SHOWS + r"|^FAILED |^\d+ passed, ")
 
 
 def weekly() -> list[Step]:
-    """Of validation/weekly, what is built as every change is."""
+    """The part of validation/weekly that is built as every change is."""
     return [*tools(), rust_build(), package_build(), digits("digits at every level", "levels")]
 
 
 def packages() -> list[Step]:
-    """What only a release can break: other machines, the oldest Rust, every way to install, npm and the whole site."""
+    """Everything that only a release can break: other machines, the oldest Rust, every installation method, npm and the whole site."""
     oldest = next(line.split('"')[1] for line in (ROOT / "Cargo.toml").read_text().splitlines() if line.startswith("rust-version"))
     clippy = has("cargo", "clippy", "--version")
     node, browser = has_node(), lack("Chromium", has_chromium())
     pages = sorted(path.name for path in (ROOT / "web/test").glob("app.*test.mjs") if path.name != "app.parts.test.mjs")
     wasm = lack(f"standard library of {WASM} (rustup target add {WASM})", has_standard_library(WASM))
     return [
-        # What ./test has built, or the same.
+        # The build of ./test, or an equal one.
         rust_build(),
         *tools(),
         Step("npm build", [["node", "web/app/build.mjs"]], after=["web tools"], shows="^poecal.html: |^web/npm", lacks=wasm),
@@ -202,7 +203,7 @@ def at_every_level(rust: list[str], python: list[str]) -> int:
 
 
 def main() -> int:
-    # One profile and one folder of what Rust tests, program and package are made of.
+    # One profile and one folder for Rust tests, program and package.
     os.environ["POECAL_PROFILE"] = "tested"
     os.environ["CARGO_TARGET_DIR"] = str(target().absolute())
     os.environ.setdefault("CARGO_TERM_COLOR", "never")
@@ -223,7 +224,7 @@ def main() -> int:
     if unknown:
         sys.exit(f"found no step {', '.join(sorted(unknown))}, expected one of {', '.join(step.name for step in steps)}")
     wanted = set(names or [step.name for step in steps])
-    # With what they need, which is quick where nothing has changed.
+    # With their prerequisites, which are quick if nothing has changed.
     for step in reversed(steps):
         wanted |= set(step.after) if step.name in wanted else set()
     return Run([step for step in steps if step.name in wanted]).whole()

@@ -5,7 +5,8 @@
     scripts/rust_tests.py [--build] [WORD…]    runs the tests whose names contain one of these words, and none of the words with - before;
                                                without a word all
 
-Each test has its time of processors so, with the programs that it runs; the slowest are printed. `./test` calls it, with POECAL_PROFILE=tested; the profile is `test` if that is not set.
+Each test has its own processor time, with the programs that it runs; the slowest are printed. `./test` calls it, with POECAL_PROFILE=tested; the
+profile is `test` if that is not set.
 Needs only Python 3.10 and cargo.
 """
 
@@ -29,14 +30,14 @@ def profile():
 
 
 def target():
-    """The folder of what cargo builds."""
+    """The folder of cargo's output."""
     return Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 
 
 def build(options):
-    """Builds tests; gives the programs of those as crate, name, path and folder, or None.
+    """Builds tests; returns their programs as crate, name, path and folder, or None.
 
-    `options` choose packages and what is built of them, in the words of `cargo test`.
+    `options` select packages and their targets, in the words of `cargo test`.
     """
     command = ["cargo", "test", "--locked", "--profile", profile(), "--no-run", "--message-format", "json-render-diagnostics"]
     done = subprocess.run([*command, *options], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
@@ -52,8 +53,8 @@ def build(options):
 
 
 def build_examples():
-    """Builds the examples that tests/python/test_examples.py runs, beside the program; whether that succeeded."""
-    # Of the workspace, as the tests: with other packages the features would be others, and everything compiled again.
+    """Builds the examples that tests/python/test_examples.py runs, beside the program; returns whether that succeeded."""
+    # With the packages of the workspace, as the tests: with others the features would differ, and everything would be compiled again.
     command = ["cargo", "build", "--locked", "--profile", profile(), "--workspace", "--examples"]
     return subprocess.run(command, cwd=ROOT, check=False).returncode == 0
 
@@ -69,7 +70,7 @@ def tests_of(program):
 
 
 def once(command, folder):
-    """Runs a test; gives whether it passed, its seconds, which are those of processors where the system counts them, and what it printed."""
+    """Runs a test; returns whether it passed, its seconds, which are those of processors if the system counts them, and its output."""
     start = time.monotonic()
     with subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as process:
         said = process.stdout.read()
@@ -81,7 +82,7 @@ def once(command, folder):
 
 
 def run(tests):
-    """Runs all, as many at once as there are processors; gives seconds, whether it passed, and what it printed, by name."""
+    """Runs all, as many at once as there are processors; returns seconds, whether each passed, and its output, by name."""
     waiting, results, lock = list(reversed(tests)), {}, threading.Lock()
 
     def work():
@@ -109,7 +110,7 @@ def run(tests):
 
 
 def report(results, of="seconds of processors"):
-    """Prints the slowest tests and those that failed; gives the number that failed."""
+    """Prints the slowest tests and those that failed; returns the number that failed."""
     slowest = sorted(results.items(), key=lambda item: -item[1][0])[:SLOWEST]
     if slowest:
         print(f"\nslowest tests ({of}, {PROCESSORS} at once, POECAL_TRIALS={os.environ.get('POECAL_TRIALS') or 'not set'})")
@@ -144,7 +145,7 @@ def main():
         sys.exit(f"found no test with {' or '.join(lost or words)} in its name")
     results = run(chosen)
     assert len(results) == len(chosen), "a test has no result"
-    # What a test prints is what it measured.
+    # The output of a test is its measurements.
     for name in sorted(results):
         figures = [line for line in results[name][2].splitlines() if line and not line.startswith(("running ", "test result:", f"test {name.split()[-1]} ..."))]
         if results[name][1] and figures:

@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SLOWEST = 10
 # Processors that this process may use: a container may have some of a machine's.
 PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-# Of a step that failed, at the end; all that it printed stands above.
+# Last lines of a step that failed, at the end; its whole output is above.
 LAST_LINES = 40
 
 
@@ -29,11 +29,11 @@ class Step:
     after: list[str] = dataclasses.field(default_factory=list)
     # Lines of its output that the summary shows.
     shows: str = "(?!)"
-    # The tool that it needs and that is not here. With CI=true, where everything has to be here, the step has failed then.
+    # The tool that it needs and that is missing here. With CI=true, where everything has to be present, the step has failed then.
     lacks: str | None = None
-    # The same for a tool that no other step brings: left out, also with CI=true.
+    # A missing tool that no other step brings: the step is left out, also with CI=true.
     may_lack: bool = False
-    # It waits more than it works, as a browser does: it begins beside as many that work as there are processors, one such at a time.
+    # True if it waits more than it works, as a browser does: it begins beside as many working steps as there are processors, one such at a time.
     waits: bool = False
     # Variables of its own.
     env: dict[str, str] = dataclasses.field(default_factory=dict)
@@ -73,7 +73,7 @@ class Run:
         return None
 
     def has_room(self, step: Step) -> bool:
-        """Whether a processor is free, or, for a step that waits, no other one runs."""
+        """True if a processor is free, or, for a step that waits, no other one runs."""
         same = sum(self.state[other.name] == "running" for other in self.steps if other.waits == step.waits)
         return same < (1 if step.waits else max(2, PROCESSORS))
 
@@ -124,7 +124,7 @@ class Run:
                 )  # fmt: skip
                 self.children.add(child)
             said = child.stdout.read() if child.stdout else ""
-            # With what its own children took.
+            # With the time of its own children.
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
             with self.changed:
@@ -146,7 +146,7 @@ class Run:
             print(f"\n=== {step.name}: {words}\n{text}\n[{self.clock()}] {step.name}: {words}", flush=True)
 
     def stop(self) -> None:
-        """Ends what still runs; nothing begins after it."""
+        """Ends running steps; nothing begins after it."""
         with self.changed:
             self.is_stopping, children = True, list(self.children)
         for child in children:
@@ -156,7 +156,7 @@ class Run:
                 continue
 
     def whole(self) -> int:
-        """Runs everything; gives the exit code."""
+        """Runs everything; returns the exit code."""
         for number in (signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, lambda number, _: sys.exit(128 + number))
         try:

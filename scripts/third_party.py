@@ -1,4 +1,4 @@
-"""Writes THIRD-PARTY.txt: the licences of what the program and the Python package contain, which packages of them must carry.
+"""Writes THIRD-PARTY.txt: the licences of the contents of the program and the Python package, which their packages must carry.
 
     python scripts/third_party.py           writes it
     python scripts/third_party.py --check   says whether it is as it would be written
@@ -19,7 +19,7 @@ PROGRAMS = ("poecal-cli", "poecal-py")
 TEXTS = re.compile(r"(?i)^(licen[cs]e|copying|notice|unlicense)")
 FOLDER = ".licenses/*"
 MIT = "Permission is hereby granted, free of charge"
-# What every build contains beside crates, and what static ones do.
+# Components of every build beside crates, and those of static builds.
 TOOLCHAIN = """\
 The standard library of Rust, from https://github.com/rust-lang/rust, under the MIT licence (below) or the Apache License 2.0, at your
 choice; parts of it under other permissive licences, which its distribution names.
@@ -36,7 +36,7 @@ theirs with them. Written by scripts/third_party.py.
 
 
 def shipped():
-    """The packages whose code is in what is shipped: no macros, and nothing that only builds or tests need."""
+    """The packages whose code is in the shipped files: no macros, and nothing that only builds or tests need."""
     programs = [word for name in PROGRAMS for word in ("--package", name)]
     tree = in_tree(*programs, "--edges", "normal,no-proc-macro")
     packages = json.loads(cargo("metadata", "--locked", "--format-version", "1"))["packages"]
@@ -45,7 +45,7 @@ def shipped():
 
 
 def texts(package):
-    """The texts of a package's licence. Where a folder of its own holds them, the text beside it says whose they are and stays."""
+    """The texts of a package's licence. If a folder of its own holds them, the text beside it states whose they are and is kept."""
     folder = Path(package["manifest_path"]).parent
     beside = [path for path in sorted(folder.iterdir()) if path.is_file() and TEXTS.match(path.name)]
     within = [path for path in sorted(folder.glob(FOLDER)) if path.is_file()]

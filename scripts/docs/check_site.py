@@ -1,4 +1,4 @@
-"""Checks a built site: every page and picture that a page names is there, and no page loads anything from elsewhere.
+"""Checks a built site: every page and picture that a page names exists, and no page loads anything from elsewhere.
 
     python scripts/docs/check_site.py target/site
 """
@@ -9,15 +9,15 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-# What a browser loads by itself. Links that a reader may follow are not among them.
+# Elements that a browser loads by itself. Links that a reader may follow are not among them.
 LOADED = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("video", "src"), ("audio", "src"), ("object", "data"), ("embed", "src")}
-# Kinds of <link> that are loaded, or prepare that; others (canonical, next, prev) say something about the page.
+# Kinds of <link> that are loaded, or prepare that; others (canonical, next, prev) describe the page.
 LOADING_LINKS = {"stylesheet", "icon", "preload", "modulepreload", "preconnect", "dns-prefetch", "prefetch", "manifest", "shortcut"}
 IN_STYLE = re.compile(r"""url\(\s*['"]?([^'")]+)|@import\s+['"]([^'"]+)""")
 
 
 class Page(HTMLParser):
-    """What a page loads, and where it leads."""
+    """Loads and links of a page."""
 
     def __init__(self):
         super().__init__()
@@ -48,7 +48,7 @@ def in_style(text):
 
 
 def complaints(site):
-    """Everything that is wrong, a line each, and how much was looked at."""
+    """Everything that is wrong, a line each, and the number of items checked."""
     pages = {}
     for path in sorted(site.rglob("*.html")):
         pages[path] = page = Page()
@@ -66,7 +66,7 @@ def against_loading(path, url):
     parts = urlsplit(url)
     if parts.netloc or parts.scheme not in ("", "data"):
         return ", from elsewhere"
-    # rustdoc loads a list of the types that implement a trait even where there are none.
+    # rustdoc loads a list of the types that implement a trait even if there are none.
     if not parts.scheme and "trait.impl" not in parts.path and not (path.parent / unquote(parts.path)).exists():
         return ", which is not there"
     return None

@@ -1,4 +1,4 @@
-"""Prints docs/commands.md, the reference of the program's commands, as the program itself tells it.
+"""Prints docs/commands.md, the reference of the program's commands, from the program's own help.
 
     python scripts/docs/commands.py target/release/poecal > docs/commands.md
 """

@@ -1,4 +1,4 @@
-"""Functions of which the stubs have overloads alone, on the page of the Python package: griffe leaves them out."""
+"""Functions with overloads only in the stubs, on the page of the Python package: griffe leaves them out."""
 
 import griffe
 

@@ -1,4 +1,4 @@
-"""Writes into the README what its first command prints, and the table of real robots; with --picture, its picture of the report too.
+"""Writes into the README the output of its first command, and the table of real robots; with --picture, its picture of the report too.
 
     python3 scripts/docs/readme.py target/release/poecal [--picture]
 

@@ -1,8 +1,8 @@
-"""Stages the pages of the documentation site: texts that stand elsewhere in the repository, their links, and formulas as pictures.
+"""Stages the pages of the documentation site: texts from elsewhere in the repository, their links, and formulas as pictures.
 
     python scripts/docs/stage.py FOLDER
 
-What is in FOLDER afterwards is plain Markdown and HTML, which any program can build that reads mkdocs.yml.
+The contents of FOLDER afterwards are plain Markdown and HTML, which any program can build that reads mkdocs.yml.
 """
 
 import posixpath
@@ -26,17 +26,17 @@ PAGES = {
     "validation/RESULTS.md": "validation.md",
 }
 
-# How much more a page counts in the search: what answers a question in people's words is before what has some of the words.
+# Weight of a page in the search: a page that answers a question in people's words precedes one that has some of the words.
 BOOST = {"faq.md": 4, "architecture.md": 0.5, "contributing.md": 0.5, "changelog.md": 0.5}
 
-# Left alone by the patterns below: what is code.
+# Code, which the patterns below leave alone.
 CODE = r"(?ms:^(?P<fence> *`{3,}).*?^(?P=fence)`* *$)|`[^`\n]+`"
 LINK = re.compile(rf"{CODE}|(?P<text>\[[^\]\n]*\])\((?P<target>[^)\s]+)\)")
 FORMULA = re.compile(rf"(?ms:^(?P<indent> *)```math\n(?P<block>.*?)^ *```$)|{CODE}|(?<![\\$])\$(?P<inline>[^$\n]+)\$")
-# Comments are left out; what stands in one that begins with `site:` stands on the site alone.
+# Comments are left out; the text of one that begins with `site:` is on the site alone.
 COMMENT = re.compile(rf"{CODE}|(?P<comment><!--(?P<site> site: )?(?P<text>(?s:.*?)) *-->\n?)")
 
-# Stands for a formula's TeX until that can no longer be taken for something else.
+# Placeholder of a formula's TeX until that can no longer be taken for something else.
 PLACEHOLDER = "formula"
 
 # Size of the text's letters in the pictures' own units.
@@ -44,7 +44,7 @@ EM = 20
 
 
 def stage(folder):
-    """Writes all pages, and copies all else of docs/ but results that are only linked from elsewhere."""
+    """Writes all pages, and copies all else of docs/ except results that are only linked from elsewhere."""
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(ROOT / "docs", folder, ignore=shutil.ignore_patterns("*.md", "results.json"))
     sources = {path.relative_to(ROOT).as_posix(): path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")} | PAGES
@@ -58,9 +58,9 @@ def stage(folder):
 
 def staged(markdown, source, page, there):
     """A page's Markdown as the site has it."""
-    # What follows a language is for other readers, as in rust,no_run.
+    # Words after a language are for other readers, as in rust,no_run.
     markdown = re.sub(r"^( *```\w+),\S*$", r"\1", markdown, flags=re.M)
-    # Things to tick off, which need no extension so.
+    # Checklists, which need no extension in this form.
     markdown = re.sub(r"^( *)- \[ \] ", r"\1- ☐ ", markdown, flags=re.M)
     markdown = COMMENT.sub(lambda match: (match["text"] if match["site"] else "") if match["comment"] else match[0], markdown)
     markdown = LINK.sub(lambda match: link(match, source, page, there), markdown)
@@ -70,7 +70,7 @@ def staged(markdown, source, page, there):
 
 
 def link(match, source, page, there):
-    """A link as the site has it: to a page, or plain text where what it leads to is not on the site."""
+    """A link as the site has it: to a page, or plain text if its target is not on the site."""
     target = match["target"]
     if target is None or re.match(r"[a-z]+:|#", target):
         return match[0]
@@ -101,7 +101,7 @@ def formula(match, glyphs):
 
 
 def parts(tex):
-    """What stands beside each other in a formula with wide spaces between: parts that may stand below each other on a narrow page."""
+    """Adjacent parts of a formula with wide spaces between them, which may be stacked on a narrow page."""
     found, start = [], 0
     for space in re.finditer(r"\\q?quad\b", tex):
         before = tex[: space.start()]
@@ -112,14 +112,14 @@ def parts(tex):
 
 
 def depth(tex):
-    """How many braces, brackets and environments are open at the end of a text."""
+    """Number of braces, brackets and environments that are open at the end of a text."""
     opened = len(re.findall(r"(?<!\\)\{|\\begin\b|\\left\b|\\[bB]igg?l", tex))
     return opened - len(re.findall(r"(?<!\\)\}|\\end\b|\\right\b|\\[bB]igg?r", tex))
 
 
 def picture(tex, glyphs, inline):
-    """A formula as SVG: nothing to load and no font that a reader must have; its TeX is what a screen reader says. Its letters are
-    put into `glyphs`, which a page has once.
+    """A formula as SVG: nothing to load and no font that a reader must have; its TeX is read by a screen reader. Its letters are put into `glyphs`,
+    which a page has once.
     """
     svg = ziamath.Latex(tex, size=EM, color="currentColor", inline=inline).svgxml()
     width, height = (float(svg.attrib.pop(side)) / EM for side in ("width", "height"))
@@ -132,7 +132,7 @@ def picture(tex, glyphs, inline):
     svg.set("role", "img")
     svg.set("aria-label", PLACEHOLDER)
     svg.set("style", f"width:{width:.3f}em;height:{height:.3f}em;vertical-align:{down:.3f}em")
-    # As numbers of characters: Markdown takes some of TeX's for its own.
+    # As numbers of characters: Markdown interprets some of TeX's as its own.
     label = "".join(character if character.isalnum() or character == " " else f"&#{ord(character)};" for character in " ".join(tex.split()))
     return ElementTree.tostring(svg, encoding="unicode").replace(PLACEHOLDER, label).replace("\n", " ")
 

@@ -2,7 +2,7 @@
 
     python scripts/docs/stubs.py            # with the package installed
 
-Docstrings are written once, above the functions in crates/poecal-py/src; tests/python/test_types.py says when the stubs have others.
+Docstrings are written once, above the functions in crates/poecal-py/src; tests/python/test_types.py reports if the stubs have others.
 """
 
 import ast
@@ -13,7 +13,7 @@ STUBS = Path(__file__).resolve().parents[2] / "crates/poecal-py/python/poecal/_p
 
 
 def with_docstrings(text, module):
-    """The stubs' text with the module's docstrings, in the place of those that it has."""
+    """The stubs' text with the module's docstrings in place of its own."""
     lines = text.splitlines()
     for node, docstring in reversed(list(documented(ast.parse(text), module))):
         indent = " " * (node.col_offset + 4)

@@ -12,12 +12,12 @@ ELBOW = ROOT / "examples/elbow/robot.urdf"
 
 
 def program() -> str:
-    """The program that is tested."""
+    """The program under test."""
     return os.environ.get("POECAL_PROGRAM", str(ROOT / "target/release/poecal"))
 
 
 def poecal(*arguments) -> str:
-    """Standard output of a run that must end well."""
+    """Standard output of a run that must succeed."""
     run = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True)
     assert run.returncode == 0, f"poecal {arguments}\n{run.stdout}{run.stderr}"
     return run.stdout
@@ -31,14 +31,14 @@ def write_table(path, columns: dict) -> None:
 
 
 def predict(*arguments) -> np.ndarray:
-    """Predicted poses, a row each: x, y, z, qx, qy, qz, qw."""
+    """Predicted poses, one row each: x, y, z, qx, qy, qz, qw."""
     header, *rows = poecal("predict", *arguments).splitlines()
     assert header == "x[m],y[m],z[m],qx,qy,qz,qw"
     return np.array([[float(cell) for cell in row.split(",")] for row in rows])
 
 
 def simulated_session(folder: Path, joints: dict) -> tuple[Path, Path]:
-    """A file of exact poses of the elbow with deviating axes, in a device frame that stands elsewhere, and the actual model."""
+    """A file of exact poses of the elbow with deviating axes, in another device frame, and the actual model."""
     actual = folder / "actual.urdf"
     text = ELBOW.read_text()
     for old, new in [

@@ -1,6 +1,6 @@
-"""Blocks of code in the documentation, and running them as a reader would.
+"""Blocks of code in the documentation, and their execution as by a reader.
 
-What a block is follows from its language and from an HTML comment right above it, which no reader sees:
+The kind of a block follows from its language and from an HTML comment right above it, which no reader sees:
 
     <!-- output -->               the block is what the commands before it print; … stands for anything
     <!-- file: NAME -->           the block is written into this file
@@ -29,7 +29,7 @@ NOTES = re.compile(r"(?:<!-- *(?:output|(?:file|given|exit|shorter|not run):[^\n
 NOTE = re.compile(r"<!-- *(?P<word>output|file|given|exit|shorter|not run)(?:: *(?P<value>.*?))? *-->")
 # Figures with decimals and three digits or more, not parts of words, versions or powers of ten.
 ROUNDED = re.compile(r"(?<![\w.-])((?=[\d.]{4,})\d+\.\d+)(?![\w.])")
-# Languages that are not run: what is shown, not done.
+# Languages that are not run: examples of text.
 SHOWN = {"", "text", "math"}
 # Files that are shown there are read by crates/poecal-results/tests/it/documented_files.rs.
 DOCUMENTED_FILES = "docs/file-formats.md"
@@ -48,7 +48,7 @@ class Block:
 
 @dataclass
 class Counts:
-    """What was done with the blocks of the pages."""
+    """Counts of the blocks of the pages by their treatment."""
 
     run: int = 0
     compared: int = 0
@@ -124,7 +124,7 @@ class Page:
             self.counts.shown += 1
 
     def shell(self, block: Block, place: str) -> None:
-        # The program that is tested stands for the one that cargo would build.
+        # The program under test replaces the one that cargo would build.
         commands = block.text.replace("cargo run --release --", "poecal")
         if "shorter" in block.notes:
             old, new = block.notes["shorter"].split(" = ")
@@ -159,15 +159,15 @@ class Page:
 
 
 def plain(text: str) -> str:
-    """A text without what differs from machine to machine: blanks at the ends of lines, and the last digits of rounding errors."""
+    """A text without the parts that differ between machines: blanks at the ends of lines, and the last digits of rounding errors."""
     lines = (line.rstrip() for line in text.strip("\n").splitlines())
     return re.sub(r"\b\d(?:\.\d+)?e-1\d\b", "#", "\n".join(lines))
 
 
 def matches(expected: str, found: str) -> bool:
-    """Whether a text is as it is shown, … standing for anything within a line, or for lines where it stands alone.
+    """True if a text is as shown, … matching anything within a line, or lines if it stands alone.
 
-    A rounded figure of three digits or more may differ by one in its last: a sum in another order (another vector unit) rounds it otherwise.
+    A rounded figure of three digits or more may differ by one in its last: a sum in another order (another vector unit) is rounded differently.
     """
     pattern = ""
     for line in expected.splitlines():
@@ -179,7 +179,7 @@ def matches(expected: str, found: str) -> bool:
 
 
 def part_pattern(part: str) -> str:
-    """A pattern of a part of a line: its words as they are, its rounded figures to one in the last digit."""
+    """A pattern of a part of a line: its words unchanged, its rounded figures to one in the last digit."""
     pieces = ROUNDED.split(part)
     return "".join(re.escape(piece) if k % 2 == 0 else rounded_pattern(piece) for k, piece in enumerate(pieces))
 

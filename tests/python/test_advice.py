@@ -1,4 +1,4 @@
-"""Sentences that say what to write are followed to the letter, and what they are about is gone then.
+"""Sentences that advise what to write are followed literally, and their cause is gone then.
 
 FOLLOWED lists every such sentence of the program by a part of its text, with the test that follows it; a sentence of the sources that is
 missing there fails, and so does an entry that no source has.
@@ -15,10 +15,10 @@ from program import ROOT, program
 ELBOW = ROOT / "examples/elbow"
 MODEL = (ELBOW / "robot.urdf").read_text()
 POINTS = [line for line in (ELBOW / "points.csv").read_text().splitlines() if line and not line.startswith("#")]
-# The program and all parts of the library; not what stands beside them.
+# The program and all parts of the library, without the crates beside them.
 BESIDE = {f"poecal-{name}" for name in ("arm", "c", "detect", "fuzz", "lou2009", "py", "testing", "wasm")}
 CRATES = sorted(path for path in (ROOT / "crates").glob("*/src") if path.parent.name not in BESIDE)
-# What a sentence looks like that says what to write.
+# Pattern of a sentence that advises what to write.
 ADVICE = re.compile(r"write `|write \{|state it by|in a mapping\b|into a mapping|a mapping file|put `#`|expand the file|expected another: take|: take `|: take --board|\(--columns\)|by --start|`--third-axis")
 
 HERE = "test_advice.py::"
@@ -75,7 +75,7 @@ FOLLOWED = {
 
 
 def sentences() -> list[str]:
-    """Text of every source line, tests and comments left out, that says what to write; with the lines around it, since sentences are long."""
+    """Text of every source line, without tests and comments, that advises what to write; with the lines around it, since sentences are long."""
     found = []
     for crate in CRATES:
         for path in sorted(crate.rglob("*.rs")):
@@ -101,7 +101,7 @@ def test_every_sentence_that_says_what_to_write_has_a_test_that_follows_it():
 
 
 def run(folder: Path, *words: str, code: int = 0) -> str:
-    """All that a run printed, on one line; it ends with one of these codes."""
+    """Output of a run, on one line; it ends with one of these codes."""
     done = subprocess.run([program(), *words], cwd=folder, capture_output=True, text=True)
     said = " ".join((done.stdout + done.stderr).split())
     assert done.returncode == code, f"{words}: {done.returncode}\n{said}"
@@ -148,7 +148,7 @@ def test_a_unit_that_is_missing_in_the_line_of_units(here):
 
 
 def test_lines_above_the_header(here):
-    # Lines that are evidently none are passed over.
+    # Lines that are evidently no data are skipped.
     table(here, "Cell 4, line 2,,,,,,,", ["operator,N. N.,,,,,,,", POINTS[0], *POINTS[1:]])
     calibrates(here)
     # Lines with as many cells may be names.
@@ -469,7 +469,7 @@ def test_options_of_programs(here):
     def whole(name: str, *words: str) -> None:
         assert "corrected" in run(here, "compensate", "out/calibration.json", name, "--max-correction", "20deg", "--dry-run", *words)
 
-    # What one sentence asks for is added, until nothing is asked for.
+    # The request of each sentence is added, until there is none.
     script = "movel(p[0.6, 0.1, 0.7, 0, 1.2, 0])\n"
     assert "state where the robot starts by --start" in listed("a.script", script, "--tool-data", "0,0,0,0,0,0")
     said = listed("b.script", "movej([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])\nmovel(p[0.6, 0.1, 0.7, 0, 1.2, 0])\n")

@@ -28,7 +28,7 @@ def arms(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def expected(arms) -> np.ndarray:
-    """What the program commands."""
+    """Commands of the program."""
     names = [f"joint{k}" for k in range(1, 7)]
     (arms / "program.csv").write_text(",".join(names) + "\n" + ",".join(MEANT) + "\n")
     written = poecal("compensate", arms / "results/calibration.json", arms / "program.csv").splitlines()
@@ -58,7 +58,7 @@ def test_the_example_of_c_commands_what_the_program_does(arms, expected, tmp_pat
     libraries = ["-lm"] if "--no-default-features" in options else ["-lm", "-lpthread", "-ldl"]
     subprocess.run([compiler, *flags, *map(str, sources), *libraries, "-o", tmp_path / "compensate"], check=True)
     check([tmp_path / "compensate"], expected)
-    # Nothing but numbers is an arm; too few readings are told.
+    # Only numbers are an arm; too few readings are reported.
     done = subprocess.run([tmp_path / "compensate", "1"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (2, "expected 6 joint readings\n")
 

@@ -1,4 +1,4 @@
-"""`poecal compare` on sessions of the example's elbow: halves of its points, a joint that is read otherwise, another robot."""
+"""`poecal compare` on sessions of the example's elbow: halves of its points, a joint with other readings, another robot."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The corrected model as docs/corrected-model.md tells how to compute it, against the program, with every term there is."""
+"""The corrected model computed as docs/corrected-model.md describes, against the program, with every term."""
 
 import json
 import re

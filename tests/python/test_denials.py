@@ -17,7 +17,7 @@ OF_POECAL = re.compile(r"\b(poecal|program|package|page|report|library)\b|^(It|T
 
 HERE = "tests/python/test_denials.py::"
 PLACES = "crates/poecal-cli/tests/it/places.rs::"
-# Of mathematics, of another program, or of the reader's own work.
+# Denials about mathematics, about another program, or about the reader's own work.
 ELSEWHERE = "it is of something else"
 SHOWN = {
     "It does not read URDF or CSV": ELSEWHERE,
@@ -84,7 +84,7 @@ def test_every_sentence_that_denies_something_of_poecal_is_shown_to_be_true():
 
 
 def test_a_list_is_judged_by_the_tip_of_the_model():
-    # The option with which `plan` knows where a nest will be.
+    # The option by which `plan` knows the position of a nest.
     model = ROOT / "examples/elbow/robot.urdf"
     words = [program(), "plan", model, "--rows", model.with_name("points.csv"), "--target-offset", "60,0,30mm"]
     run = subprocess.run(words, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""What the documentation says to type is typed, and prints what it shows."""
+"""The commands of the documentation are typed, and print the shown output."""
 
 import subprocess
 import sys
@@ -17,7 +17,7 @@ COUNTS = Counts()
 
 @pytest.fixture(scope="module", autouse=True)
 def say_what_was_done(pytestconfig):
-    """Says after all pages what was done with their blocks; ./test shows it."""
+    """Reports after all pages the counts of their blocks; ./test shows it."""
     yield
     with pytestconfig.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
         print(
@@ -57,7 +57,7 @@ def test_the_page_of_commands_is_what_the_program_says():
 
 def test_dots_stand_for_anything():
     assert matches("a … c\n…\nz", "a b c\n1\n2\nz") and matches("a\n…\nz", "a\nz")
-    # Rounded figures to one in the last digit; counts, and what is not rounded, exactly.
+    # Rounded figures to one in the last digit; counts, and figures that are not rounded, exactly.
     assert matches("held out 0.1577 mm", "held out 0.1576 mm") and matches("9.99 mm…", "10.00 mm (RMS)")
     assert not matches("0.1577 mm", "0.1575 mm") and not matches("180 rows", "181 rows") and not matches("1.5 mm", "1.6 mm")
     assert not matches("a … c", "a b d") and not matches("a", "a\nb")

@@ -46,7 +46,7 @@ def test_examples_with_other_packages_run(name, tmp_path):
             # Rounding of a dozen products of poses of some metres.
             assert float(re.search(r"([0-9.e+-]+) mm", line)[1]) < 1e-9
         if line.startswith("planned by the calibrated"):
-            # What the session's noise of 0.05 mm and 0.01 deg leaves.
+            # The effect of the session's noise of 0.05 mm and 0.01 deg.
             assert float(re.search(r"([0-9.e+-]+) mm", line)[1]) < 0.1
 
 

@@ -212,7 +212,7 @@ def test_usd_in_usd_core(calibrated, truth, moves, tmp_path):
     assert_same("usd", place, truth, 1e-6)
     stated = float(run.stderr.replace("\n", " ").split("up to ")[1].split()[0])
     worst = max(np.linalg.norm((place(q) - pose)[:3, 3]) for q, pose in zip(*truth, strict=True))
-    # Of other configurations than those of the statement, which are within the joints' limits.
+    # In other configurations than those of the statement, which are within the joints' limits.
     assert worst < 1.5 * stated, f"{worst} m, stated {stated}"
 
 
@@ -311,7 +311,7 @@ def test_yaml_in_a_urdf(calibrated, truth, form):
     if form != "franka":
         tool = [line.split("no place for: ")[1] for line in run.stdout.splitlines() if "no place for: " in line]
         origins.append(numbers_of(tool[0]) if tool else none)
-    # Fixed joints before the first one, as the comment says.
+    # Fixed joints before the first one, as the comment states.
     before = [line.split("which is at ")[1].split(" in ")[0] for line in run.stdout.splitlines() if "which is at " in line]
     origins.insert(0, numbers_of(before[0]) if before else none)
     robot = xml.Element("robot", name="made")
@@ -362,9 +362,9 @@ def test_offsets_leave_what_they_state(calibrated):
     rms_mm, rms_deg = 1e3 * np.sqrt((apart**2).sum(axis=1).mean()), np.degrees(np.sqrt((turn**2).sum(axis=1).mean()))
     stated = file["remains"]["rms_mm"]
     print(f"offsets: {rms_mm:.5f} mm and {rms_deg:.5f} deg left, stated {stated:.5f} and {file['remains']['rms_deg']:.5f}; without offsets {file['without_offsets']['rms_mm']:.4f} mm")
-    # Of 10,000 configurations the mean square is known to 1 to 2 %.
+    # For 10,000 configurations the mean square is known to 1 to 2 %.
     assert abs(rms_mm / stated - 1) < 0.02 and abs(rms_deg / file["remains"]["rms_deg"] - 1) < 0.02
-    # The other command says the same.
+    # The other command has the same result.
     told = package.offsets(nominal, calibration).to_dict()
     assert [it["joint"] for it in told["joints"]] == [it["joint"] for it in file["joints"]]
     differ = [abs(a["offset_deg"] - b["offset_deg"]) for a, b in zip(told["joints"], file["joints"], strict=True) if "offset_deg" in b]
@@ -378,7 +378,7 @@ def test_offsets_leave_what_they_state(calibrated):
     def apart_by(x):
         base, tool = pin.exp6(x[:6]).homogeneous @ of_entry(file["base_motion"]), tool_of_file @ pin.exp6(x[6:12]).homogeneous
         poses = base @ before(some + offsets + x[12:]) @ tool
-        # Turns count at a tenth of a metre; chords in place of angles.
+        # Turns count at a tenth of a metre; chords instead of angles.
         turned = 0.1 / np.sqrt(2) * (poses[:, :3, :3] - goal[:, :3, :3])
         return np.concatenate([(poses[:, :3, 3] - goal[:, :3, 3]).ravel(), turned.ravel()])
 

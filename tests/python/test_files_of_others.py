@@ -1,7 +1,7 @@
 """Files as independent packages write them: cameras of OpenCV, samples of hand-eye programs, workbooks, bags, joint states.
 
-What poecal reads is equal to 1e-9 to what was written, or the refusal names the kind and the way out. Packages that are not installed are skipped,
-and counted.
+Values that poecal reads are equal to 1e-9 to those that were written, or the refusal names the kind and the remedy. Packages that are not installed
+are skipped, and counted.
 """
 
 import csv
@@ -32,7 +32,7 @@ def run(folder: Path, *words: object, code: int = 0) -> str:
 
 
 def told(folder: Path, *words: object) -> dict:
-    """What a run printed as JSON."""
+    """JSON output of a run."""
     done = subprocess.run([program(), *map(str, words), "--json"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -42,7 +42,7 @@ def told(folder: Path, *words: object) -> dict:
 
 
 def lens_of(folder: Path, camera: Path) -> dict:
-    """The lens as a calibration keeps it that read the file."""
+    """The lens as stored by a calibration that read the file."""
     howto = ROOT / "examples/howto"
     files = [ELBOW / "robot.urdf", howto / "pictures.csv", howto / "corners.csv"]
     out = folder / f"{camera.name}.out"
@@ -93,7 +93,7 @@ def test_cameras_are_the_lens_that_was_written(tmp_path):
 
 
 def poses() -> list[tuple[np.ndarray, np.ndarray]]:
-    """Of the flange and of a board that a camera in the hand sees, without noise."""
+    """Poses of the flange and of a board that a camera in the hand sees, without noise."""
     draw = np.random.default_rng(5)
 
     def pose(place, turn):

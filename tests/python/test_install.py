@@ -1,7 +1,7 @@
-"""Each way to install poecal, from an empty folder: what is built is installed with nothing of the clone beside it, and calibrates.
+"""Each method of installing poecal, from an empty folder: the built files are installed without the clone beside them, and calibrate.
 
-Builds are without optimisation, which makes them quick and changes nothing else, and the wheel is that of ./test. With POECAL_TRIALS=weekly
-the static program is the one that is handed out, and its size is judged. The workflow that builds the wheels that are handed out calibrates with each of them.
+Builds are without optimisation, which makes them quick and changes nothing else, and the wheel is that of ./test. With POECAL_TRIALS=weekly the
+static program is the distributed one, and its size is judged. The workflow that builds the distributed wheels calibrates with each of them.
 """
 
 import hashlib
@@ -45,7 +45,7 @@ print(poecal.calibrate(robot, measured).verdict.level)
 
 
 def run(*command, cwd, **more) -> str:
-    """Standard output of a command that must end well, with an environment of its own if `env` says so."""
+    """Standard output of a command that must succeed, with an environment of its own if `env` states one."""
     done = subprocess.run([*map(str, command)], cwd=cwd, capture_output=True, text=True, **more)
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
     return done.stdout
@@ -58,7 +58,7 @@ def installed(*command, cwd, **settings) -> str:
 
 
 def unoptimised(folder: Path) -> Path:
-    """The folder, below which profiles optimise no single crate either; of these no variable decides."""
+    """The folder, below which profiles optimise no single crate either; no variable decides that for these."""
     profiles = tomllib.loads((ROOT / "Cargo.toml").read_text())["profile"]
     names = sorted({name for profile in PROFILES for name in profiles[profile]["package"]})
     lines = [f"{profile}.package.{name}.opt-level = 0\n" for profile in PROFILES for name in names]
@@ -78,11 +78,11 @@ def empty(tmp_path) -> Path:
 
 
 def calibrates(program: Path, folder: Path, *before) -> None:
-    """The program, with no variable set, gives the results of the example."""
+    """The program, without any variable set, reproduces the results of the example."""
     printed = run(*before, program, "calibrate", "robot.urdf", "points.csv", cwd=folder, env={})
     assert printed.startswith("verdict       good")
     written = json.loads((folder / "poecal-out/calibration.json").read_text())
-    # 0.0949 mm, to what a build without optimisation or for other processors may round otherwise.
+    # 0.0949 mm, up to rounding of a build without optimisation or for other processors.
     assert abs(written["accuracy"]["held_out"]["calibrated"]["position_mm"]["rms"] - 0.0949) < 1e-4
 
 
@@ -122,10 +122,10 @@ def test_pip_installs_the_source_package(empty, tmp_path):
     assert {"README.md", "PKG-INFO", "Cargo.lock"} <= names
     assert all(any(name.endswith(licence) for name in names) for licence in [*LICENCES, "THIRD-PARTY.txt"])
     programs = environment(tmp_path / "venv")
-    # Sources of a package are as old as each other, so that what an earlier version was built into would be taken for theirs.
+    # Sources of a package are as old as each other, so that the build of an earlier version would be taken for theirs.
     for built in (TARGET / "install/release/.fingerprint").glob("poecal*"):
         shutil.rmtree(built)
-    # Where pip unpacks it.
+    # The folder into which pip unpacks it.
     installed(programs / "pip", "install", "--quiet", source, cwd=empty, TMPDIR=str(unoptimised(tmp_path / "unpacked")))
     works_in_python(programs, empty)
 
@@ -149,7 +149,7 @@ def test_cargo_installs_from_the_packaged_crates(empty, tmp_path):
             archive.extractall(tmp_path / "crates", filter="data")
         folder = tmp_path / "crates" / packed.stem
         assert {"README.md", *LICENCES} <= {path.name for path in folder.iterdir()}, crate
-        # Stands for crates.io, where those that others need are not yet.
+        # Replacement of crates.io, for dependencies that are not yet there.
         patches += ["--config", f'patch.crates-io.{crate}.path="{folder}"'] if crate != "poecal-cli" else []
     # The versions of others that the clone names, as `cargo install --locked` has them from crates.io.
     shutil.copy(ROOT / "Cargo.lock", folder)
@@ -165,15 +165,15 @@ def steps(text: str):
 
 
 def tracked() -> list[str]:
-    """What a clone has: files under version control, as they are here."""
+    """Contents of a clone: files under version control, in their present state."""
     return run("git", "ls-files", cwd=ROOT).splitlines()
 
 
 @pytest.fixture(scope="module")
 def image() -> tuple[Path, list[str]]:
-    """The steps of Dockerfile, done in folders that stand for the images: the root of the last one, and its program.
+    """The steps of Dockerfile, done in folders that represent the images: the root of the last one, and its program.
 
-    Of the images that it begins with, `scratch` is empty, and of Rust's only Rust is needed, which is here too.
+    Among the base images, `scratch` is empty, and of Rust's only Rust is needed, which is here too.
     """
     parent = TARGET / "image"
     if AS_HANDED_OUT:
@@ -187,7 +187,7 @@ def image() -> tuple[Path, list[str]]:
             assert base == "scratch" or base.startswith("rust:"), f"the image {base} is unknown here"
             root = parent / (named[0] if named else "last")
             roots[named[0] if named else "last"] = root
-            # What an earlier run compiled stays; cargo finds what changed.
+            # The compiled files of an earlier run are kept; cargo finds the changes.
             if not named:
                 shutil.rmtree(root, ignore_errors=True)
             root.mkdir(parents=True, exist_ok=True)
@@ -231,7 +231,7 @@ def test_the_image_holds_the_program_and_its_licences(image, empty):
 
 
 def needs_an_interpreter(program: Path) -> bool:
-    """Whether an ELF program asks for a loader of shared libraries (a segment of type PT_INTERP)."""
+    """True if an ELF program requires a loader of shared libraries (a segment of type PT_INTERP)."""
     data = program.read_bytes()
     (offset,), (size, count) = struct.unpack_from("<Q", data, 0x20), struct.unpack_from("<HH", data, 0x36)
     return any(struct.unpack_from("<I", data, offset + k * size)[0] == 3 for k in range(count))

@@ -1,4 +1,4 @@
-"""A line of robots by other tools: its ledger has the documented types in DuckDB and polars, and the panel of Grafana reads columns that there are."""
+"""A line of robots by other tools: its ledger has the documented types in DuckDB and polars, and the panel of Grafana reads existing columns."""
 
 import csv
 import json
@@ -63,7 +63,7 @@ def test_duckdb_opens_ten_thousand_robots_with_the_documented_types(line):
     for key, kind in documented().items():
         assert re.fullmatch(DUCKDB[kind], found[key], re.S), (key, found[key])
     assert duckdb.sql(f"SELECT count(DISTINCT serial) FROM '{line / 'many.jsonl'}'").fetchall() == [(ROBOTS,)]
-    # Of the joints, and by way of Parquet.
+    # From the joints, and through Parquet.
     duckdb.sql(f"COPY (FROM '{line / 'many.jsonl'}') TO '{line / 'many.parquet'}'")
     joints = f"SELECT c.joint, c.sigma_offset FROM (SELECT unnest(corrections) AS c FROM '{line / 'many.parquet'}')"
     kinds = {name: kind for name, kind, *_ in duckdb.sql(f"DESCRIBE {joints}").fetchall()}

@@ -28,7 +28,7 @@ def slug(title):
 
 
 def anchors(text):
-    """The anchors of a page; a heading that comes again gets -1, -2, …"""
+    """The anchors of a page; a repeated heading gets -1, -2, …"""
     found, seen = set(ANCHOR.findall(without_code(text))), {}
     for heading in HEADING.finditer(text):
         if heading["title"]:
@@ -51,7 +51,7 @@ def links(text):
 
 
 def complaints(pages, there):
-    """All dead links of pages (texts by path) in a repository with the files `there`, a line each; and the number of links looked at."""
+    """All dead links of pages (texts by path) in a repository with the files `there`, a line each; and the number of links checked."""
     folders = {posixpath.dirname(path) for path in there}
     folders |= {folder[:end] for folder in folders for end, letter in enumerate(folder) if letter == "/"} | {""}
     wrong, count = [], 0

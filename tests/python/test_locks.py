@@ -1,4 +1,4 @@
-"""What checks the dependencies of the project sees what is wrong with them."""
+"""The checks of the project's dependencies detect faults."""
 
 import importlib.util
 import re

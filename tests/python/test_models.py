@@ -15,7 +15,7 @@ import poecal as package
 MODELS = Path(__file__).parent / "models"
 CONFIGURATIONS = 200
 
-# What a maker's calibration adds to the rows of UR10E: theta, a, d, alpha; axes that are nearly parallel meet far away.
+# Additions of a maker's calibration to the rows of UR10E: theta, a, d, alpha; axes that are nearly parallel meet far away.
 DELTAS = {
     "delta_theta": [-8.1e-05, -0.1036, 0.673, -0.57, -4.5e-05, 9.7e-07],
     "delta_a": [-1.6e-04, 3.0e-03, 0.0916, -9.6e-05, -2.9e-05, 0],
@@ -112,7 +112,7 @@ def test_odd_mjcf_is_read_as_mujoco_reads_it(name, tmp_path):
     text, tip = ODD_MJCF[name]
     path = tmp_path / "arm.xml"
     path.write_text(text)
-    # A site is the tip by itself, the last body is too.
+    # A site is the tip by itself, and so is the last body.
     robot = package.Robot.read(path, tip_link=tip if tip == "a_1" else None)
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)

@@ -1,5 +1,6 @@
-"""One figure for one question: verdict, table, limits, report and predictions speak of one model, and of what to expect of it, of the example and of
-eight real sessions."""
+"""One figure for one question: verdict, table, limits, report and predictions are about one model and its expected error, for the example and
+eight real sessions.
+"""
 
 import csv
 import json
@@ -65,7 +66,7 @@ def test_one_figure_for_one_question(name, tmp_path):
     assert abs(rms / expected - 1) < 0.05
     # The file has six decimals of the share that terms leave.
     assert expected >= 0.9 * left_out * (1 - 1e-5)
-    # Where no terms are taken, both models are one.
+    # Without terms, both models are one.
     if not has_terms:
         both = [poecal("predict", out / "calibration.json", measurements, "--with-uncertainty", "--model", it) for it in ["corrected", "calibrated"]]
         assert both[0] == both[1]

@@ -1,4 +1,4 @@
-"""The same bytes give the same answer, whether they come by path, as standard input or through a pipe, alone and beside another file."""
+"""The same bytes have the same result, by path, as standard input or through a pipe, alone and beside another file."""
 
 import os
 import re
@@ -15,7 +15,7 @@ EXAMPLES = [path for folder in (HOWTO, ROOT / "examples/elbow") for path in sort
 
 
 def answer(*arguments, named=(), **options) -> tuple[int, str]:
-    """Exit code and all that is said, without names of files and ends of lines."""
+    """Exit code and whole output, without names of files and ends of lines."""
     run = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, timeout=300, **options)
     said = run.stdout + run.stderr
     for name in named:
@@ -24,7 +24,7 @@ def answer(*arguments, named=(), **options) -> tuple[int, str]:
 
 
 def through_pipe(content: bytes, use):
-    """What `use` makes of the path of a pipe with this content."""
+    """Result of `use` for the path of a pipe with this content."""
     out, into = os.pipe()
 
     def write():
@@ -49,7 +49,7 @@ def test_a_file_alone(path):
     expected = answer("check", ELBOW, path, named=[path])
     with path.open("rb") as content:
         assert answer("check", ELBOW, "-", named=[path], stdin=content) == expected
-    # A name may say that a file is none of ours.
+    # The name alone may show that a file is of another kind.
     if path.suffix in (".py", ".md"):
         return
     found = through_pipe(path.read_bytes(), lambda pipe, end: answer("check", ELBOW, pipe, named=[pipe], pass_fds=[end]))

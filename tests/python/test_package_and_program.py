@@ -1,4 +1,4 @@
-"""The Python package gives what the program gives, to the last digit, and has a place for every option of it."""
+"""The Python package returns the program's results, to the last digit, and has a place for every option of it."""
 
 import json
 import os
@@ -53,7 +53,7 @@ def test_calibrations_have_the_same_figures(run, tmp_path):
     robot = poecal.Robot.read(ELBOW)
     calibration = poecal.calibrate(robot, poecal.Measurements.from_csv(POINTS, robot), **arguments)
     calibration.write(tmp_path / "package")
-    # The report tells the command.
+    # The report states the command.
     ours, theirs = (files(tmp_path / name, "report.html") for name in ["package", "program"])
     assert list(ours) == list(theirs) == ["calibrated.urdf", "calibration.json", "residuals.csv"]
     for name in ours:
@@ -112,7 +112,7 @@ def test_predictions_judgements_and_foresight_are_the_same(poses, tmp_path):
     measured = poecal.Measurements.from_csv(POINTS, calibration.robot)
     for flags, arguments in [([], {}), (["--refit", "device,tool"], {"refit": ["device", "tool"]})]:
         judged = json.loads(program("validate", path, POINTS, "--json", *flags))
-        # Which command it was, the package does not know.
+        # The package does not know the command.
         del judged["inputs"]["command"]
         assert calibration.validate(measured, **arguments).to_dict() == judged
     checked = ["--refit", "device", "--record", "operator=Mia"]
@@ -185,14 +185,14 @@ def options_of(command: list[str]) -> set[str]:
 
 
 def options_in(cell: str) -> list[str]:
-    """Options that a row of the guide is for: each option behind the colon, of each command before it."""
+    """Options of a row of the guide: each option behind the colon, of each command before it."""
     commands, _, options = cell.rpartition(": ")
     named = re.findall(r"`([^`]+)`", options)
     return [f"`{command} {option}`" for command in re.findall(r"`([^`]+)`", commands) for option in named] if commands else [f"`{option}`" for option in named]
 
 
 def test_the_guide_has_a_place_for_every_option():
-    """Each command and each of its options stands in the table of docs/python.md, with what it is in Python or why it is not."""
+    """Each command and each of its options is in the table of docs/python.md, with its equivalent in Python or the reason why there is none."""
     guide = GUIDE.read_text().split("## The program in Python\n")[1]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in guide.splitlines() if line.startswith("| `")]
     named = [(option, row[1]) for row in rows for option in options_in(row[0])]

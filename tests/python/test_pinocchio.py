@@ -15,7 +15,7 @@ CONFIGURATIONS = 50
 
 
 def relations(text: str) -> dict:
-    """Joint -> (leader, multiplier, offset) of mimic joints. Pinocchio is given every joint's own value."""
+    """Joint -> (leader, multiplier, offset) of mimic joints. Pinocchio takes every joint's own value."""
     found = {}
     for joint in xml.fromstring(text).findall("joint"):
         for mimic in joint.findall("mimic"):

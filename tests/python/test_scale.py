@@ -38,7 +38,7 @@ ROBOTS = trials(1000, 20)
 
 
 def left(run: str) -> list[int]:
-    """Processes that a run has left, where the system tells."""
+    """Processes that a run has left, if the system reports them."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
         try:
@@ -50,7 +50,7 @@ def left(run: str) -> list[int]:
 
 
 def run(script: str, *arguments: object, seconds: float = 2400, code: int = 0) -> str:
-    """Runs an example; it has to end with this code, and all its processes with it. Gives what it says to people."""
+    """Runs an example; it has to end with this code, and all its processes with it. Returns its output for people."""
     name = uuid.uuid4().hex
     command = [sys.executable, str(SCALE / script), *map(str, arguments)]
     start = time.monotonic()
@@ -58,7 +58,7 @@ def run(script: str, *arguments: object, seconds: float = 2400, code: int = 0) -
         done = subprocess.run(command, env={**os.environ, MARK: name}, capture_output=True, text=True, timeout=seconds)
         print(f"{' '.join(map(str, (script, *arguments)))}: {time.monotonic() - start:.1f} s\n{done.stdout}")
         assert done.returncode == code, done.stdout + done.stderr
-        # Servers of Ray may take a moment to notice the end of what started them.
+        # Servers of Ray may take a moment to notice the end of their parent.
         until = time.monotonic() + 30
         while left(name) and time.monotonic() < until:
             time.sleep(0.1)
@@ -106,7 +106,7 @@ def test_a_monte_carlo_run_has_the_same_bytes_by_several_processes(engine, alone
 def test_stated_uncertainties_are_true(alone, tmp_path):
     """Many fits, in large chunks."""
     count = 10 * FITS
-    # Two processes are worth their start where there is much to do.
+    # Two processes are worth their start if there is much to do.
     run("monte_carlo.py", "--trials", count, "--chunk", FITS, "--out", tmp_path / "large", *(by("ray") if count > 10_000 else []))
     chunks = rows(tmp_path / "large/chunks.csv")
     assert len(chunks) == 10 and sum(int(row["fits"]) for row in chunks) == count
@@ -122,8 +122,8 @@ def test_stated_uncertainties_are_true(alone, tmp_path):
     assert len(found) == 25
     scatter = (0.95 * 0.05 / count) ** 0.5
     for row in found:
-        # 100,000 trials showed 0.16 % and, of the axes, 1.1 % (the prior is counted in, and moves little), 3.3 % of the tip (whose bound
-        # counts errors of the model too). Half more, and four standard errors of the number of trials.
+        # 100,000 trials showed 0.16 % and, of the axes, 1.1 % (the prior is included, and moves little), 3.3 % of the tip (whose bound includes
+        # errors of the model too). Half more, and four standard errors of the number of trials.
         assert abs(float(row["inside"]) - 0.95) < 0.0025 + 4 * scatter, row
         excess = 0.05 if row["what"] == "tip" else 0.017
         assert float(row["off"]) == pytest.approx(float(row["stated"]), rel=excess + 4 / (2 * count) ** 0.5), row
@@ -164,11 +164,11 @@ def test_a_broken_file_is_named_and_stops_no_other_robot(robots):
     for name, row in found.items():
         assert (robots / "alone" / name / "calibration.json").exists() is (name not in refused)
         if name not in refused:
-            # Axes off by 1° and 2 mm, and noise of 0.05 mm a component.
+            # Errors of the axes of 1° and 2 mm, and noise of 0.05 mm for each component.
             assert float(row["nominal_mm"]) > 5 > 0.3 > float(row["calibrated_mm"]), row
 
 
-# What both engines have in common, a run of ray for every change has above; a folder by ray, the slower one to begin, is one of every week.
+# The common part of both engines is covered by ray for every change above; a folder by ray, which starts more slowly, is run every week.
 @pytest.mark.parametrize("engine", MODULES if os.environ.get("POECAL_TRIALS") in ("weekly", "full") else ["dask"])
 def test_a_folder_of_robots_has_the_same_bytes_by_several_processes(engine, robots):
     said = run("folder.py", robots / "robots", "--out", robots / engine, *by(engine))

@@ -1,4 +1,4 @@
-"""A calibration.json that the program writes is what its JSON Schema says."""
+"""A calibration.json that the program writes conforms to its JSON Schema."""
 
 import json
 

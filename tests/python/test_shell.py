@@ -1,4 +1,4 @@
-"""What a shell takes from the program: completions and manual pages."""
+"""Files of the program for a shell: completions and manual pages."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""The documentation site: its check finds what a page must not do, and it does not depend on one builder."""
+"""The documentation site: its check finds forbidden contents of a page, and it does not depend on one builder."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""What runs the steps of ./test: what needs what, what fails, and what is said of it."""
+"""The runner of the steps of ./test: prerequisites, failures, and its output."""
 
 import sys
 
@@ -63,7 +63,7 @@ def test_steps_run_side_by_side_with_variables_of_their_own(capsys, tmp_path):
     assert code == 0
 
 
-# Says when it ran.
+# Prints its times.
 TIMED = [sys.executable, "-c", "import time; begin = time.time(); time.sleep(0.5); print('ran', begin, time.time())"]
 
 

@@ -23,7 +23,7 @@ WIDTH = 80
 
 
 def on_terminal(folder, *arguments, width=WIDTH, **environment):
-    """What a run shows on a terminal, and its exit code."""
+    """Output of a run on a terminal, and its exit code."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 40, width, 0, 0))
     clean = {key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "COLUMNS", "CLICOLOR_FORCE", "CI")}
@@ -41,14 +41,14 @@ def on_terminal(folder, *arguments, width=WIDTH, **environment):
         while part := os.read(ours, 65536):
             shown += part
     except OSError:
-        # How Linux says that the other side is closed.
+        # Linux reports a closed other side by this error.
         pass
     os.close(ours)
     return shown.decode(), run.wait()
 
 
 def lines(shown):
-    """Lines as they stand in the end, without colours: what is drawn over, as a progress bar is, counts each time."""
+    """Final lines, without colours: overwritten text, as a progress bar is, counts each time."""
     return [line for part in ESCAPE.sub("", shown).split("\n") for line in part.split("\r")]
 
 
@@ -60,7 +60,7 @@ def in_pipe(folder, *arguments, **environment):
 
 @pytest.fixture(scope="module")
 def session(tmp_path_factory):
-    """A folder with a session, a calibration of it, and the same with a wrong row, with a joint that stood still, and swapped."""
+    """A folder with a session, a calibration of it, and the same with a wrong row, with a joint that did not move, and swapped."""
     folder = tmp_path_factory.mktemp("terminal")
     shutil.copy(ELBOW, folder / "robot.urdf")
     for words in [

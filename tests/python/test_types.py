@@ -1,4 +1,4 @@
-"""The stubs of the package are what it is, and what uses it is well typed."""
+"""The stubs of the package agree with it, and code that uses it is well typed."""
 
 import json
 import os
@@ -24,7 +24,7 @@ CHECKS = {
     "scale": ["mypy", "--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--scripts-are-modules", *SCALE],
     "benches": ["mypy", "--strict", "--scripts-are-modules", *sorted((ROOT / "crates/poecal-py/benches").glob("*.py"))],
 }
-# What users may write, with the types that it has.
+# Usages that users may write, with their types.
 USE = """
 import matplotlib.pyplot as plt
 import numpy as np
@@ -68,7 +68,7 @@ summary: poecal.Compensation = calibration.compensate(joints, summary=True, max_
 
 def mypy(arguments, folder):
     command = [sys.executable, "-m", *map(str, arguments)]
-    # What it has read of NumPy and others serves the next check too.
+    # The parsed types of NumPy and others serve the next check too.
     cache = {"MYPY_CACHE_DIR": str(CACHE)}
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ | cache)
     assert run.returncode == 0, run.stdout + run.stderr
@@ -95,7 +95,7 @@ def test_what_users_write_is_well_typed(tmp_path):
 
 @pytest.mark.parametrize("page", ["README.md", "crates/poecal-py/README.md", "docs/python.md"])
 def test_what_pages_show_is_well_typed(page, tmp_path):
-    """A page's blocks, one after the other, as a reader would copy them."""
+    """A page's blocks in sequence, as a reader would copy them."""
     text = "\n".join(block.text for block in blocks(ROOT / page) if block.language == "python")
     assert "import poecal" in text
     (tmp_path / "page.py").write_text(text)
@@ -108,7 +108,7 @@ def test_pyright_agrees(tmp_path):
     (tmp_path / "use.py").write_text(USE)
     (tmp_path / "pyrightconfig.json").write_text(json.dumps({"typeCheckingMode": "standard"}))
     program = pyright()
-    # It looks for packages where the first `python` of PATH does.
+    # It searches packages where the first `python` of PATH does.
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     for arguments in [["use.py"], ["--verifytypes", "poecal", "--ignoreexternal"]]:
         run = subprocess.run([program, *arguments], cwd=tmp_path, capture_output=True, text=True, env=environment)

@@ -1,4 +1,4 @@
-"""Calibrations of real measured robots, where the data sets are at hand; and that what judges them does judge."""
+"""Calibrations of real measured robots, if the data sets are available; and a test that their judgement detects errors."""
 
 import json
 import runpy
@@ -26,7 +26,7 @@ def test_real_robots_reach_their_figures():
 
 
 def figures(case):
-    """What a run of the case has that is just as good as expected."""
+    """Figures of a run of the case that are exactly as good as expected."""
     return {
         "registered": case["registered_mm"],
         "calibrated": case["calibrated_mm"],

@@ -1,4 +1,4 @@
-"""The pages for users keep to docs/vocabulary.md where that can be checked by whole phrases."""
+"""The pages for users keep to docs/vocabulary.md as far as that can be checked by whole phrases."""
 
 import re
 
@@ -9,7 +9,7 @@ from test_links import without_code
 VOCABULARY = "docs/vocabulary.md"
 PATTERNS = ["*.md", "docs/**/*.md", "examples/**/*.md", "validation/*.md", "crates/*/README.md", "crates/*/src/**/*.md"]
 PAGES = sorted({path for pattern in PATTERNS for path in ROOT.glob(pattern)} - {ROOT / VOCABULARY})
-# Words of the last column that are wrong wherever they stand. Others have a right use too ("zero", "open", "near"), and are left to readers.
+# Words of the last column that are wrong anywhere. Others have a right use too ("zero", "open", "near"), and are left to readers.
 NEVER = [
     "as drawn",
     "drawing's worth",
@@ -28,7 +28,7 @@ NEVER = [
 
 
 def found(text):
-    """The words of NEVER in a text, whatever its line ends and capitals; code does not count."""
+    """The words of NEVER in a text, with any line ends and capitals; code does not count."""
     plain = " ".join(without_code(text).lower().replace("’", "'").split())
     return [words for words in NEVER if re.search(rf"\b{re.escape(words)}s?\b", plain)]
 

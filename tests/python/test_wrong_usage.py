@@ -1,5 +1,6 @@
-"""Wrong usages of the program, as people make them: one sentence, exit code 2 and nothing written; in both orders of their words, and beside a
-second mistake, an output that is not ours, of which the first is the one that is named."""
+"""Typical wrong usages of the program: one sentence, exit code 2 and nothing written; in both orders of their words, and beside a second mistake,
+an output of another program. The first mistake is the one that is named.
+"""
 
 import shutil
 import subprocess
@@ -8,7 +9,7 @@ import pytest
 from program import ELBOW, program
 
 MODEL, POINTS = "robot.urdf", "points.csv"
-# The words beside --out, and what the sentence says.
+# The words beside --out, and the content of the sentence.
 USAGES = {
     "arguments swapped": (["calibrate", POINTS, MODEL], "did you swap the arguments? The model comes first"),
     "no such model": (["calibrate", "robt.urdf", POINTS], "robt.urdf: found no such file, expected a robot model"),

@@ -5,7 +5,7 @@ import { kindWords, wordOf } from "./places.js";
 import { Scene } from "./scene.js";
 import { onColours } from "./theme.js";
 
-/** Fills `place` with the picture and its controls; gives what takes the arm to a row, if it is drawn. */
+/** Fills `place` with the picture and its controls; returns the function that moves the arm to a row, if it is drawn. */
 export function showArm(place, data) {
   let scene;
   try {
@@ -34,7 +34,7 @@ export function showArm(place, data) {
   });
   choose(view, 0);
   scene.look("oblique");
-  // Until the picture is drawn, paper has the still.
+  // Until the picture is drawn, the print has the still.
   scene.onDrawn = () => {
     place.dataset.drawn = "true";
     still?.setAttribute("hidden", "");
@@ -49,7 +49,7 @@ function element(name, className, text) {
   return found;
 }
 
-/** The middle of what was measured of a reading. */
+/** The middle of a reading's measured range. */
 function middle(data, reading) {
   const column = data.rows.values[reading];
   return ((Math.min(...column) + Math.max(...column)) / 2) * data.factors[reading];
@@ -60,7 +60,7 @@ function changed(view) {
   for (const listener of view.listeners) listener();
 }
 
-/** Takes the arm to a row that is drawn. */
+/** Moves the arm to a row that is drawn. */
 function choose(view, row) {
   view.state.row = row;
   view.state.readings = readingsOf(view.data, row);
@@ -80,7 +80,7 @@ function button(text, action) {
   return found;
 }
 
-/** The drawn row whose number is nearest to the one asked for. */
+/** The drawn row whose number is nearest to the requested one. */
 function rowOfNumber({ rows }, number) {
   const distance = (row) => Math.abs(rows.number[row] - number);
   return rows.number.reduce((best, _, row) => (distance(row) < distance(best) ? row : best), 0);
@@ -149,7 +149,7 @@ function jointControls(view) {
     const column = data.rows.values[k];
     const sampled = [Math.min(...column), Math.max(...column)];
     const joint = data.joints.find((it) => it.reading === k && it.multiplier === 1 && it.offset === 0 && it.limits);
-    // Placeholders for "no limits" would leave a slider without a use.
+    // With placeholders for "no limits" a slider would be of no use.
     const limits = joint && joint.limits[1] - joint.limits[0] < 100 ? joint.limits.map((limit) => limit / factor) : sampled;
     const range = [Math.min(limits[0], sampled[0]), Math.max(limits[1], sampled[1])];
     if (range[0] === range[1]) range[1] = range[0] + 1;
@@ -240,7 +240,7 @@ function viewControls({ scene }) {
   return line;
 }
 
-/** Where the arms end, in words that a screen reader hears when they have come to rest. */
+/** Poses of the arms' ends, in words that a screen reader speaks when they are at rest. */
 function stateText(view) {
   const { data, state } = view;
   const text = element("p", "state");
@@ -264,7 +264,7 @@ function stateText(view) {
   return text;
 }
 
-/** What is drawn beside the robot, in words. */
+/** Objects that are drawn beside the robot, in words. */
 function deviceWords({ data, scene }) {
   if (data.draws_instruments) return kindWords(data);
   return scene.instruments.isUnknown[0] || data.instruments[0]?.kind === "pair" ? "" : "measuring device";
@@ -290,7 +290,7 @@ function colourLine(view) {
   return line;
 }
 
-/** What stands for the residuals of the rows. */
+/** Words for the symbols of the rows' residuals. */
 function residualWords({ has }, arrows = "residual arrows", dots = "measured places") {
   if (has.arrows && has.dots) return `${arrows} and ${dots}`;
   return has.dots ? dots : arrows;

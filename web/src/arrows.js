@@ -1,4 +1,4 @@
-// Residuals of the rows as arrows, or as dots where they are no shift in the picture.
+// Residuals of the rows as arrows, or as dots if they are no shift in the picture.
 import { ConeGeometry, CylinderGeometry, Group, InstancedMesh, Matrix4, Quaternion, SphereGeometry, Vector3 } from "three";
 import { scale } from "./kinematics.js";
 import { roomForArrows } from "./places.js";
@@ -6,7 +6,7 @@ import { roomForArrows } from "./places.js";
 const UP = new Vector3(0, 1, 0);
 const NOTHING = new Matrix4().makeScale(0, 0, 0);
 
-/** How many residuals the picture begins with: the largest. */
+/** Number of residuals that the picture shows first: the largest. */
 const WORST = 100;
 
 /** Room for each arrow, metres. */
@@ -25,7 +25,7 @@ export class Arrows {
     const isArrow = (shift) => shift !== null;
     this.rows = rows;
     this.worst = worstOf(rows);
-    // Whether all are drawn, and not the worst alone.
+    // True if all are drawn, and not the worst alone.
     this.all = false;
     this.has = { arrows: rows.residual.some(isArrow), dots: !rows.residual.every(isArrow) };
     const width = Math.min(size * (rows.count > 800 ? 0.0013 : 0.0024), room / 30);
@@ -38,7 +38,7 @@ export class Arrows {
     if (this.has.dots) this.group.add(this.dots);
   }
 
-  /** Puts every arrow where its target was predicted, so many times as long as it is. */
+  /** Puts every arrow at its target's predicted position, with its length multiplied by `factor`. */
   place(factor) {
     const placed = `${factor} ${this.all}`;
     if (this.placed === placed) return;
@@ -66,7 +66,7 @@ export class Arrows {
     }
   }
 
-  /** From `least` to `most`: the larger the error, up to `largest`, the stronger. */
+  /** Colours from `least` to `most`: the larger the error, up to `largest`, the stronger. */
   recolour(least, most, largest) {
     this.rows.error_mm.forEach((error, row) => {
       const shade = least.clone().lerp(most, Math.min(error / largest, 1));

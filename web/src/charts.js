@@ -1,11 +1,12 @@
-// What the cursor is on in the charts, which are on the page as they are: the row of a dot by counting, its place by adding up the steps of its path.
+// The element under the cursor in the charts, which the page already contains: the row of a dot by counting, its position by adding up the steps of
+// its path.
 import { shown, withUnit } from "./data.js";
 
-/** How far (px) a dot may be from the cursor to be meant. */
+/** Largest distance (px) of a selected dot from the cursor. */
 const NEAR = 30;
 const SVG = "http://www.w3.org/2000/svg";
 
-/** Makes a chart's dots tell of their rows; `choose(row)` is called with the row of a dot that is clicked. */
+/** Makes a chart's dots report their rows; `choose(row)` is called with the row of a dot that is clicked. */
 export function followChart(figure, dataOf, choose) {
   const select = figure.querySelector("select");
   if (select) {
@@ -57,7 +58,7 @@ function dotsOf(path, rows) {
 function nearest(graph, { rows }, { clientX, clientY }) {
   const { width, height } = graph.querySelector("svg").viewBox.baseVal;
   const [box, style] = [graph.getBoundingClientRect(), getComputedStyle(graph)];
-  // Text stands in the padding.
+  // Text is in the padding.
   const [top, right, bottom, left] = ["Top", "Right", "Bottom", "Left"].map((side) => parseFloat(style[`padding${side}`]));
   const [across, down] = [(box.width - left - right) / width, (box.height - top - bottom) / height];
   let [least, found] = [NEAR, undefined];
@@ -70,7 +71,7 @@ function nearest(graph, { rows }, { clientX, clientY }) {
   return found;
 }
 
-/** What is said of a row under the cursor. */
+/** Description of a row under the cursor. */
 function tell({ dataset }, graph, { rows, lead }, { row, x, width }) {
   const set = rows.sets[row] & 1 ? "held out" : "fitted";
   const { low, high } = graph.querySelector(".x").dataset;
@@ -78,7 +79,7 @@ function tell({ dataset }, graph, { rows, lead }, { row, x, width }) {
   return `${rows.place[row]}, ${set}${rows.sets[row] & 2 ? ", suspected" : ""}: ${withUnit(rows.error_mm[row], lead.unit)}${more}`;
 }
 
-/** Shows the residual that was chosen: its axis and its curve are on the page, and its dots follow from the data. */
+/** Shows the selected residual: its axis and its curve are on the page, and its dots follow from the data. */
 function showSide(graph, { rows }, { selectedIndex, selectedOptions: [{ dataset }] }) {
   const cell = graph.closest(".cell");
   for (const it of cell.querySelectorAll("[data-side]")) it.toggleAttribute("hidden", Number(it.dataset.side) !== selectedIndex);

@@ -1,4 +1,4 @@
-// The page's data, with what follows from them: where each row's target was predicted, and how its residual lies in the base frame.
+// The page's data, with quantities that follow from them: each row's predicted target, and its residual in the base frame.
 import { CALIBRATED, act, configure, invert, poseOf, rotate, scale, subtract } from "./kinematics.js";
 import { patchOf } from "./places.js";
 
@@ -34,7 +34,7 @@ function readRows(rows) {
   );
 }
 
-/** Adds to each row its place and its residual in the base frame, and to the robot the frames where its arms end. */
+/** Adds to each row its position and its residual in the base frame, and to the robot the frames at the ends of its arms. */
 export function complete(data) {
   data.factors = data.readings.map((reading) => (reading.unit === "mm" ? 1e-3 : Math.PI / 180));
   const { rows, tip, targets, instruments } = data;
@@ -42,7 +42,7 @@ export function complete(data) {
     frame.pose = poseOf(frame.pose);
     frame.nominal_pose = frame.nominal_pose && poseOf(frame.nominal_pose);
   }
-  // Targets in the tip frame are none of these.
+  // Targets in the tip frame are not among these.
   data.mounted = targets.filter((target) => target.nominal_pose);
   const ends = [...data.mounted, ...instruments].filter((frame) => frame.on !== null);
   const atTip = ({ on, pose }) => on === tip.on && Math.hypot(...subtract(pose.t, tip.pose.t)) < 1e-6;
@@ -64,7 +64,7 @@ export function complete(data) {
     const residual = shift && rotate(device.r, shift);
     rows.predicted.push(place);
     touched[rows.instrument[row]].push(seen);
-    // A camera that looks at a target beside the robot is itself what moves.
+    // If a camera observes a target beside the robot, the camera itself moves.
     const moving = target.on === null ? instrument : target;
     if (!reaching.has(moving.on)) reaching.set(moving.on, moving);
     rows.reached.push(found.at(moving).t);
@@ -75,20 +75,20 @@ export function complete(data) {
   return data;
 }
 
-/** The residual of a quantity in a row, by component, null where one was not measured. */
+/** The residual of a quantity in a row, by component, null for one that was not measured. */
 function componentsOf({ residuals }, row, quantity) {
   return residuals.find(({ name }) => name === quantity)?.components.map(({ values }) => values[row]) ?? [];
 }
 
-/** The same with zero where a component was not measured; none if the row did not measure the quantity. */
+/** The same residual with zero for a component that was not measured; undefined if the row did not measure the quantity. */
 function residualOf(rows, row, quantity) {
   const found = componentsOf(rows, row, quantity);
   return found.some((value) => value !== null) ? found.map((value) => value ?? 0) : undefined;
 }
 
 /**
- * The residual of a row as a shift in the axes of the device, millimetres, with the target seen at a place there: of a distance along the
- * line to it, of a height along the plane's normal. None of angles.
+ * The residual of a row as a shift in the axes of the device, millimetres, with the target at the position `seen`: for a distance along the line to
+ * it, for a height along the plane's normal. Undefined for angles.
  */
 function shiftOf(rows, row, seen) {
   const vector = residualOf(rows, row, "position") ?? residualOf(rows, row, "contact");
@@ -100,13 +100,13 @@ function shiftOf(rows, row, seen) {
   return distance === undefined || far === 0 ? undefined : scale(seen, distance / far);
 }
 
-/** By how much each quantity of a row is off, in words. */
+/** Error of a row in each quantity, in words. */
 export function offBy(rows, row) {
   const parts = rows.residuals.flatMap(({ name, unit }) => {
     const found = residualOf(rows, row, name);
     return found ? [[name, withUnit(Math.hypot(...found), unit)]] : [];
   });
-  // The unit of a position and of a rotation tells which of the two it is.
+  // The unit of a position and of a rotation identifies the quantity.
   const isOfPose = parts.every(([name]) => name === "position" || name === "rotation");
   return parts.map(([name, words]) => (isOfPose ? words : `${words} of ${name}`)).join(" and ");
 }
@@ -116,7 +116,7 @@ export function readingsOf(data, row) {
   return data.rows.values.map((column, reading) => column[row] * data.factors[reading]);
 }
 
-/** A number with a few digits that matter. */
+/** A number with a few significant digits. */
 export function shown(value, digits = 3) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);

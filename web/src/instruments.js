@@ -1,4 +1,4 @@
-// Instruments as their frames, places as what they are, the line of sight of the chosen measurement, and names on the picture.
+// Instruments as their frames, references by their kinds, the line of sight of the selected measurement, and names on the picture.
 import { BufferAttribute, BufferGeometry, CylinderGeometry, Group, LineSegments, Matrix4, Mesh, SphereGeometry, Vector3 } from "three";
 import { act } from "./kinematics.js";
 import { flat, solid } from "./materials.js";
@@ -6,9 +6,9 @@ import { linesOf, opticsOf, raysOf } from "./optics.js";
 import { drawingOf, hasPlace, isSeenFromAfar } from "./places.js";
 
 const DASHES = 24;
-/** Names that are shown at once; of more, only that of the chosen measurement's instrument. */
+/** Most names that are shown at once; with more, only that of the selected measurement's instrument. */
 const MOST_NAMES = 12;
-/** A device whose frame is the base's, metres, has measured in it: where it stood is not known. */
+/** A device whose frame is the base's, metres, has measured in it: its own position is not known. */
 const IN_BASE = 1e-6;
 
 export class Instruments {
@@ -20,7 +20,7 @@ export class Instruments {
     this.isUnknown = instruments.map(({ on, pose: { t } }) => !draws_instruments && on === null && Math.hypot(...t) < IN_BASE);
     this.frames = instruments.map((it) => (it.kind ? drawingOf(it, data, size, this.materials) : frame(this.materials, size)));
     this.frames.forEach((it, k) => (it.visible = !this.isUnknown[k]));
-    // Cameras and boards as what they are, whichever of the two measures the other.
+    // Cameras and boards by their kinds, whichever of the two measures the other.
     instruments.forEach((it, k) => {
       const drawn = opticsOf(it, size, this.materials);
       if (drawn) this.frames[k].add(drawn);
@@ -34,7 +34,7 @@ export class Instruments {
     this.sight = new LineSegments(dashes, this.materials.sight);
     this.sight.frustumCulled = false;
     this.group.add(...this.frames, this.sight, this.rays, ...this.held.filter(Boolean));
-    // Those beside the robot stand above or below a place on the grid.
+    // Instruments beside the robot are above or below a position on the grid.
     const stand = (it, k) => it.on === null && hasPlace(it) && it.kind !== "plane" && !this.isUnknown[k];
     const beside = instruments.filter(stand).flatMap(({ pose: { t: [x, y, z] } }) => [x, y, z, x, y, 0]);
     const plumb = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(beside), 3));
@@ -44,7 +44,7 @@ export class Instruments {
     this.targets = mounted.map(({ name }) => labels.add("target", name, true));
   }
 
-  /** Puts instruments and names to their places, and the line of sight from the chosen instrument to the target's place `seen`, if there is one. */
+  /** Puts instruments and names to their positions, and the line of sight from the selected instrument to the target at `seen`, if there is one. */
   pose(poses, places, chosen, { seen, tip, held, target }) {
     const chosenPlace = seen ?? tip;
     this.held.forEach((it, k) => it?.matrix.copy(matrixOf(held[k])));
@@ -53,7 +53,7 @@ export class Instruments {
     this.rays.geometry = linesOf(pair ? raysOf(...pair) : []);
     poses.forEach((pose, k) => {
       const it = this.kinds[k];
-      // A direction has no place: it stands at what shows it.
+      // A direction has no position: it is drawn at the target that shows it.
       const { r, t } = it.kind === "direction" ? { r: pose.r, t: chosenPlace } : pose;
       this.frames[k].matrix.copy(matrixOf({ r, t }));
       this.instruments[k].place.set(...(it.kind === "plane" ? act({ r, t }, [it.patch.x, it.patch.y, 0]) : t));

@@ -66,7 +66,7 @@ export function exponential({ v_m: v, w }, value) {
     [c * x * y + s * z, 1 - c * (x * x + z * z), c * y * z - s * x],
     [c * x * z - s * y, c * y * z + s * x, 1 - c * (x * x + y * y)],
   ];
-  // The axis passes through w × v, which stays where it is.
+  // The axis passes through w × v, which does not move.
   const q = cross(w, v);
   return { r, t: add(subtract(q, rotate(r, q)), scale(w, dot(w, v) * value)) };
 }
@@ -78,7 +78,7 @@ function pointOn({ v_m: v, w }, near) {
   return add(q, scale(w, dot(w, subtract(near, q))));
 }
 
-/** Where a model has its axes at some readings, and where a frame `at` a body. A joint's body moves with the one on which it stands. */
+/** Axes of a model at some readings, and the pose of a frame `at` a body. A joint's body moves with the one that carries it. */
 export function configure(data, readings, model) {
   const bodies = [];
   const motionOf = (body) => (body === null ? STILL : bodies[body]);

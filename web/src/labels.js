@@ -1,4 +1,4 @@
-// Names on the picture, beside their places.
+// Names on the picture, beside their positions.
 import { Vector3 } from "three";
 
 const ARROWS = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
@@ -13,8 +13,8 @@ export class Labels {
   }
 
   /**
-   * Adds a name. One that `stays` is moved to where there is room, and to the edge, with an arrow, if its place is out of the picture; others
-   * are left out there.
+   * Adds a name. One that `stays` is moved to a free position, and to the edge, with an arrow, if its own position is out of the picture; others are
+   * left out there.
    */
   add(className, name, stays = false) {
     const text = document.createElement("span");
@@ -26,7 +26,7 @@ export class Labels {
     return label;
   }
 
-  /** Writes the names beside their places: first those that stay, then those of joints and axes that cover none of them. */
+  /** Writes the names beside their positions: first those that stay, then those of joints and axes that cover none of them. */
   write(camera, width, height) {
     const taken = [];
     for (const label of [...this.all.filter((it) => it.stays), ...this.all.filter((it) => !it.stays)]) {

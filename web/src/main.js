@@ -1,5 +1,5 @@
-// What the page adds where scripts run: the arm in three dimensions, what the cursor is on in charts, and the choice of colours. All text and
-// every chart is there without it.
+// Additions of the script: the arm in three dimensions, a readout under the cursor in charts, and the choice of colours. All text and every chart are
+// on the page without it.
 import { showArm } from "./arm.js";
 import { followChart } from "./charts.js";
 import { readData } from "./data.js";
@@ -10,7 +10,7 @@ let read;
 let choose;
 const data = () => (read ??= readData());
 themeSwitch(document.querySelector(".theme"));
-// The text is there at once.
+// The text is shown at once.
 whenIdle(() => (choose = showArm(document.getElementById("arm"), data())));
 for (const figure of document.querySelectorAll("[data-chart]")) followChart(figure, data, (row) => choose?.(row));
 followSections(document.querySelector("nav"));

@@ -1,7 +1,7 @@
 // Small shaders: one for solid things and one for dots. They compile at once even where a processor has to draw.
 import { Color, DoubleSide, FrontSide, ShaderMaterial } from "three";
 
-/** Solid things: lighter where they face the eye. Instances may have colours of their own. A sheet is seen from both sides. */
+/** Solid objects: lighter on the side towards the eye. Instances may have colours of their own. A sheet is visible from both sides. */
 export function solid(opacity = 1, isSheet = false) {
   return new ShaderMaterial({
     side: isSheet ? DoubleSide : FrontSide,
@@ -35,7 +35,7 @@ export function solid(opacity = 1, isSheet = false) {
   });
 }
 
-/** Solid things of flat faces, whose normals are those of the triangles as they are drawn. */
+/** Solid objects with flat faces, whose normals are those of the drawn triangles. */
 export function faceted(opacity = 1) {
   return new ShaderMaterial({
     side: DoubleSide,
@@ -60,7 +60,7 @@ export function faceted(opacity = 1) {
   });
 }
 
-/** What hides what is behind it, and is not seen itself: drawn before transparent things, it leaves only their front. */
+/** An invisible surface that hides objects behind it: drawn before transparent objects, it leaves only their front. */
 export function veil() {
   return new ShaderMaterial({
     side: DoubleSide,

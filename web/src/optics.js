@@ -1,4 +1,4 @@
-// Cameras as pyramids of what they see, boards as sheets with their points, and the rays of the chosen picture from one to the other.
+// Cameras as pyramids of their field of view, boards as sheets with their points, and the rays of the selected picture from one to the other.
 import { BufferGeometry, Float32BufferAttribute, Group, LineSegments, Mesh, SphereGeometry } from "three";
 import { act } from "./kinematics.js";
 
@@ -8,12 +8,12 @@ const POINT = 0.0035;
 /** Points of a board that are drawn. */
 const MOST_POINTS = 400;
 
-/** What a target or an instrument is in pictures: `camera`, `board`, or nothing. */
+/** Role of a target or an instrument in pictures: `camera`, `board`, or undefined. */
 export function roleOf({ camera, board }) {
   return camera ? "camera" : board && "board";
 }
 
-/** The drawing of a camera or a board in its own axes; none of what is neither. */
+/** The drawing of a camera or a board in its own axes; undefined for other objects. */
 export function opticsOf(it, size, materials) {
   if (!roleOf(it)) return null;
   const group = new Group();
@@ -42,7 +42,7 @@ function drawBoard(group, points, size, { sheet, edge, body }) {
   for (const [x, y, z] of points.filter((_, k) => k % step === 0)) group.add(new Mesh(ball.clone().translate(x, y, z), body));
 }
 
-/** The rectangle around the points of a flat board; none of a solid. */
+/** The rectangle around the points of a flat board; undefined for a solid. */
 function outlineOf(points) {
   const range = (k) => points.reduce(([a, b], point) => [Math.min(a, point[k]), Math.max(b, point[k])], [Infinity, -Infinity]);
   const [[x0, x1], [y0, y1], [z0, z1]] = [0, 1, 2].map(range);
@@ -50,7 +50,7 @@ function outlineOf(points) {
   return [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(([x, y]) => [x, y, (z0 + z1) / 2]);
 }
 
-/** The rays from a camera to the corners of a board, each at its pose, as ends of lines; nothing if they are no such pair. */
+/** The rays from a camera to the corners of a board, each at its pose, as ends of lines; empty if they are no such pair. */
 export function raysOf([one, pose], [other, otherPose]) {
   const [camera, from, board, to] = one.camera ? [one, pose, other, otherPose] : [other, otherPose, one, pose];
   if (!camera.camera || !board.board) return [];

@@ -1,49 +1,49 @@
-// Anchors, sockets, planes, spheres and directions as what they are: each a group in the axes of its device.
+// Anchors, sockets, planes, spheres and directions by their kinds: each a group in the axes of its device.
 import { ConeGeometry, CylinderGeometry, Group, LineSegments, Matrix4, Mesh, PlaneGeometry, SphereGeometry } from "three";
 import { act, invert } from "./kinematics.js";
 import { linesOf, roleOf } from "./optics.js";
 
 /** Words for several of a kind. */
 const PLURALS = { camera: "cameras", board: "boards", instrument: "instruments", anchor: "anchors", socket: "sockets", plane: "planes", sphere: "spheres", direction: "directions" };
-/** Lines from an anchor to places that it measured, at most. */
+/** Most lines from an anchor to positions that it measured. */
 const WIRES = 8;
 
-/** What an instrument is, in a word. */
+/** Kind of an instrument, in a word. */
 export function wordOf(it) {
   return roleOf(it) ?? it.kind ?? "instrument";
 }
 
-/** Kinds of what is drawn beside the robot, in words: `anchors and planes`. */
+/** Kinds of the objects drawn beside the robot, in words: `anchors and planes`. */
 export function kindWords({ instruments, targets }) {
   const drawn = [...instruments.filter((it) => it.kind !== "pair"), ...targets.filter(roleOf)].map(wordOf);
   const words = [...new Set(drawn)].map((kind) => (drawn.filter((it) => it === kind).length > 1 || kind === "instrument" ? PLURALS[kind] : kind));
   return words.length > 1 ? `${words.slice(0, -1).join(", ")} and ${words[words.length - 1]}` : words.join("");
 }
 
-/** Whether a target is at some distance from it, so that a line between the two says something. */
+/** True if a target is at some distance from it, so that a line between the two has a meaning. */
 export function isSeenFromAfar({ kind }) {
   return kind === undefined || kind === "anchor";
 }
 
-/** Whether it has a place, and not a direction alone. */
+/** True if it has a position, and not a direction alone. */
 export function hasPlace({ kind }) {
   return kind !== "direction" && kind !== "pair";
 }
 
-/** Room for arrows of residuals, metres: where all targets are in one spot they would hide it. */
+/** Room for arrows of residuals, metres: if all targets are in one spot they would hide it. */
 export function roomForArrows(it, size) {
   if (it.kind === "socket") return 0.03 * size;
   return it.kind === "sphere" ? Math.min(0.05 * size, it.radius_m ?? Infinity) : Infinity;
 }
 
-/** What of it the picture has to show, in its own axes. */
+/** Part of it that the picture must show, in its own axes. */
 export function extent(it) {
   if (it.kind === "plane") return cornersOf(it.patch);
   if (it.kind === "sphere" && it.radius_m) return [-1, 1].flatMap((s) => [[s, 0, 0], [0, s, 0], [0, 0, s]]).map((v) => v.map((x) => x * it.radius_m));
   return [[0, 0, 0]];
 }
 
-/** The rectangle of a plane under the places that touched it, in the plane's axes: middle, half sides and turn about the normal. */
+/** The rectangle of a plane under the positions that touched it, in the plane's axes: middle, half sides and turn about the normal. */
 export function patchOf(places) {
   if (!places.length) return { x: 0, y: 0, turn: 0, width: 0, height: 0 };
   const mean = (k) => places.reduce((sum, place) => sum + place[k], 0) / places.length;
@@ -63,7 +63,7 @@ function cornersOf({ x, y, turn, width, height }) {
   return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([a, b]) => [x + a * width * c - b * height * s, y + a * width * s + b * height * c, 0]);
 }
 
-/** The drawing of one place, in its own axes; none of a pair. */
+/** The drawing of one reference, in its own axes; empty for a pair. */
 export function drawingOf(it, data, size, materials) {
   const draw = { anchor, socket, plane, sphere, direction }[it.kind];
   const group = new Group();
@@ -82,7 +82,7 @@ function anchor(group, it, size, { body, wire }, { instruments, rows }) {
 }
 
 function socket(group, _, size, { body, sheet }) {
-  // The lower half of a ball is the cup; the ball in it is no larger than what rests there looks.
+  // The lower half of a ball is the nest; the ball in it is no larger than its apparent size.
   group.add(new Mesh(new SphereGeometry(size * 0.045, 24, 10, 0, 2 * Math.PI, Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2), sheet));
   group.add(new Mesh(new SphereGeometry(size * 0.014, 16, 12), body));
 }

@@ -1,4 +1,4 @@
-// Where the robot could reach but was not measured.
+// Parts of the workspace that the robot could reach but that were not measured.
 import { CALIBRATED, add, configure } from "./kinematics.js";
 
 export const REACH_POINTS = 2500;
@@ -14,7 +14,7 @@ function generator(seed) {
   };
 }
 
-/** Places of what moves in random configurations within the limits, without those near to where it was measured. */
+/** Positions of moving targets in random configurations within the limits, without those near to measured ones. */
 export function unsampled(data, size) {
   const next = generator(1);
   const cell = size / 7;

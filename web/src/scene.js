@@ -1,4 +1,4 @@
-// What is drawn of the robot: both models, arrows, the base with its grid, and where it could reach.
+// The drawing of the robot: both models, arrows, the base with its grid, and its reach.
 import {
   BufferGeometry, Color, ColorManagement, CylinderGeometry, Float32BufferAttribute, Group, LinearSRGBColorSpace, LineSegments, Matrix4, Mesh,
   PerspectiveCamera, Points, Scene as World, SphereGeometry, Vector3, WebGLRenderer,
@@ -23,7 +23,7 @@ const NEARER = 0.8;
 /** Radius of a tool's rod as a part of the picture's size. */
 const TOOL = 0.006;
 
-// Colours are those of the style sheet, as they are.
+// Colours are those of the style sheet, unchanged.
 ColorManagement.enabled = false;
 
 /** The picture: knows data and readings, not controls. */
@@ -37,7 +37,7 @@ export class Scene {
     this.canvas = this.renderer.domElement;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", "The robot in three dimensions, nominal and calibrated, with residual arrows. The text beside says where its tip is. Arrow keys turn it, plus and minus come nearer and go farther.");
-    // What is printed: paper takes the last picture that was on the screen, which may be in other colours.
+    // For printing: paper takes the last picture that was on the screen, which may be in other colours.
     this.paper = document.createElement("canvas");
     this.paper.className = "paper";
     this.paper.setAttribute("aria-hidden", "true");
@@ -53,7 +53,7 @@ export class Scene {
     this.controls.addEventListener("change", () => this.render());
     this.listenToKeys();
     this.look("oblique");
-    // The text and the charts come first: shaders take their time where a processor has to draw.
+    // The text and the charts come first: shaders take time if a processor has to draw.
     setTimeout(() => {
       this.begun = true;
       this.renderNow();
@@ -62,7 +62,7 @@ export class Scene {
     });
   }
 
-  /** Sizes that everything else follows. */
+  /** Sizes that determine all others. */
   measure() {
     const { rows } = this.data;
     const errors = rows.error_mm.filter((error) => error !== null).sort((a, b) => a - b);
@@ -70,7 +70,7 @@ export class Scene {
     const bounds = boundsOf(ends);
     this.size = Math.max(Math.hypot(...bounds.map(([a, b]) => b - a)) * 0.6, 0.1);
     this.centre = middleOf(bounds);
-    // What the views show: the robot as it is drawn with what was measured near it, or all of this.
+    // Objects of the views: the drawn robot with the nearby measurements, or all of this.
     this.drawn = [];
     this.near = middlePlaces(rows.predicted);
     this.all = ends;
@@ -82,7 +82,7 @@ export class Scene {
     this.axisScale = round((0.05 * this.size) / this.deviation());
   }
 
-  /** How far the axes of both models are apart, metres. */
+  /** Largest deviation between the axes of both models, metres; a tilt counts at 0.12 of the picture's size. */
   deviation() {
     const zero = this.data.readings.map(() => 0);
     const [a, b] = [CALIBRATED, NOMINAL].map((model) => configure(this.data, zero, model));
@@ -122,7 +122,7 @@ export class Scene {
     this.world.add(this.parts.instruments);
   }
 
-  /** Random places within the limits that are farther from every measurement than those are from each other. */
+  /** Random positions within the limits that are farther from every measurement than those are from each other. */
   buildReach() {
     const places = unsampled(this.data, this.size);
     this.reachShare = places.length / REACH_POINTS;
@@ -158,7 +158,7 @@ export class Scene {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
     this.world.add(new LineSegments(geometry, this.materials.grid));
-    // How large a square is stands at the side of one near the base.
+    // The size of a square is written at the side of one near the base.
     const side = new CylinderGeometry(this.size * 0.003, this.size * 0.003, square, 8).rotateZ(Math.PI / 2).translate(1.5 * square, -square, 0);
     this.world.add(new Mesh(side, this.materials.mark));
     this.labels.add("grid", `${this.legend.square} mm`).place.set(1.5 * square, -square, 0);
@@ -175,19 +175,19 @@ export class Scene {
     }
   }
 
-  /** Shows both arms at these readings (radians, metres), and the measurement that was chosen. */
+  /** Shows both arms at these readings (radians, metres), and the selected measurement. */
   pose(readings, row) {
     const { rows, targets, instruments, mounted, tip } = this.data;
     const nominal = configure(this.data, readings, NOMINAL);
     const calibrated = configure(this.data, readings, CALIBRATED);
-    // The calibrated robot stands where it is, at what it touched; the nominal one is moved away from it.
+    // The calibrated robot is at its true position, in contact with its targets; the deviation of the nominal one is magnified.
     const apart = (a, b) => add(b, scale(subtract(a, b), this.axisScale));
     const axes = nominal.axes.map((axis, k) => {
       const direction = new Vector3(...apart(axis.direction, calibrated.axes[k].direction)).normalize().toArray();
       return { point: apart(axis.point, calibrated.axes[k].point), direction };
     });
     const placeOf = (frame) => calibrated.at(frame).t;
-    // Tools and instruments are no error of the arm: they stand at the last axis as it is.
+    // Tools and instruments are no error of the arm: they are attached to the last axis unchanged.
     const nominalPlace = (frame) => (frame.on === null ? nominal.at(frame).t : add(nominal.at(frame).t, subtract(axes[frame.on].point, nominal.axes[frame.on].point)));
     const links = this.links(calibrated.axes, placeOf);
     const target = targets[rows.target[row]];
@@ -207,7 +207,7 @@ export class Scene {
     this.render();
   }
 
-  /** Links of each body from its axis to those of the joints that stand on it, and to where its arm ends. */
+  /** Links of each body from its axis to those of the joints that it carries, and to the end of its arm. */
   links(axes, placeOf) {
     const from = (on) => (on === null ? [0, 0, 0] : axes[on].point);
     const { joints, ends } = this.data;
@@ -225,7 +225,7 @@ export class Scene {
     this.render();
   }
 
-  /** Looks from a direction at the robot and what is near, or at `all`. */
+  /** Points the view from a direction at the robot and nearby objects, or at `all`. */
   look(name, all = this.looksAtAll) {
     this.looksAtAll = all;
     this.direction = name;
@@ -238,7 +238,7 @@ export class Scene {
     this.render();
   }
 
-  /** Arrow keys turn, plus and minus come nearer and go farther. */
+  /** Arrow keys turn the view, plus and minus move it nearer and farther. */
   listenToKeys() {
     this.canvas.tabIndex = 0;
     const turns = { ArrowLeft: [-TURN, 0], ArrowRight: [TURN, 0], ArrowUp: [0, -TURN], ArrowDown: [0, TURN] };
@@ -250,7 +250,7 @@ export class Scene {
     });
   }
 
-  /** Moves the eye about what it looks at: around, and away from the vertical. */
+  /** Moves the eye about its target: around, and away from the vertical. */
   turn(around, down) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const [length, tilt, about] = [offset.length(), Math.acos(offset.z / offset.length()), Math.atan2(offset.y, offset.x)];
@@ -267,7 +267,7 @@ export class Scene {
     this.render();
   }
 
-  /** Fills the width of a place, also when that changes. */
+  /** Fills the width of an element, also when that changes. */
   follow(place) {
     const fit = () => {
       const width = Math.max(place.clientWidth, 120);
@@ -281,7 +281,7 @@ export class Scene {
     fit();
   }
 
-  /** Calls `choose` with the row whose place is clicked. */
+  /** Calls `choose` with the row that is clicked. */
   onChoice(choose) {
     let down;
     this.canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
@@ -300,7 +300,7 @@ export class Scene {
     });
   }
 
-  /** Draws once, however many changes there are before the next frame. */
+  /** Draws once, for any number of changes before the next frame. */
   render() {
     if (this.waiting) return;
     this.waiting = true;
@@ -325,7 +325,7 @@ export class Scene {
   }
 }
 
-/** The least and the largest coordinate of places and the origin, by axis. */
+/** The least and the largest coordinate of positions and the origin, by axis. */
 function boundsOf(places) {
   return [0, 1, 2].map((k) => places.reduce(([a, b], it) => [Math.min(a, it[k]), Math.max(b, it[k])], [0, 0]));
 }
@@ -334,7 +334,7 @@ function middleOf(bounds) {
   return bounds.map(([a, b]) => (a + b) / 2);
 }
 
-/** Where joints, and what is mounted on them, are in some of the rows. */
+/** Positions of joints, and of objects mounted on them, in some of the rows. */
 function elbows(data) {
   const step = Math.ceil(data.rows.count / 60);
   const rows = data.rows.number.map((_, row) => row).filter((row) => row % step === 0);
@@ -345,7 +345,7 @@ function elbows(data) {
   });
 }
 
-/** Instruments beside the robot that the picture has room for: of those farther away, it shows the direction. */
+/** Instruments beside the robot for which the picture has room: for those farther away, it shows the direction. */
 function nearInstruments({ draws_instruments, instruments }, centre, size) {
   const beside = instruments.filter((it) => draws_instruments && it.on === null && hasPlace(it));
   const places = beside.flatMap((it) => extent(it).map((place) => act(it.pose, place)));

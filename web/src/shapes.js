@@ -1,4 +1,4 @@
-// The robot's links: the shapes of its URDF, and where a link has none, a rod from axis to axis as thick as an arm.
+// The robot's links: the shapes of its URDF, and for a link without shapes, a rod from axis to axis as thick as an arm.
 import { BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, Group, Matrix4, Mesh, Quaternion, SphereGeometry, Vector3 } from "three";
 import { add, compose, invert, scale, subtract } from "./kinematics.js";
 
@@ -9,7 +9,7 @@ const THICK = 0.024;
 const THIN = 0.5;
 const AXIS = { half: 0.085, radius: 0.0035 };
 
-/** The geometry of a mesh: places in whole steps, and the three of each triangle. */
+/** The geometry of a mesh: vertices in whole steps, and the three of each triangle. */
 function meshOf({ least, step, places, corners, wide }) {
   const whole = new Uint16Array(bytesOf(places));
   const position = new Float32Array(whole.length);
@@ -43,7 +43,7 @@ function cornersOf(geometry) {
   return [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
 }
 
-/** What both models are drawn from: geometries, corners of boxes about them, and how thick the rods are. */
+/** Common elements of both models: geometries, corners of boxes about them, and thickness of the rods. */
 export class Looks {
   constructor(data, size) {
     this.data = data;
@@ -63,14 +63,14 @@ export class Looks {
     this.deepest = Math.max(...depths, 1);
   }
 
-  /** How thick the rod of a body is: the farther from the base, the thinner. */
+  /** Thickness of a body's rod: the farther from the base, the thinner. */
   thickness(on) {
     const depth = on === null ? 0 : this.depths[on];
     return this.size * THICK * (1 - ((1 - THIN) * depth) / this.deepest);
   }
 }
 
-/** One model as it is drawn. */
+/** The drawing of one model. */
 export class Figure {
   /** `materials`: of rods, of shapes (flat), of axes; one `before` shapes, if they are not solid. */
   constructor(looks, { rods, shapes, axes, before }) {
@@ -91,7 +91,7 @@ export class Figure {
     });
   }
 
-  /** Puts axes, links (each with the body that it is part of) and shapes to their places; gives places that the picture must show. */
+  /** Puts axes, links (each with its body) and shapes to their poses; returns positions that the picture must show. */
   pose({ axes, links, poses }) {
     const { looks, materials } = this;
     const { data, size, covered } = looks;
@@ -133,7 +133,7 @@ export class Figure {
     this.put(this.looks.ball, material, new Matrix4().makeScale(radius, radius, radius).setPosition(...at));
   }
 
-  /** Rods that are not solid are one surface: what hides what is behind it comes first. */
+  /** Rods that are not solid are one surface: the invisible surface that hides objects behind it comes first. */
   put(geometry, material, matrix) {
     const { rods, before } = this.materials;
     const layers = before && material === rods ? [before, material] : [material];
@@ -147,7 +147,7 @@ export class Figure {
   }
 }
 
-/** A pose moved away from another so many times as far as it is, about its own origin. */
+/** A pose whose deviation from another is magnified by a factor, about its own origin. */
 export function farther(pose, from, factor) {
   const { r } = compose(invert(from), pose);
   const turn = new Quaternion().setFromRotationMatrix(new Matrix4().set(...r[0], 0, ...r[1], 0, ...r[2], 0, 0, 0, 0, 1));

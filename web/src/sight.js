@@ -1,4 +1,4 @@
-// What is drawn when, and which section is read.
+// The time of drawing, and the section in view.
 
 /** Calls `draw()` once the page has nothing else to do, or is printed. */
 export function whenIdle(draw) {
@@ -12,7 +12,7 @@ export function whenIdle(draw) {
   else setTimeout(show, 200);
 }
 
-/** Marks in a list of contents the section that is read: the last one that begins above the middle of the window. */
+/** Marks in a list of contents the section in view: the last one that begins above the middle of the window. */
 export function followSections(nav) {
   const links = [...nav.querySelectorAll("a")];
   const sections = links.map((link) => document.getElementById(link.hash.slice(1)));

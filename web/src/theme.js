@@ -1,4 +1,4 @@
-// Colours: those of the system, or light or dark by choice. Drawings ask for them by name and are told when they change.
+// Colours: those of the system, or light or dark by choice. Drawings request them by name and are notified when they change.
 
 const listeners = [];
 
@@ -16,7 +16,7 @@ function changed() {
   for (const listener of listeners) listener();
 }
 
-/** What is chosen: system, light or dark. */
+/** The choice: system, light or dark. */
 export function themeOf() {
   return document.documentElement.dataset.theme ?? "system";
 }
@@ -44,7 +44,7 @@ export function themeSwitch(place) {
   printOnPaper(root);
 }
 
-/** Paper is white, whatever the screen is. */
+/** Paper is white, for any colours of the screen. */
 function printOnPaper(root) {
   let before;
   addEventListener("beforeprint", () => {

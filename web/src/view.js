@@ -1,21 +1,21 @@
-// From where the picture is looked at.
+// View points of the picture.
 import { Vector3 } from "three";
 
 /** Views by name: the direction to the eye. */
 export const DIRECTIONS = { oblique: [1, -1.25, 0.75], front: [0, -1.7, 0.02], side: [1.7, 0, 0.02], top: [0.001, -0.02, 1.7] };
-/** The picture's height over that of what it shows. */
+/** Ratio of the picture's height to that of its contents. */
 const ROOM = 1.15;
-/** Share of the measured places, those nearest to their middle, that are shown with the robot. */
+/** Share of the measured positions, those nearest to their middle, that are shown with the robot. */
 const MIDDLE = 0.5;
 
-/** The places nearest to the middle of all: those that a picture of the robot has to show. */
+/** The positions nearest to the middle of all: those that a picture of the robot has to show. */
 export function middlePlaces(places) {
   const middle = [0, 1, 2].map((k) => places.reduce((sum, place) => sum + place[k], 0) / Math.max(places.length, 1));
   const far = (place) => Math.hypot(...place.map((value, k) => value - middle[k]));
   return [...places].sort((a, b) => far(a) - far(b)).slice(0, Math.ceil(MIDDLE * places.length));
 }
 
-/** From how far away, and about which centre, all places are seen from a direction, with as much room on each side as on the other. */
+/** Distance and centre from which all positions are seen from a direction, with equal room on opposite sides. */
 export function framed(places, direction, { half, aspect }) {
   const right = new Vector3(0, 0, 1).cross(direction).normalize();
   const up = direction.clone().cross(right);

@@ -1,5 +1,5 @@
 // The page that calibrates as the first step: columns of a foreign file by pull-downs, a fork of links as a list, files that are named, the arm
-// before anything is measured, one verdict and one switch of colours.
+// before any measurement, one verdict and one switch of colours.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -29,7 +29,7 @@ before(async () => {
 });
 after(() => browser?.close());
 
-/** The example's points as another program writes them: its own names, no units, `;` and decimal commas, and columns that say nothing. */
+/** The example's points as another program writes them: its own names, no units, `;` and decimal commas, and columns without information. */
 function foreign() {
   const [head, ...rows] = POINTS.trim().split("\n").slice(1);
   const names = { "x[mm]": "Leica East", "y[mm]": "Leica North", "z[mm]": "Leica Up" };
@@ -47,7 +47,7 @@ async function pick(page, key, value) {
   await page.waitForFunction(([key, value]) => !document.documentElement.hasAttribute("data-busy") && document.getElementById(`column-${key}`)?.value === value, [key, value]);
 }
 
-/** Saves the mapping of the page, and gives its text. */
+/** Saves the mapping of the page, and returns its text. */
 const mapping = async (page) => (await saved(page, page.locator("#columns .downloads a"))).toString();
 
 async function calibration(page) {
@@ -106,7 +106,7 @@ describe("the page as the first step", { skip: skipped }, () => {
     console.log(`a foreign file: figures differ by up to ${most.toExponential(1)} from those of the table as it is`);
     assert.ok(most < SAME);
 
-    // Another choice takes the mapping away until it is confirmed again.
+    // Another choice removes the mapping until it is confirmed again.
     await pick(page, "id", "");
     assert.equal(await page.locator("#result").isVisible(), false);
     assert.equal(await page.locator("#use-columns").isDisabled(), false);
@@ -130,7 +130,7 @@ describe("the page as the first step", { skip: skipped }, () => {
     const guess = await chosen(page);
     const guessed = Object.entries(wanted).filter(([key, value]) => guess[key] === value).length;
     console.log(`UR10: ${guessed} of ${Object.keys(wanted).length} choices are preset`);
-    // What is wrong is corrected by the same pull-downs.
+    // Mistakes are corrected by the same pull-downs.
     for (const [key, value] of [["orientation", "rotation_vector"], ["joint4", ""], ["unit.position", "m"]]) await pick(page, key, value);
     for (const [key, value] of Object.entries(wanted)) if ((await chosen(page))[key] !== value) await pick(page, key, value);
     await page.click("#use-columns");
@@ -155,7 +155,7 @@ describe("the page as the first step", { skip: skipped }, () => {
     await page.click("#calibrate");
     await status(page, /^Calibrated/);
     assert.match(await page.locator("#line").innerText(), /--tip-link tool/);
-    // The choice stays, and another model asks no longer.
+    // The choice is kept, and another model does not ask again.
     assert.equal(await page.locator("#tips").inputValue(), "tool");
     await clear(page);
     await drop(page, { "other.urdf": MODEL });
@@ -240,7 +240,7 @@ describe("the page as the first step", { skip: skipped }, () => {
       const shown = await frame.evaluate(() => document.documentElement.dataset.theme ?? "system");
       assert.equal(shown, name);
     }
-    // A report that comes later has the colours that are chosen already.
+    // A report that comes later has the colours that are already selected.
     await page.locator("header .theme button", { hasText: "dark" }).click();
     await page.click("#calibrate");
     await status(page, /^Calibrated/);

@@ -1,4 +1,4 @@
-// The page that calibrates: where it is, files dropped on it, and what it then shows.
+// The page that calibrates: its address, files dropped on it, and its contents afterwards.
 import { existsSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { ROOT } from "./cases.mjs";
 
 const PAGE = process.env.POECAL_APP ?? join(ROOT, "web/app/dist/poecal.html");
 
-/** Why tests of the page are left out; false where they are not. */
+/** Reason why tests of the page are left out; false if they are not. */
 export const skipped = skip || (existsSync(PAGE) ? false : `found no page at ${PAGE}; build it: node web/app/build.mjs`);
 
 /** A module with the exports of the program, whose every run is a trap. */
@@ -22,7 +22,7 @@ function trapping() {
     ...section(3, 4, 0, 1, 2, 3),
     ...section(5, 1, 0, 1),
     ...section(7, 5, ...named("memory", 2, 0), ...named("allocate", 0, 0), ...named("release", 0, 1), ...named("run", 0, 2), ...named("last_words", 0, 3)),
-    // allocate gives 1024, run is `unreachable`, and there are no last words.
+    // allocate returns 1024, run is `unreachable`, and there is no message of the trap.
     ...section(10, 4, 5, 0, 0x41, 0x80, 8, 0x0b, 2, 0, 0x0b, 3, 0, 0, 0x0b, 4, 0, 0x41, 0, 0x0b),
   ]);
 }
@@ -32,7 +32,7 @@ function around(module) {
   return readFileSync(PAGE, "utf8").replace(/(<script type="text\/plain" id="engine">)[^<]*/, (_, tag) => tag + gzipSync(module).toString("base64"));
 }
 
-/** Serves the page, and the same with a module that traps and with one that is none; everything else is 404. */
+/** Serves the page, and the same with a module that traps and with one that is invalid; everything else is 404. */
 export function serve() {
   const pages = { "/poecal.html": () => readFileSync(PAGE), "/traps.html": () => around(trapping()), "/none.html": () => around(Buffer.from("none")) };
   const server = createServer((request, response) => {
@@ -42,7 +42,7 @@ export function serve() {
   return new Promise((ready) => server.listen(0, "127.0.0.1", () => ready(server)));
 }
 
-/** Where the page is as a file. */
+/** Address of the page as a file. */
 export const FILE = pathToFileURL(PAGE).href;
 
 /** Opens the page; `page.complaints` are errors on the console, broken rules of its policy, and requests for anything but the page. */
@@ -93,7 +93,7 @@ export async function dropPaths(page, paths, selector) {
   await session.detach();
 }
 
-/** Waits until nothing runs and the status says something that matches. */
+/** Waits until nothing runs and the status matches. */
 export async function status(page, pattern, timeout = 60_000) {
   const is = ({ source }) => !document.documentElement.hasAttribute("data-busy") && new RegExp(source).test(document.getElementById("status").textContent);
   const place = page.locator("#status");
@@ -114,10 +114,10 @@ export function messages(page) {
   );
 }
 
-/** Takes the page back to no files. */
+/** Resets the page to no files. */
 export async function clear(page) {
   for (;;) {
-    // The list is made anew where files are understood otherwise.
+    // The list is rebuilt if files are interpreted differently.
     const buttons = page.locator("#list .remove");
     const count = await buttons.count();
     if (!count) return;
@@ -126,7 +126,7 @@ export async function clear(page) {
   }
 }
 
-/** Saves what a link saves, and gives its bytes. */
+/** Saves the file of a link, and returns its bytes. */
 export async function saved(page, link) {
   const [download] = await Promise.all([page.waitForEvent("download"), link.click()]);
   return readFileSync(await download.path());

@@ -1,4 +1,4 @@
-// Parts of the page that calibrates which need no browser: words of a command line, roles of files, places in messages, archives.
+// Parts of the page that calibrates which need no browser: words of a command line, roles of files, positions in messages, archives.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { test } from "node:test";
@@ -26,7 +26,7 @@ test("each command gets the options that it takes", () => {
   assert.equal(checkWords(files, options).join(" "), "check robot.urdf a.csv b.csv --columns map.toml --device-frame base --device-frames=per-file");
   const withSettings = [...files, file("cell/poecal.toml", "poecal_settings = 1", "settings")];
   assert.equal(checkWords(withSettings, []).join(" "), "check robot.urdf a.csv b.csv --settings cell/poecal.toml --columns map.toml");
-  // Tables that settings name may not be there yet.
+  // Tables that settings name may still be missing.
   assert.equal(checkWords(withSettings.filter((it) => it.role === "model" || it.role === "settings"), []).join(" "), "check robot.urdf");
   assert.equal(validateWords(files, options).join(" "), "validate robot.urdf a.csv b.csv --columns map.toml --device-frames=per-file --accept 0.2mm --accept-model calibrated");
 });
@@ -86,6 +86,6 @@ test("the verdict is in the program's words", () => {
 });
 
 test("the checksum is that of ZIP", () => {
-  // The check value that the catalogue of CRC algorithms has for CRC-32/ISO-HDLC.
+  // The check value of CRC-32/ISO-HDLC in the catalogue of CRC algorithms.
   assert.equal(crc32(new TextEncoder().encode("123456789")), 0xcbf43926);
 });

@@ -15,7 +15,7 @@ import { difference } from "./numbers.mjs";
 import { WRONG } from "./wrong.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-/** What a user waits for the first report; three seconds are aimed at, and test machines differ. */
+/** Longest wait of a user for the first report; the aim is three seconds, and test machines differ. */
 const REPORT_S = 6;
 /** Program and page differ in vector instructions, hence in last digits. */
 const SAME = 1e-9;
@@ -47,7 +47,7 @@ function native(there, env, ...words) {
   return spawnSync(PROGRAM, words, { cwd: there, encoding: "utf8", env: { ...process.env, ...env } });
 }
 
-/** What the program says of a session: the sentences of its errors, by `check` and by `calibrate`. */
+/** The program's messages about a session: the sentences of its errors, by `check` and by `calibrate`. */
 function sentences(there, files, further) {
   const options = [...("map.toml" in files ? ["--columns", "map.toml"] : []), ...(further?.split(" ") ?? [])];
   const settings = "poecal.toml" in files ? ["--settings", "poecal.toml"] : [];
@@ -109,7 +109,7 @@ describe("the page that calibrates", { skip: skipped }, () => {
 
   for (const [place, address] of [["a file", () => FILE], ["a server", () => served]]) {
     test(`as ${place}: a folder is dropped`, async () => {
-      // A cell with settings, and a description of the robot with a mesh that it calls by the folder's name.
+      // A cell with settings, and a description of the robot with a mesh whose name begins with the folder's.
       const cell = join(session(place.replace(" ", "-"), {}), "cell");
       const mesh = "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0.1 0\nendloop\nendfacet\nendsolid x\n";
       const shaped = MODEL.replace('<link name="link2"/>', '<link name="link2"><visual><geometry><mesh filename="package://cell/meshes/arm.stl"/></geometry></visual></link>');
@@ -346,7 +346,7 @@ describe("the page that calibrates", { skip: skipped }, () => {
 
   test("by the keyboard alone, from start to download", async () => {
     const page = await open(browser);
-    // From now on the browser asks here for files, and not a person.
+    // From now on the browser asks this script for files, and not a person.
     page.on("filechooser", () => {});
     const at = () => page.evaluate(() => document.activeElement.id || document.activeElement.textContent);
     const tabTo = async (name) => {

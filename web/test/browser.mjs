@@ -1,15 +1,15 @@
-// Headless Chromium, and pages in it that tell of every request and every complaint.
+// Headless Chromium, and pages in it that report every request and every complaint.
 import { existsSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const NAMES = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome", "/usr/bin/google-chrome-stable"];
-/** The browser's program; none if there is none. */
+/** The browser's program; undefined if there is none. */
 const CHROMIUM = process.env.CHROMIUM ?? NAMES.find((name) => existsSync(name));
-/** Why tests in a browser are left out; false where they are not. */
+/** Reason why tests in a browser are left out; false if they are not. */
 export const skip = CHROMIUM ? false : "found no Chromium; install it (Debian: apt install chromium), or name it: CHROMIUM=/path";
 
-// WebGL by the processor, so that it is there on any machine, and canvases without it, which is faster then.
+// WebGL by the processor, so that it is available on any machine, and canvases without it, which is faster then.
 const ARGUMENTS = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
   "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-accelerated-2d-canvas",
@@ -20,8 +20,8 @@ export async function launch(...more) {
 }
 
 /**
- * Opens a report; `page.complaints` are errors on the console, and requests for anything but the report itself;
- * `whole` says whether all of it is looked at, from top to bottom; `page.processorTime()` the seconds that its main thread worked, whatever else the machine does.
+ * Opens a report; `page.complaints` are errors on the console, and requests for anything but the report itself. `whole` states whether all of it is
+ * viewed, from top to bottom; `page.processorTime()` returns the seconds that its main thread worked, independent of the machine's other work.
  */
 export async function open(browser, path, { width = 1300, colours = "light", whole = true } = {}) {
   const page = await browser.newPage({ viewport: { width, height: 900 }, colorScheme: colours });

@@ -1,4 +1,5 @@
-// Calibrations whose reports are opened: the paper's elbow, a broken one, poses of seven axes, repeated rows, and real robots where their data are.
+// Calibrations whose reports are opened: the paper's elbow, a broken one, poses of seven axes, repeated rows, and real robots if their data are
+// available.
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -12,12 +13,12 @@ const ELBOW = join(ROOT, "examples/elbow");
 export const folder = mkdtempSync(join(tmpdir(), "poecal-report-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
-/** Standard output of the program, which must end well. */
+/** Standard output of the program, which must succeed. */
 export function poecal(...words) {
   return execFileSync(PROGRAM, words, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], cwd: ROOT });
 }
 
-/** What the script of a folder's report works on. */
+/** Input of the script of a folder's report. */
 export function dataOf(out) {
   const page = readFileSync(join(out, "report.html"), "utf8");
   return complete(JSON.parse(page.split('id="report-data">')[1].split("</script>")[0]));
@@ -35,7 +36,7 @@ export function calibrate(name, ...words) {
   return out;
 }
 
-/** What the terminal says of the example. */
+/** The terminal's output for the example. */
 export function printed() {
   return poecal("calibrate", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"), "--out", join(folder, "printed"), "--force", "--verbose");
 }
@@ -67,7 +68,7 @@ function simulated(name, ...words) {
   return join(out, "measurements.csv");
 }
 
-/** Where the program says that the tip is, or what the words name, by the calibrated axes that the arm is drawn with. */
+/** Position of the tip in the program's prediction, or of the named object, by the calibrated axes with which the arm is drawn. */
 export function predicted(out, readings, values, ...words) {
   const table = join(folder, "joints.csv");
   const columns = readings.map(({ name, unit }) => `"${name}[${unit === "mm" ? "mm" : "deg"}]"`);
@@ -76,7 +77,7 @@ export function predicted(out, readings, values, ...words) {
   return row.split(",").slice(0, 3).map(Number);
 }
 
-/** A session of a robot with named links, calibrated: noise shows in which axes a residual is. */
+/** A session of a robot with named links, calibrated: noise shows the axes of a residual. */
 function mounted(name, named, ...words) {
   const model = join(ROOT, "crates/poecal-testing/data/torso.urdf");
   return calibrate(name, model, simulated(name, model, ...named, ...words, "--noise", "2mm,0.1deg"), ...named);
@@ -98,7 +99,7 @@ function fromTwoPlaces() {
   return calibrate("two", join(ELBOW, "robot.urdf"), path);
 }
 
-/** Robots with branches, or with several instruments: a function that gives the folder with the results of each. */
+/** Robots with branches, or with several instruments: a function that returns the folder with the results of each. */
 export const TREES = {
   "a torso with two arms": () => {
     const named = ["--instrument", "eyes=head_camera", "--instrument", "chest=torso", "--target", "left=left_hand", "--target", "right=right_hand"];
@@ -108,13 +109,13 @@ export const TREES = {
   "two trackers": fromTwoPlaces,
 };
 
-/** A simulated session of a kind that has no device frame, calibrated, with noise that shows where a residual goes. */
+/** A simulated session of a kind that has no device frame, calibrated, with noise that shows the direction of a residual. */
 export function ofKind(kind, ...words) {
   const model = join(ELBOW, "robot.urdf");
   return calibrate(kind, model, simulated(kind, model, "--kind", kind, "--count", "120", "--noise", "1mm,0.1deg"), ...words);
 }
 
-/** Every case: its name, and a function that gives the folder with its results. */
+/** Every case: its name, and a function that returns the folder with its results. */
 export const CASES = [
   ["the paper's elbow", () => calibrate("elbow", join(ELBOW, "robot.urdf"), join(ELBOW, "points.csv"))],
   ["a broken calibration", () => calibrate("broken", join(ELBOW, "robot.urdf"), broken())],
@@ -148,7 +149,7 @@ if (existsSync(datasets)) {
   const { cases } = JSON.parse(readFileSync(join(ROOT, "validation/expected.json"), "utf8"));
   // The same rows from another file make the same report.
   const real = cases.filter((it) => !it.name.startsWith("the same"));
-  // Every third for each change, all with POECAL_REPORTS=all, as ./test packages says.
+  // Every third for each change, all with POECAL_REPORTS=all, as ./test packages requests.
   const looked = process.env.POECAL_REPORTS === "all" ? real : real.filter((_, k) => k % 3 === 0);
   console.log(`real robots: ${looked.length} of ${real.length}`);
   for (const { name, model, measurements, options } of looked) {

@@ -1,4 +1,4 @@
-// The report as a certificate: decisions, what is stated of the session, folded advice, and paper.
+// The report as a certificate: decisions, statements about the session, folded advice, and paper.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,5 @@
-// What the page's script does with the charts, which are on the page without it: it tells of dots, takes the arm to their rows, and draws another residual.
+// Effect of the page's script on the charts, which are on the page without it: it reports dots, moves the arm to their rows, and draws another
+// residual.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
@@ -51,7 +52,7 @@ describe("charts", { skip }, () => {
       );
     const x = box.x + box.width * (await place(".x", "x", rows.number[worst]));
     const y = box.y + box.height * (await place(".y", "y", rows.error_mm[worst]));
-    // A dozen pixels aside, other rows are nearer by their number.
+    // A dozen pixels beside it, other rows are nearer by their number.
     await page.mouse.move(x + 12, y + 5);
     const told = await chart.locator(".readout").textContent();
     assert.ok(told.startsWith(`${rows.place[worst]}, `), `told of ${told}, expected ${rows.place[worst]}`);
@@ -81,7 +82,7 @@ describe("charts", { skip }, () => {
     const drawn = (await dots()).match(/M\d+ \d+h[01]/g).length;
     const believed = rows.sets.filter((it) => !(it & 2)).length;
     assert.ok(drawn > 0.95 * believed && drawn <= believed, `${drawn} dots of ${believed} rows`);
-    // Along the vertical axis a dot lies where its residual is.
+    // Along the vertical axis a dot is at its residual.
     const { low, high } = await cell.locator(".y:not([hidden])").evaluate((it) => ({ ...it.dataset }));
     const first = rows.sets.findIndex((it) => it === 4);
     const [, across, down] = (await cell.locator(".dots.s0").getAttribute("d")).match(/M(\d+) (\d+)h0/).map(Number);
@@ -89,7 +90,7 @@ describe("charts", { skip }, () => {
     assert.ok(Math.abs(down / view[1] - (high - rows.columns["0.0"][first]) / (high - low)) < 0.01);
     const reading = await cell.locator(".x").evaluate((it) => ({ ...it.dataset }));
     assert.ok(Math.abs(across / view[0] - (rows.values[joints[2].reading][first] - reading.low) / (reading.high - reading.low)) < 0.01);
-    // A joint that moves no target has dots of what is no motion.
+    // A joint that moves no target has no dots for the part along its motion.
     const last = chart.locator(".cell").nth(5);
     assert.equal(await last.locator(".note").isVisible(), false);
     assert.ok((await last.locator(".dots.s0").getAttribute("d")).match(/M\d+ \d+h0/g).length > 20);

@@ -1,4 +1,4 @@
-// The npm package against the program: the same numbers, sentences and exit codes, a disk that behaves, its types, and what is packed.
+// The npm package against the program: the same numbers, sentences and exit codes, a disk that behaves, its types, and the contents of the package.
 //
 // web/npm/build.mjs makes web/npm/dist first.
 import assert from "node:assert/strict";
@@ -19,12 +19,15 @@ const { load, PoecalError } = await import(join(DIST, "index.js"));
 const poecal = await load();
 
 /**
- * Largest difference of a number of the two, relative to its size or, where that is smaller, absolute in the file's units. The module has no
- * fused products, so that sums differ in their last digits, and what is divided by small eigenvalues in more.
+ * Largest difference of a number of the two, relative to its size or, if that is smaller, absolute in the file's units. The module has no fused
+ * products, so that sums differ in their last digits, and quotients by small eigenvalues in more.
  */
 const NEAR = 1e-9;
 
-/** Largest size of the module, MB: as it is, and compressed as servers send it. It has the whole program, with a megabyte of the report's script and texts. */
+/**
+ * Largest size of the module, MB: raw, and compressed as servers send it. It has the whole program, with a megabyte of the report's script and
+ * texts.
+ */
 const MOST_RAW = 12.5;
 const MOST_SMALL = 4.7;
 
@@ -98,8 +101,8 @@ test("every file is understood as the program understands it", (t) => {
 });
 
 test("distances: the errors of the program", (t) => {
-  // What distances leave weakly determined ends a fit anywhere within the noise, from one of many starts: the last digits of sums choose
-  // which. Uncertainties of such directions differ in their fourth digit; errors, which all these fits share, agree.
+  // Directions that distances determine weakly let a fit end anywhere within the noise, from one of many starts: the last digits of sums choose.
+  // Uncertainties of such directions differ in their fourth digit; errors, which all these fits share, agree.
   const files = { "robot.urdf": robot, "distances.csv": simulated("--kind", "distance", "--count", "120") };
   const words = ["calibrate", "robot.urdf", "distances.csv", "--out", "out", "--report", "none"];
   const here = poecal.run(words, files);
@@ -189,7 +192,7 @@ test("files: earlier results are exchanged, others' files stay, standard input i
   const words = ["calibrate", "robot.urdf", "a.csv", "--out", "out", "--force"];
   const first = poecal.run(words, files);
   assert.equal(first.code, 0);
-  // Results of earlier runs that this one does not write go.
+  // Results of earlier runs that this one does not write are removed.
   const again = poecal.run([...words, "--report", "none"], { ...files, ...first.files });
   assert.deepEqual([again.code, again.removed], [0, ["out/report.html"]], again.err);
   assert.deepEqual(Object.keys(again.files), ["out/calibrated.urdf", "out/calibration.json", "out/residuals.csv"]);

@@ -11,7 +11,10 @@ function split(words) {
   return { numbers, rest };
 }
 
-/** What is written of a calibration with six decimals (poecal-results/src/calibration_file/corrected.rs), the last of which may be rounded the other way. */
+/**
+ * Numbers of a calibration that are written with six decimals (poecal-results/src/calibration_file/corrected.rs), the last of which may be
+ * rounded differently.
+ */
 const COARSE = /("(?:left_out|score)": )(-?[\d.e-]+)/g;
 const LAST_DECIMAL = 1.0001e-6;
 
@@ -25,7 +28,7 @@ function coarse(words) {
   return { figures, rest };
 }
 
-/** The largest difference of the numbers of two texts, relative or, of numbers below 1, absolute; the texts must be alike but for these. */
+/** The largest difference of the numbers of two texts, relative or, for numbers below 1, absolute; the texts must otherwise be equal. */
 export function difference(one, other, about) {
   const [coarseOne, coarseOther] = [coarse(one), coarse(other)];
   coarseOne.figures.forEach((figure, k) => {

@@ -8,7 +8,7 @@ import { pathToFileURL } from "node:url";
 import { launch, open, skip } from "./browser.mjs";
 import { ROOT, calibrate, folder, poecal } from "./cases.mjs";
 
-/** Pages of the annex at most. */
+/** Most pages of the annex. */
 const MOST_ANNEX = 10;
 /** Least margin of A4 on each side that stays white, mm, and dots to the inch of the pictures of pages. */
 const MARGIN_MM = 12;
@@ -70,7 +70,7 @@ function ink({ width, height, dots }, [left, right], [top, bottom] = [0, 1]) {
   return dark / all;
 }
 
-/** How far down the page something is printed, from 0 to 1, without its foot. */
+/** Lowest printed position of a page, from 0 to 1, without its foot. */
 function reach({ width, height, dots }) {
   for (let y = Math.floor(0.94 * height); y > 0; y--) for (let x = 0; x < width; x++) if (dots[y * width + x] < 230) return y / height;
   return 0;
@@ -117,7 +117,7 @@ describe("paper", { skip: noPaper }, () => {
         reaches.slice(0, -1).forEach((it, k) => assert.ok(it > FILLED, `page ${k + 1} ends at ${it} of its height`));
         // The robot is on the second page, drawn by WebGL or as lines.
         assert.equal(text[1].includes("From the side"), how === "without WebGL", how);
-        // What is said of the drawing is printed with it alone.
+        // The caption of the drawing is printed only with it.
         assert.equal(text[1].includes("nominal in grey, calibrated in colour"), how === "with WebGL", how);
         console.log(`${name}, ${how}: 1 + ${pages.length - 1} pages, printed to ${reaches.map((it) => `${Math.round(100 * it)} %`).join(", ")}`);
       }

@@ -1,4 +1,4 @@
-// The picture of anchors, sockets, planes, spheres and directions: each is drawn as what it is, and residuals lie along it.
+// The picture of anchors, sockets, planes, spheres and directions: each is drawn by its kind, and residuals are along it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
@@ -18,7 +18,7 @@ after(() => browser?.close());
 
 const length = (v) => Math.hypot(...v);
 
-/** What a row's residual, metres, has to make of a place that is predicted: of each kind, with its names and what the panel calls it. */
+/** Effect of a row's residual, metres, on a predicted position: for each kind, with its names and its word in the panel. */
 const KINDS = {
   distance: { names: ["wall", "floor", "door"], label: "anchors and names", row: /anchor wall: off by .* mm of distance/ },
   socket: { names: ["left", "right"], label: "sockets and names", row: /socket left: off by .* mm of contact/, at: (it, place) => length(subtract(place, it.pose.t)) },

@@ -59,7 +59,7 @@ function valueOf(file, key) {
   return key.split(".").reduce((value, part) => value?.[part], file);
 }
 
-/** Whether a text is this value to the digits that it shows. */
+/** True if a text shows this value to its digits. */
 function shows(text, value) {
   const plain = text.replaceAll("−", "-");
   const [mantissa, power = "0"] = plain.split("e");
@@ -83,7 +83,7 @@ async function faults(page) {
   return serious.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.target.join(" ")).join("; ")}`);
 }
 
-/** Moves every joint's slider, and gives where the page says that the tip is at random values. */
+/** Moves every joint's slider, and returns the tip's position on the page at random values. */
 async function moveArm(page) {
   return page.evaluate(async () => {
     const tip = () => document.getElementById("tip").dataset.tip;
@@ -103,7 +103,7 @@ async function moveArm(page) {
   });
 }
 
-/** What is wider than its box, but for boxes that scroll, names in the picture, and drawings. */
+/** Elements wider than their box, except for boxes that scroll, names in the picture, and drawings. */
 function cutOff() {
   const scrolls = ".scroll, pre, select, .names, svg";
   const all = [...document.querySelectorAll("main *")].filter((it) => it.checkVisibility() && !it.matches(scrolls) && !it.parentElement.closest(scrolls));
@@ -111,7 +111,7 @@ function cutOff() {
   return cut.map((it) => `${it.tagName}.${it.className} ${it.scrollWidth} in ${it.clientWidth}: ${it.textContent.slice(0, 60)}`);
 }
 
-/** Tables that show some of their cells only when they are scrolled, but for those that are folded on opening. */
+/** Tables that show some of their cells only when they are scrolled, except for those that are folded on opening. */
 function cutCells() {
   const tables = [...document.querySelectorAll(".scroll")].filter((it) => it.checkVisibility() && !it.closest("details"));
   return tables.filter((it) => it.scrollWidth > it.clientWidth).map((it) => `${it.getAttribute("aria-label")}: ${it.scrollWidth} in ${it.clientWidth}`);
@@ -121,7 +121,7 @@ const LOOKS = [[400, "dark"], [900, "dark"], [1300, "light"], [400, "light"]];
 
 for (const [k, [name, make]] of [...CASES, ...Object.entries(TREES)].entries()) {
   describe(name, { skip }, () => {
-    // One page for all that is read of it: to open and draw it takes longer than to look. Its sliders are moved last.
+    // One page for everything that is read of it: to open and draw it takes longer than to look. Its sliders are moved last.
     let out, file, report, page;
     before(async () => {
       out = make();
@@ -189,7 +189,7 @@ for (const [k, [name, make]] of [...CASES, ...Object.entries(TREES)].entries()) 
       assert.deepEqual(page.complaints, []);
     });
 
-    // Each opened as a reader does; of reports that are made alike, the open one takes another width and other colours.
+    // Each opened as a reader does; for reports of the same form, the open one gets another width and other colours.
     for (const [width, colours] of k === 0 ? LOOKS : [LOOKS[k % LOOKS.length]]) {
       test(`axe finds nothing serious, and nothing is cut off, at ${width} px in ${colours}`, async () => {
         const looked = k === 0 ? await open(browser, report, { width, colours }) : page;
@@ -324,7 +324,7 @@ describe("the page", { skip }, () => {
     const page = await open(browser, report, { whole: false });
     const terms = /sizes were tried|O1|O5|iterations|correlated|[Ll]everage|condition number|Not observable/g;
     const seen = await page.locator("main").innerText();
-    // The heading of what is folded says what is in it.
+    // The heading of a folded part names its contents.
     assert.deepEqual(seen.match(terms), null);
     await page.$eval("#metrologist", (it) => (it.open = true));
     const found = new Set((await page.locator("#metrologist").innerText()).match(terms));
@@ -367,7 +367,7 @@ describe("the page", { skip }, () => {
     }
     const seconds = Math.min(...worked);
     console.log(`50,000 rows: ${readFileSync(path).length} bytes, opened in ${times.join(", ")} s, ${seconds.toFixed(1)} s of them at work`);
-    // Of work, since a busy machine takes longer by the clock.
+    // Processor time, since a busy machine takes longer by the clock.
     assert.ok(seconds < 2, `${worked} s`);
   });
 });

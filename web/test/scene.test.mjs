@@ -1,4 +1,4 @@
-// The picture of robots with shapes of their own: boxes, cylinders, balls and meshes of a URDF, where the program says; and without any.
+// The picture of robots with shapes of their own: boxes, cylinders, balls and meshes of a URDF, at the poses of the program; and without any.
 import assert from "node:assert/strict";
 import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -12,7 +12,7 @@ import { ROOT, calibrate, dataOf, folder, poecal } from "./cases.mjs";
 const ELBOW = join(ROOT, "examples/elbow");
 /** The browser and the program round differently. */
 const SAME_M = 1e-9;
-/** What meshes may take of a page, and what their numbers take around them. */
+/** Largest part of a page for meshes, and for the text around their numbers. */
 const MOST_CHARACTERS = 1_000_000;
 const AROUND = 5_000;
 
@@ -79,7 +79,7 @@ const PRIMITIVES = {
   link6: visual('<box size="0.04 0.08 0.02"/>', '<origin xyz="0.03 0.01 0.02"/>'),
 };
 
-/** Where the program has a frame of the last link, at values of the sliders. */
+/** Pose of a frame of the last link by the program, at values of the sliders. */
 function lastLink(out, readings, values, offset) {
   const table = join(folder, "joints.csv");
   writeFileSync(table, `${readings.map(({ name }) => `"${name}[deg]"`).join(",")}\n${values.join(",")}\n`);
@@ -91,7 +91,7 @@ function lastLink(out, readings, values, offset) {
   return compose(compose(tip, invert(poseOf(tool))), { r: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], t: offset }).t;
 }
 
-/** Puts all sliders of joints somewhere; gives their values and where the page has the shapes. */
+/** Moves all sliders of joints; returns their values and the poses of the shapes on the page. */
 function slide(page, share) {
   return page.evaluate((share) => {
     const legend = [...document.querySelectorAll(".panel legend")].find((it) => it.textContent === "Joints");
@@ -118,7 +118,7 @@ function extent(page) {
     const { data } = context.getImageData(0, 0, copy.width, copy.height);
     let [left, right, top, bottom] = [copy.width, 0, copy.height, 0];
     for (let k = 0; k < data.length; k += 4) {
-      // Blue, as nothing else is.
+      // Blue, unlike everything else.
       if (data[k + 2] < data[k] + 70 || data[k + 1] < data[k] + 30) continue;
       const [x, y] = [(k / 4) % copy.width, Math.floor(k / 4 / copy.width)];
       [left, right, top, bottom] = [Math.min(left, x), Math.max(right, x), Math.min(top, y), Math.max(bottom, y)];

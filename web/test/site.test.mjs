@@ -67,14 +67,14 @@ describe("documentation site", { skip: skipped() }, () => {
       const page = await open(name, WIDTHS[0], k % 2 ? "dark" : "light");
       for (const width of WIDTHS) {
         await page.setViewportSize({ width, height: 900 });
-        // Sidebars take a moment to go.
+        // Sidebars take a moment to disappear.
         const fits = () => document.documentElement.scrollWidth <= document.documentElement.clientWidth;
         await page.waitForFunction(fits, null, { timeout: 10_000 }).catch(() => assert.fail(`wider than ${width} px`));
       }
       await page.evaluate(AXE);
-      // Browsers let the keyboard reach what scrolls; axe asks for an attribute, with which every wide formula would be a stop.
+      // Browsers let the keyboard reach elements that scroll; axe requires an attribute, with which every wide formula would be a stop.
       const rules = { "scrollable-region-focusable": { enabled: false } };
-      // Colours change at once, and not while they are looked at.
+      // Colours change at once, and not during the test.
       await page.addStyleTag({ content: "* { transition: none !important; animation: none !important; }" });
       for (const colours of ["default", "slate"]) {
         await page.evaluate((colours) => (document.body.dataset.mdColorScheme = colours), colours);
@@ -100,7 +100,7 @@ describe("documentation site", { skip: skipped() }, () => {
     }
   }
 
-  // What people ask first, in their words: the first result is the page that answers it, and shows the heading.
+  // Typical first questions in people's words: the first result is the page that answers it, and shows the heading.
   for (const question of ["How many poses do I need", "what accuracy can I expect", "my tracker is not level", "how do I get the numbers into a KUKA"]) {
     test(`search answers: ${question}`, async () => {
       const page = await open("index.html", 1300, "light", served);

@@ -1,4 +1,4 @@
-// The picture of robots with branches and of several instruments: everything is where the program says, and residuals lie as they were measured.
+// The picture of robots with branches and of several instruments: everything is at the program's poses, and residuals are as measured.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -27,7 +27,7 @@ function measured(path) {
   return (place) => lines[Number(place.split(":")[1]) - 1].split(",").slice(x, x + 3).map(Number);
 }
 
-/** Puts a slider to a share of its range; gives what then is where. */
+/** Moves a slider to a share of its range; returns all poses afterwards. */
 function slide(page, share, only) {
   return page.evaluate(
     ([share, only]) => {

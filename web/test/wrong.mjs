@@ -1,5 +1,5 @@
-// Wrong inputs of the page that calibrates: what is dropped, options typed, and what its one sentence must say. Where `place` is given,
-// that line is quoted.
+// Wrong inputs of the page that calibrates: dropped files, typed options, and the required content of its one sentence. If `place` is stated, that
+// line is quoted.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { ROOT } from "./cases.mjs";

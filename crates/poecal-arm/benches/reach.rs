@@ -1,12 +1,12 @@
-//! Time and completeness of inverse kinematics, on the arms of the tests as drawn and as calibration finds them:
+//! Time and completeness of inverse kinematics, on the nominal arms of the tests and on calibrated ones:
 //!
 //! `cargo bench -p poecal-arm --bench reach [-- TARGETS] [--kind NAME] [--json]`
 //!
-//! For each arm TARGETS poses (20,000 unless given) of random configurations, all joints within a turn; for each pose all branches, and the
-//! nearest configuration from one whose joints are up to 0.3 rad away. *Found* is the share of targets of which the configuration that they
-//! were made with is among the branches, of seven axes with one held as it was; *far* the same where the smallest singular value of the Jacobian of
-//! the free joints is above 0.01. `--json` prints one
-//! object a line for `benches/peers/reach`, and `--arms` the arms alone: directions and points of axes, and the tip at zero.
+//! For each arm TARGETS poses (20,000 by default) of random configurations, all joints within a turn; for each pose all branches, and the nearest
+//! configuration from one whose joints are up to 0.3 rad away. *Found* is the share of targets whose original configuration is among the branches;
+//! of seven axes one is held at its value. *Far* is the same share where the smallest singular value of the Jacobian of the free joints is above
+//! 0.01. `--json` prints one object a line for `benches/peers/reach`, and `--arms` the arms alone: directions and points of axes, and the tip at
+//! zero.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that prints what it measures")]
 
@@ -27,16 +27,16 @@ use poecal_arm::{AllBranches, Arm, Branches, HeldBranches};
 use numbers::Numbers;
 
 const TARGETS: usize = 20_000;
-/// How far an arm's axes are off (rad, m): as drawn, as calibration mostly finds them (others compute with these), and 1° and 5 mm.
+/// Errors of an arm's axes (rad, m): nominal, usual results of calibration (other programs compute with these), and 1° and 5 mm.
 const OFF: [(f64, f64); 3] = [(0.0, 0.0), (0.005, 1e-3), (0.0175, 5e-3)];
 /// Smallest singular value above which a configuration counts as far from singular.
 const FAR: f64 = 0.01;
-/// How far from its target a search begins, rad.
+/// Distance of the start of a search from its target, rad.
 const AWAY: f64 = 0.3;
-/// What is left (lengths over reach, rad) where a target counts as reached.
+/// Remainder (lengths over reach, rad) below which a target counts as reached.
 const REACHED: f64 = 1e-10;
-/// Largest difference of a joint in configurations that are the same, rad. Where branches meet, rounding of the target alone moves them by
-/// its root.
+/// Largest difference of a joint in configurations that are equal, rad. If branches meet, rounding of the target alone moves them by its
+/// root.
 const SAME: f64 = 1e-6;
 
 fn main() {
@@ -100,7 +100,7 @@ fn drawn(arm: &Arm, kind: &str, is_calibrated: bool) -> String {
     )
 }
 
-/// What was measured of an arm.
+/// Results of an arm.
 #[derive(Default)]
 struct Measured {
     targets: usize,
@@ -175,7 +175,7 @@ impl Measured {
     }
 }
 
-/// A quantile of sorted times; NaN of none.
+/// A quantile of sorted times; NaN without times.
 fn quantile(sorted: &[f32], share: f64) -> f32 {
     let at = (share * sorted.len() as f64) as usize;
     sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or(f32::NAN)

@@ -11,7 +11,7 @@ use crate::placed::{MOST_JOINTS, Placed};
 use crate::real::Real;
 use crate::rows::{Rows, Wanted};
 
-/// Least joint value per reading of a joint that the reading is said to move.
+/// Least joint value per reading of a joint that counts as moved by the reading.
 const LEAST_SENSE: f64 = 0.5;
 
 /// A serial arm, `base_from_tip(q) = exp(ξ₁q₁) … exp(ξₙqₙ) M` (lou2009 (2)).
@@ -27,21 +27,21 @@ const LEAST_SENSE: f64 = 0.5;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Of each reading, the screw of the joint that it moves, where all readings are 0.
+    /// For each reading, the screw of the joint that it moves, with all readings at 0.
     screws: Vec<Screw>,
     home: Pose,
     chain: Chain,
     reach_m: f64,
     limits: Vec<(f64, f64)>,
-    /// Joint values per reading; none of an arm in which a reading moves several joints.
+    /// Joint values per reading; `None` if a reading moves several joints.
     senses: Option<Vec<f64>>,
-    /// What its joint values are beyond their readings.
+    /// Parts of its joint values beyond their readings.
     real: Option<Box<Real>>,
 }
 
 impl Arm {
-    /// The arm of these screws (base frame, at zero) and the pose of its tip there; `None` of no joint, of more than [`MOST_JOINTS`], or of
-    /// numbers that are not finite.
+    /// The arm of these screws (base frame, at zero) and the pose of its tip there; `None` without joints, with more than [`MOST_JOINTS`],
+    /// or with numbers that are not finite.
     #[must_use]
     pub fn new(screws: &[Screw], home: &Pose) -> Option<Self> {
         let is_finite = |screw: &Screw| screw.v().iter().chain(screw.w().iter()).all(|it| it.is_finite());
@@ -57,7 +57,7 @@ impl Arm {
     }
 
     /// The arm of a model; `None` if it has no joint, more than [`MOST_JOINTS`] readings, a reading that moves nothing, numbers that are not
-    /// finite, or indices of what is not there.
+    /// finite, or invalid indices.
     #[must_use]
     pub fn from_model(model: &Model) -> Option<Self> {
         if !model.is_whole() {
@@ -73,7 +73,7 @@ impl Arm {
             if size < 1e-9 {
                 return None;
             }
-            // Across other joints that it moves a little, a reading has a pitch: the axis is what counts.
+            // If a reading moves other joints a little, its screw has a pitch: the axis counts.
             screws.push(if slides {
                 Screw::prismatic(&v)
             } else {
@@ -102,7 +102,7 @@ impl Arm {
         Some(arm)
     }
 
-    /// The arm of the numbers of a model ([`Model::numbers`]); `None` if they are none.
+    /// The arm of the numbers of a model ([`Model::numbers`]); `None` if they are no model.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
         Arm::from_model(&Model::from_numbers(numbers)?)
@@ -114,31 +114,31 @@ impl Arm {
         self.chain.len()
     }
 
-    /// Screws of the joints that readings move, in the base, where all readings are 0.
+    /// Screws of the joints that readings move, in the base, with all readings at 0.
     #[must_use]
     pub fn screws(&self) -> &[Screw] {
         &self.screws
     }
 
-    /// The tip in the base, where all readings are 0.
+    /// Tip in the base, with all readings at 0.
     #[must_use]
     pub fn home(&self) -> &Pose {
         &self.home
     }
 
-    /// Smallest and largest value of each reading (rad, m), infinite where there is none.
+    /// Smallest and largest value of each reading (rad, m), infinite without a limit.
     #[must_use]
     pub fn limits(&self) -> &[(f64, f64)] {
         &self.limits
     }
 
-    /// Whether joint values are their readings.
+    /// True if joint values are their readings.
     #[must_use]
     pub fn is_rigid(&self) -> bool {
         self.real.is_none()
     }
 
-    /// Its joints as if their values were their readings, and what these are beyond them.
+    /// Joints as if their values were their readings, and the parts of the values beyond them.
     #[inline(always)]
     pub(crate) fn parts(&self) -> (&Chain, Option<&Real>) {
         (&self.chain, self.real.as_deref())
@@ -155,10 +155,10 @@ impl Arm {
         self.reach_m
     }
 
-    /// `base_from_tip` at readings (rad, m); those that are not given are 0.
+    /// `base_from_tip` at readings (rad, m); missing ones are 0.
     #[must_use]
     pub fn forward_kinematics(&self, q: &[f64]) -> Pose {
-        // Small arrays are sooner filled.
+        // Small arrays are filled faster.
         match self.joints() {
             ..=6 => self.placed_at(&first::<6>(q)).tip,
             7 | 8 => self.placed_at(&first::<8>(q)).tip,
@@ -166,15 +166,15 @@ impl Arm {
         }
     }
 
-    /// The tip and its motions at readings; those that are not given are 0.
+    /// The tip and its motions at readings; missing ones are 0.
     pub(crate) fn placed(&self, q: &[f64]) -> Placed<MOST_JOINTS> {
         self.placed_at(&first::<MOST_JOINTS>(q))
     }
 
-    /// The same at as many readings as there are, or more.
+    /// The same at `N` readings, the number of joints or more.
     #[inline]
     pub(crate) fn placed_at<const N: usize>(&self, q: &[f64; N]) -> Placed<N> {
-        // What one of the two does not need is not made for it.
+        // Parts that only one of the two needs are not computed for the other.
         match &self.real {
             Some(real) => Rows::at(q).placed(|rows| rows.place_real(real, Wanted::Steps)),
             None => Rows::at(q).placed(|rows| rows.place_rigid(&self.chain, Wanted::Steps)),
@@ -182,7 +182,7 @@ impl Arm {
     }
 }
 
-/// The first readings; those that are not given are 0.
+/// The first readings; missing ones are 0.
 pub(crate) fn first<const N: usize>(q: &[f64]) -> [f64; N] {
     let mut all = [0.0; N];
     all.iter_mut().zip(q).for_each(|(to, from)| *to = *from);
@@ -208,8 +208,8 @@ impl Arm {
 }
 
 impl Arm {
-    /// How six joints are bent: the sign of the Jacobian's determinant, which changes where the arm passes through a singularity; 0 of other
-    /// numbers of joints.
+    /// Sign of the determinant of the Jacobian of six joints, which changes when the arm passes through a singularity; 0 for other numbers
+    /// of joints.
     #[must_use]
     pub fn handedness(&self, q: &[f64]) -> f64 {
         if self.joints() != 6 {
@@ -219,7 +219,7 @@ impl Arm {
         if determinant == 0.0 { 0.0 } else { determinant.signum() }
     }
 
-    /// The determinant of the columns of six joints, lengths over [`Arm::reach_m`].
+    /// Determinant of the columns of six joints, lengths over [`Arm::reach_m`].
     pub(crate) fn minor<const N: usize>(&self, placed: &Placed<N>, joints: [usize; 6]) -> f64 {
         let mut rows = [[0.0; 6]; 6];
         for (column, joint) in joints.into_iter().enumerate() {

@@ -15,14 +15,14 @@ use crate::placed::along;
 const PARALLEL: f64 = 1e-9;
 
 /// A chain of joints. The frame of a joint has its axis along z, and its x across its axis and the next one: then the next frame is turned by
-/// one angle about x and one about its own z, to which the joint's value is added. Origins are where an axis is nearest to the origin before,
-/// so that lengths stay those of the arm also where axes are almost parallel.
+/// one angle about x and one about its own z, to which the joint's value is added. Origins are the points of an axis nearest to the origin
+/// before. So lengths stay those of the arm also if axes are almost parallel.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chain {
-    /// The first frame in the base before its joint moves.
+    /// First frame in the base before its joint moves.
     pub(crate) start: Pose,
     pub(crate) links: Vec<Link>,
-    /// The tip in the frame of the last joint.
+    /// Tip in the frame of the last joint.
     pub(crate) tip: Pose,
     /// Length of the path from the first axis over all axes to the tip, metres.
     pub(crate) length_m: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Chain {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Link {
-    /// Its origin in the frame before.
+    /// Origin in the frame before.
     pub(crate) origin: Vector3<f64>,
     /// Cosine and sine of the angle about x from the axis before.
     pub(crate) tilt: (f64, f64),
@@ -52,7 +52,7 @@ impl Chain {
             screws.iter().map(&mut place).collect()
         };
         let axis = |k: usize| axes[k].rotation.column(2).into_owned();
-        // Direction across an axis and the next one, or that which there was.
+        // Direction across an axis and the next one, or the previous direction.
         let across = |k: usize, old: Vector3<f64>| {
             let z = axis(k);
             let cross = if k + 1 < axes.len() { z.cross(&axis(k + 1)) } else { Vector3::zeros() };

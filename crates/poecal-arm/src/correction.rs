@@ -1,4 +1,4 @@
-//! What to command so that an arm as it is has its tip where one like its drawing would have it.
+//! Commanded readings with which an actual arm has its tip at the pose of its nominal arm.
 
 use crate::arm::Arm;
 use crate::lie::Pose;
@@ -11,12 +11,12 @@ use crate::zeros::{CONFIGURATIONS, configuration, zeros};
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
-/// How far a joint may move from where its reading and its fitted zero have it.
+/// Largest motion of a joint from its reading with the fitted zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MostChange {
-    /// Of joints that turn, rad.
+    /// Revolute joints, rad.
     pub turning_rad: f64,
-    /// Of joints that slide, m.
+    /// Prismatic joints, m.
     pub sliding_m: f64,
 }
 
@@ -27,35 +27,35 @@ impl Default for MostChange {
     }
 }
 
-/// What became of a configuration.
+/// Outcome of a configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// The tip is where it was meant.
+    /// The tip is at its intended pose.
     Reached,
-    /// Its point is, its orientation is not: near a singularity the joints would have to move too far. It is no farther off than without
-    /// correction, or than five times the usual error of the arm's orientation.
+    /// The point is reached, the orientation is not: near a singularity the joints would have to move too far. The orientation error is
+    /// no larger than without correction, or than five times the usual error of the arm's orientation.
     Turned,
-    /// The arm cannot have the tip there, as one of fewer than six joints mostly cannot: this is the nearest configuration.
+    /// The arm cannot reach the pose, as is usual with fewer than six joints: this is the nearest configuration.
     Nearest,
-    /// The joint of this index would have to move by so much (rad, m) beyond its zero; nothing is changed.
+    /// The joint of this index would have to move by this amount (rad, m) beyond its zero; nothing is changed.
     TooFar(usize, f64),
 }
 
-/// A corrected configuration's remainder.
+/// Remainder of a corrected configuration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
-    /// What became of it.
+    /// Outcome.
     pub outcome: Outcome,
-    /// Distance that is left, metres.
+    /// Remaining distance, metres.
     pub left_m: f64,
-    /// Angle that is left, radians.
+    /// Remaining angle, radians.
     pub left_rad: f64,
 }
 
-/// Corrections of an arm's readings: those with which the actual arm has its tip where the nominal one has it,
-/// `actual(q) = nominal(q₀)`, on the branch of `q₀`: no joint moves by more than [`MostChange`] from `q₀ + z`, where `z` are the zeros of the
-/// actual arm's joints. Near a singularity, where the pose would take more, the tip's point is exact, and of its rotation is left what cannot
-/// be had, but not much more than without correction.
+/// Corrections of an arm's readings: with them the actual arm has its tip at the pose of the nominal one, `actual(q) = nominal(q₀)`, on the
+/// branch of `q₀`. No joint moves by more than [`MostChange`] from `q₀ + z`, where `z` are the zeros of the actual arm's joints. Near a
+/// singularity the pose may need more. Then the tip's point is exact, and its rotation keeps an unreachable remainder, which is not much more
+/// than without correction.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -80,12 +80,12 @@ pub struct Corrections {
     most: MostChange,
     /// Smallest singular value below which a configuration is near a singularity: the usual one.
     singular: f64,
-    /// Largest angle that may be left near a singularity where it was less without correction, radians.
+    /// Largest angle that may remain near a singularity if it was less without correction, radians.
     most_left_rad: f64,
 }
 
 impl Corrections {
-    /// Of two arms with the same joints; `None` if their numbers or kinds differ.
+    /// Corrections of two arms with the same joints; `None` if their numbers or kinds differ.
     #[must_use]
     pub fn new(nominal: &Arm, actual: &Arm, most: MostChange) -> Option<Self> {
         let kinds = |arm: &Arm, joint: usize| arm.screws()[joint].is_prismatic();
@@ -124,31 +124,31 @@ impl Corrections {
         &self.actual
     }
 
-    /// Zeros of the actual arm's joints (rad, m): what is added to all readings so that its tip is nearest to that of the nominal one, by
-    /// least squares over configurations within the limits.
+    /// Zeros of the actual arm's joints (rad, m): the additions to all readings with which its tip is nearest to that of the nominal one,
+    /// by least squares over configurations within the limits.
     #[must_use]
     pub fn zeros(&self) -> &[f64] {
         &self.zeros[..self.actual.joints()]
     }
 
-    /// How far joints may move from their zeros.
+    /// Largest motion of joints from their zeros.
     #[must_use]
     pub fn most(&self) -> MostChange {
         self.most
     }
 
-    /// The most of a joint.
+    /// Largest motion of a joint.
     fn most_of(&self, joint: usize) -> f64 {
         if self.actual.screws()[joint].is_prismatic() { self.most.sliding_m } else { self.most.turning_rad }
     }
 
-    /// Takes `q` to the readings of the actual arm for those `meant` for the nominal one (rad, m). The search begins with changes that are
-    /// expected, if they are given, and else with the zeros.
+    /// Changes `q` to the readings of the actual arm for those `meant` for the nominal one (rad, m). The search begins with the expected
+    /// changes, if there are any, and else with the zeros.
     pub fn correct(&self, meant: &[f64], expected: Option<&[f64]>, q: &mut [f64]) -> Correction {
         self.correct_to(&self.nominal.forward_kinematics(meant), meant, expected, q)
     }
 
-    /// The same, of the nominal arm's tip at `meant`.
+    /// The same for the nominal arm's tip at `meant`.
     pub fn correct_to(
         &self,
         target: &Pose,
@@ -181,9 +181,10 @@ impl Corrections {
         self.kept(target, meant, q, farthest)
     }
 
-    /// The configuration that has the tip's point, and the orientation as near as joints may move: to the one that is meant, or where that ends
-    /// farther off than without correction, to the uncorrected one, if it is nearer. `None` where the point cannot be had so, where the
-    /// orientation would end farther off than without correction and than the arm's usually is by far, or where no singularity is near.
+    /// Configuration with the tip's point, and the orientation as near as joints may move. The goal is the intended orientation, or the
+    /// uncorrected one if the first ends farther off than without correction and the second is nearer. `None` if the point cannot be reached in
+    /// this manner, or if no singularity is near. It is also `None` if the orientation would end farther off than without correction and far
+    /// beyond the arm's usual error.
     fn turned(&self, target: &Pose, meant: &[f64], q: &mut [f64]) -> Option<Correction> {
         let of = |(left_m, left_rad)| Correction { outcome: Outcome::Turned, left_m, left_rad };
         self.begin(meant, q);
@@ -208,7 +209,7 @@ impl Corrections {
         Some(found).filter(|it| it.left_rad <= self.most_left_rad)
     }
 
-    /// Takes `q` to where zeros alone have it.
+    /// Sets `q` to the readings with zeros alone.
     fn begin(&self, meant: &[f64], q: &mut [f64]) {
         q.iter_mut().zip(meant.iter().zip(&self.zeros)).for_each(|(q, (meant, zero))| *q = meant + zero);
     }
@@ -217,13 +218,13 @@ impl Corrections {
         self.actual.forward_kinematics(q).apart(target)
     }
 
-    /// The joint that is farthest beyond what it may move, and its change.
+    /// Joint that exceeds its largest motion most, and its change.
     fn farthest(&self, meant: &[f64], q: &[f64]) -> Option<(usize, f64)> {
         let mut worst: Option<(usize, f64)> = None;
         for (joint, (q, meant)) in q.iter().zip(meant).enumerate() {
             let change = (q - meant - self.zeros[joint]).abs();
             let over = change / self.most_of(joint);
-            // Not a number is too far as well.
+            // A value that is not a number is too far as well.
             let is_too_far = over.is_nan() || over > 1.0 + 1e-9;
             if is_too_far && worst.is_none_or(|(other, it)| over > it / self.most_of(other)) {
                 worst = Some((joint, change));
@@ -232,7 +233,7 @@ impl Corrections {
         worst
     }
 
-    /// The largest change of a joint beyond its zero, over what is allowed.
+    /// Largest change of a joint beyond its zero, as a share of its limit.
     #[must_use]
     pub fn share_of_most(&self, meant: &[f64], q: &[f64]) -> f64 {
         let shares = q.iter().zip(meant).zip(&self.zeros).enumerate();
@@ -241,7 +242,7 @@ impl Corrections {
             .fold(0.0, f64::max)
     }
 
-    /// The configuration that has the pose, if it is on this branch; keeps what is too far.
+    /// Configuration with the pose, if it is on this branch; keeps the joint that is too far.
     fn exact(
         &self,
         target: &Pose,
@@ -251,7 +252,7 @@ impl Corrections {
     ) -> Option<Correction> {
         let left = self.actual.nearest(target, q);
         *farthest = self.farthest(meant, q);
-        // Both are below their common measure.
+        // Both are below their common limit.
         let is_reached = left < REACHED;
         (is_reached && farthest.is_none()).then(|| Correction {
             outcome: Outcome::Reached,
@@ -260,7 +261,7 @@ impl Corrections {
         })
     }
 
-    /// The nearest configuration of a pose out of reach, or what is too far for it.
+    /// Nearest configuration of a pose out of reach, or the joint that is too far for it.
     fn kept(
         &self,
         target: &Pose,
@@ -279,16 +280,16 @@ impl Corrections {
         Correction { outcome, left_m, left_rad }
     }
 
-    /// Takes `q` to a configuration that has the tip's point exactly and its rotation as far as joints may move: of every turn that the arm can
-    /// make with the point at rest, a singular one takes `c/s` for a turn by `c`; where that is more than is left of a joint's most change, it
-    /// is less the nearer `s` is to 0, and 0 there, so that a smooth motion stays smooth. The angle that is left; `None` if the point cannot be
-    /// had, or no singularity is near.
+    /// Changes `q` to a configuration with the exact point of the tip and its rotation as far as joints may move. For every rotation that the
+    /// arm can make with the point at rest, a singular one takes `c/s` for a rotation by `c`. If that exceeds the remaining motion of a joint,
+    /// it decreases with `s` and is 0 at `s = 0`. So a smooth motion stays smooth. Returns the remaining angle; `None` if the point cannot be
+    /// reached, or no singularity is near.
     fn point(&self, target: &Pose, meant: &[f64], q: &mut [f64]) -> Option<f64> {
         let n = q.len();
         let reach = self.actual.reach_m();
         let slides: [bool; MOST_JOINTS] =
             core::array::from_fn(|joint| joint < n && self.actual.screws()[joint].is_prismatic());
-        // Steps that slide are counted in reaches, as angles.
+        // Steps of prismatic joints are counted in reaches, as angles.
         let unit = |joint: usize| if slides[joint] { reach } else { 1.0 };
         let most: [f64; MOST_JOINTS] =
             core::array::from_fn(
@@ -316,7 +317,7 @@ impl Corrections {
                 break;
             }
         }
-        // The point to the last digits, by the least motion.
+        // The last digits of the point follow by the least motion.
         for _ in 0..6 {
             let (left, ways) = at(q);
             if left.position.norm() < POINT * reach {
@@ -334,12 +335,12 @@ impl Corrections {
     }
 }
 
-/// Steps to a configuration near a singularity: each leaves some hundredths of the one before.
+/// Largest number of steps to a configuration near a singularity: each leaves some hundredths of the one before.
 const MOST_STEPS: u32 = 40;
-/// Angle that may be left near a singularity, in units of the usual one without correction: a tool of a tenth of the reach is then off by what the
-/// correction of its point removes.
+/// Angle that may remain near a singularity, in units of the usual one without correction. A tool of a tenth of the reach then has an error equal
+/// to the correction of its point.
 const LEFT: f64 = 5.0;
-/// Share of what a joint may move that the search uses: the last digits of the point take some more.
+/// Share of a joint's largest motion that the search uses: the last digits of the point take some more.
 const MARGIN: f64 = 0.999;
-/// Distance over the reach below which the tip's point is met.
+/// Distance over the reach below which the tip's point is reached.
 const POINT: f64 = 1e-13;

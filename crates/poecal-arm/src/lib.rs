@@ -1,19 +1,19 @@
-//! Forward and inverse kinematics of robot arms as they are, by the product of exponentials: without the standard library, threads or
-//! files, and nothing is allocated once an arm is made.
+//! Forward and inverse kinematics of actual robot arms, by the product of exponentials. It needs no standard library, threads or
+//! files, and allocates nothing once an arm is made.
 //!
-//! This is the lowest crate of [poecal](https://github.com/poecal/poecal), which finds the arm that is really there from measurements. It is for
-//! programs that move an arm, also on controllers; its public items follow semantic versioning. Not here: std, files, threads, measurements,
-//! and other crates of the workspace.
+//! This is the lowest crate of [poecal](https://github.com/poecal/poecal), which estimates the actual arm from measurements. It is for programs
+//! that move an arm, also on controllers; its public items follow semantic versioning. The standard library, files, threads, measurements, and
+//! other crates of the workspace are not used here.
 //!
 //! | to | see |
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
-//! | have joints that turn more than their readings say | [`Model`], [`Arm::of`] |
-//! | know what joints do beyond their readings, with derivatives | [`TermKind`], [`Term`] |
-//! | have many poses, Jacobians, or what weights do, in many configurations | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
-//! | move the tip to a pose, from where the arm is | [`Arm::nearest`] |
-//! | correct readings of a program for the drawing | [`Corrections`] |
-//! | know all configurations for a pose | [`AllBranches`]; of seven axes by one that is held, [`HeldBranches`] |
+//! | have joints that turn more than their readings | [`Model`], [`Arm::of`] |
+//! | know the parts of joint values beyond readings, with derivatives | [`TermKind`], [`Term`] |
+//! | have many poses, Jacobians, or deflections under weights | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
+//! | move the tip to a pose, from the current configuration | [`Arm::nearest`] |
+//! | correct readings of a program for the nominal arm | [`Corrections`] |
+//! | know all configurations for a pose | [`AllBranches`]; of seven axes with one held, [`HeldBranches`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //!
 //! Units are metres and radians, numbers are `f64`.

@@ -1,4 +1,4 @@
-//! What an arm is made of: joints, what each reading turns them, and what they give under weight.
+//! Model of an arm: joints, their values by readings, and their compliance under weight.
 
 use alloc::vec::Vec;
 
@@ -8,21 +8,21 @@ use crate::lie::{Pose, Screw};
 use crate::placed::MOST_JOINTS;
 use crate::terms::Term;
 
-/// A serial arm as calibration finds it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that are
-/// functions of them ([`JointValue`]). Joints that no reading turns are places where links give.
+/// A serial arm as calibration estimates it: `base_from_tip(q) = exp(ξ₁θ₁(q)) … exp(ξₘθₘ(q)) M` with n readings q and joint values θ that
+/// are functions of them ([`JointValue`]). Joints without a reading are compliances of links.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Number of readings n.
     pub readings: usize,
     /// Joints from the base to the tip.
     pub joints: Vec<Joint>,
-    /// The tip in the base where all joint values are 0.
+    /// Tip in the base with all joint values at 0.
     pub home: Pose,
-    /// Direction in which weights are pulled, base frame, of length 1.
+    /// Direction of gravity, base frame, of length 1.
     pub gravity: Vector3<f64>,
-    /// The arm by which moments of weights are counted.
+    /// Nominal arm, by which moments of weights are computed.
     pub drawing: Vec<Drawn>,
-    /// Smallest and largest value of each reading (rad, m), of those that have such.
+    /// Smallest and largest value of each reading (rad, m), if it has limits.
     pub limits: Vec<Option<(f64, f64)>>,
 }
 
@@ -44,29 +44,29 @@ impl Model {
 /// A joint and its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its screw in the base where all joint values are 0.
+    /// Screw in the base with all joint values at 0.
     pub screw: Screw,
-    /// Its value.
+    /// Value.
     pub value: JointValue,
 }
 
 /// A joint's value (rad, m) as a function of the readings: `θ = c + Σ fᵢ qᵢ + Σ waves + moments + Σ curves`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointValue {
-    /// What it has where all readings are 0.
+    /// Value with all readings at 0.
     pub constant: f64,
     /// Readings, and the joint's value per unit of each.
     pub linear: Vec<(usize, f64)>,
     /// Periodic parts.
     pub waves: Vec<Wave>,
-    /// What it gives under weights.
+    /// Compliance under weights.
     pub pull: Option<Pull>,
     /// Other functions.
     pub curves: Vec<Curve>,
 }
 
 impl JointValue {
-    /// The value of a joint that turns by its reading.
+    /// Value of a joint that turns by its reading.
     #[must_use]
     pub fn from_reading(reading: usize) -> Self {
         JointValue { linear: [(reading, 1.0)].to_vec(), ..JointValue::default() }
@@ -101,25 +101,25 @@ pub struct Wave {
 /// A part of a joint's value that is another function of the table of terms ([`crate::TermKind`]), `k b(x)` with `x = c + Σ fᵢ qᵢ + moments`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// The term with the function b.
+    /// Term with the function b.
     pub term: Term,
-    /// Its coefficient k (rad, m).
+    /// Coefficient k (rad, m).
     pub coefficient: f64,
-    /// The argument where all readings are 0.
+    /// Argument with all readings at 0.
     pub constant: f64,
     /// Readings, and the argument per unit of each.
     pub linear: Vec<(usize, f64)>,
-    /// The moments in the argument, of weights by their part of it.
+    /// Moments in the argument, of weights by their part of it.
     pub pull: Option<Pull>,
 }
 
-/// What a joint gives under weights: `Σ z·((p - o) × ĝ)` with the axis z through o, where weights at p are counted by what they turn the joint
-/// per metre of lever; of a prismatic joint `Σ z·ĝ`. All places are those of the drawing.
+/// Deflection of a joint under weights: `Σ z·((p - o) × ĝ)` with the axis z through o; a weight at p counts by the rotation of the joint per
+/// metre of lever. For a prismatic joint it is `Σ z·ĝ`. All positions are those of the nominal arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pull {
-    /// Number of the drawing's joints before it.
+    /// Number of the nominal joints before it.
     pub after: usize,
-    /// Whether it slides.
+    /// True if it is prismatic.
     pub slides: bool,
     /// Direction z of its axis, base frame at zero.
     pub direction: Vector3<f64>,
@@ -129,21 +129,21 @@ pub struct Pull {
     pub weights: Vec<PulledWeight>,
 }
 
-/// A weight: what it turns the joint for each metre of lever (of a prismatic joint, what it slides it), and where it is.
+/// A weight: the rotation of the joint for each metre of lever (for a prismatic joint, the translation), and the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PulledWeight {
-    /// Number of the drawing's joints that carry it.
+    /// Number of the nominal joints that carry it.
     pub after: usize,
-    /// What it turns the joint, rad/m (of a prismatic joint m).
+    /// Rotation of the joint, rad/m (for a prismatic joint m).
     pub size: f64,
-    /// Its place p, base frame at zero.
+    /// Position p, base frame at zero.
     pub place: Vector3<f64>,
 }
 
-/// A joint of the drawing, whose value is `f q + c`.
+/// A joint of the nominal arm, whose value is `f q + c`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drawn {
-    /// Its screw in the base at zero.
+    /// Screw in the base at zero.
     pub screw: Screw,
     /// Index of its reading.
     pub reading: usize,
@@ -154,7 +154,7 @@ pub struct Drawn {
 }
 
 impl Model {
-    /// Whether all numbers are finite and all indices are of something that is there.
+    /// True if all numbers are finite and all indices are valid.
     pub(crate) fn is_whole(&self) -> bool {
         let finite = |v: &Vector3<f64>| v.iter().all(|it| it.is_finite());
         let screw = |it: &Screw| finite(&it.v()) && finite(&it.w());

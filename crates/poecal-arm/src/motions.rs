@@ -1,4 +1,4 @@
-//! How an arm moves to first order, with the point of its tip at rest or on its way.
+//! Motions of an arm to first order, with the point of its tip at rest or moving.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,10 +9,10 @@ use crate::placed::{MOST_JOINTS, Placed};
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
-/// How an arm moves to first order: with the tip's point at rest, and with it.
+/// Motions of an arm to first order: with the tip's point at rest, and moving.
 pub(crate) struct Ways {
     n: usize,
-    /// Motions of the point, over the reach, and turns.
+    /// Motions of the point, over the reach, and rotations.
     columns: [(Vector3<f64>, Vector3<f64>); MOST_JOINTS],
     /// (Jₚ Jₚᵀ)⁻¹.
     inverse: Option<Matrix3<f64>>,
@@ -38,20 +38,20 @@ impl Ways {
         self.inverse = moves.try_inverse().filter(|it| it.iter().all(|it| it.is_finite()));
     }
 
-    /// The least motion of the joints that are free that moves the point.
+    /// Least motion of the free joints that moves the point.
     pub(crate) fn to_point(&self, by: &Vector3<f64>) -> Option<[f64; MOST_JOINTS]> {
         let pull = self.inverse? * by;
         Some(core::array::from_fn(|joint| self.columns[joint].0.dot(&pull)))
     }
 
-    /// A joint that does not move.
+    /// Holds a joint.
     fn hold(&mut self, joint: usize) {
         self.columns[joint] = (Vector3::zeros(), Vector3::zeros());
         self.invert();
     }
 
-    /// Changes from the zeros that take away what is left, from the changes that there are. What a joint cannot do the others do, as far as
-    /// they may.
+    /// Changes from the zeros that remove the remainder, from the present changes. The other joints take over from a joint at its limit, up
+    /// to their own limits.
     pub(crate) fn least(
         mut self,
         left: &Left,
@@ -91,7 +91,7 @@ impl Ways {
             let along = if exact.abs() <= room {
                 exact
             } else {
-                // Continuous where it is just in reach, and 0 at the singularity.
+                // The step is continuous at the limit of reach, and 0 at the singularity.
                 let share = room / exact.abs();
                 room * exact.signum() * 2.0 * share / (1.0 + share * share)
             };
@@ -101,7 +101,8 @@ impl Ways {
         Some(to)
     }
 
-    /// Holds joints that would have to move too far at their most: where these are, and how the others bring the point where it should be.
+    /// Holds joints that would have to move too far at their limits. Returns the values of these, and the motion of the others that moves
+    /// the point to its goal.
     #[inline]
     fn move_point(
         &mut self,
@@ -128,7 +129,8 @@ impl Ways {
         Some((held, to))
     }
 
-    /// Turns with the point at rest: of each joint what is left of its turn once the others have brought the point back; and their sum of squares.
+    /// Rotations with the point at rest: for each joint the remainder of its rotation after the others have moved the point back; and their
+    /// sum of squares.
     #[inline]
     fn turns_at_rest(&self) -> Option<([Vector3<f64>; MOST_JOINTS], Matrix3<f64>)> {
         let n = self.n;

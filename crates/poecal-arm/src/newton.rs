@@ -1,4 +1,4 @@
-//! Newton's iteration from a configuration to one that has the tip where it should be.
+//! Newton's iteration from a configuration to one with the tip at its goal.
 
 use nalgebra::Vector3;
 
@@ -13,15 +13,15 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// Residual (lengths over reach, rad) below which a further step changes rounding only.
 const ROUNDED: f64 = 4e-15;
-/// The same of an arm whose joint values are more than its readings: without the weights' share in the Jacobian, each step leaves some
-/// thousandths of what there was, and further ones are not worth their time.
+/// The same limit for an arm whose joint values are more than their readings. Without the share of the weights in the Jacobian, each
+/// step leaves some thousandths of the residual, and further ones are not worth their time.
 const SMALL: f64 = 2e-13;
 /// Residual that counts as reached.
 pub(crate) const REACHED: f64 = 2e-11;
-/// Longest step of a joint (rad; m over reach) that is taken whole.
+/// Longest step of a joint (rad; m over reach) that is taken in full.
 const LONGEST_STEP: f64 = 0.5;
 
-/// What is left from the tip to where it should be: position (m) and rotation vector (rad), both in the base.
+/// Remainder from the tip to its goal: position (m) and rotation vector (rad), both in the base.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Left {
     pub(crate) position: Vector3<f64>,
@@ -35,7 +35,7 @@ impl Left {
         let sine = 0.5 * (column(0) + column(1) + column(2));
         let trace: f64 = tip.rotation.component_mul(&target.rotation).sum();
         let rotation = if trace > 1.0 {
-            // Below a right angle: sin φ of the direction, as an angle.
+            // Below a right angle it is the sin φ of the direction, as an angle.
             let squared = sine.norm_squared();
             if squared < 1e-6 { sine * (1.0 + squared / 6.0) } else { angle_of(sine, squared) }
         } else {
@@ -44,7 +44,7 @@ impl Left {
         Left { position: target.translation - tip.translation, rotation }
     }
 
-    /// Its square, lengths over a reach, of which the inverse is given.
+    /// Square of the remainder, lengths over a reach, whose inverse is passed.
     #[inline]
     pub(crate) fn squared(&self, inverse_reach: f64) -> f64 {
         self.position.norm_squared() * (inverse_reach * inverse_reach) + self.rotation.norm_squared()
@@ -56,11 +56,11 @@ fn angle_of(sine: Vector3<f64>, squared: f64) -> Vector3<f64> {
     sine * (norm.min(1.0).asin() / norm)
 }
 
-/// Six joints of an arm that has six, or seven of which one is held.
+/// Six joints of an arm that has six, or seven with one held.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Six<'a> {
     arm: &'a Arm,
-    /// Index of the joint that is held, and its reading.
+    /// Index of the held joint, and its reading.
     held: Option<(usize, f64)>,
 }
 
@@ -70,12 +70,12 @@ impl<'a> Six<'a> {
         Six { arm, held: None }
     }
 
-    /// The others of an arm of seven.
+    /// Six joints of an arm of seven, without the held one.
     pub(crate) fn without(arm: &'a Arm, joint: usize, reading: f64) -> Self {
         Six { arm, held: Some((joint, reading)) }
     }
 
-    /// Readings with that of the joint that is held.
+    /// Readings including that of the held joint.
     pub(crate) fn all(q: &[f64; 6], (joint, reading): (usize, f64)) -> [f64; 7] {
         core::array::from_fn(|k| match k.cmp(&joint) {
             core::cmp::Ordering::Less => q[k],
@@ -114,18 +114,18 @@ impl<'a> Six<'a> {
     }
 }
 
-/// Column of a joint: motion of the tip's point (over the reach) and its turn.
+/// Column of a joint: motion of the tip's point (over the reach) and its rotation.
 #[inline]
 fn column<const N: usize>(arm: &Arm, placed: &Placed<N>, joint: usize, inverse_reach: f64) -> [f64; 6] {
     let (mut v, w) = placed.column(joint);
-    // A step that slides is counted in reaches, so that it is of the size of an angle.
+    // A step of a prismatic joint is counted in reaches, so that it is of the size of an angle.
     if !arm.screws()[joint].is_prismatic() {
         v *= inverse_reach;
     }
     [v.x, v.y, v.z, w.x, w.y, w.z]
 }
 
-/// Columns of six joints: motion of the tip's point (over the reach) and its turn.
+/// Columns of six joints: motion of the tip's point (over the reach) and its rotation.
 #[inline(always)]
 fn columns_of_six(
     arm: &Six<'_>,
@@ -134,13 +134,13 @@ fn columns_of_six(
 ) -> [(Vector3<f64>, Vector3<f64>); 6] {
     let of = |joint: usize| {
         let (v, w) = placed.column(joint);
-        // A step that slides is counted in reaches, so that it is of the size of an angle.
+        // A step of a prismatic joint is counted in reaches, so that it is of the size of an angle.
         (if arm.slides(joint) { v } else { v * inverse_reach }, w)
     };
     [of(0), of(1), of(2), of(3), of(4), of(5)]
 }
 
-/// The step of six joints that takes away what is left, to first order.
+/// Step of six joints that removes the remainder, to first order.
 #[inline]
 fn step_of_six(arm: &Six<'_>, placed: &Placed<6>, left: &Left, inverse_reach: f64) -> Option<[f64; 6]> {
     let p = left.position * inverse_reach;
@@ -161,13 +161,13 @@ fn step_of_six(arm: &Six<'_>, placed: &Placed<6>, left: &Left, inverse_reach: f6
 }
 
 /// Undamped steps of six joints, as long as they bring the tip closer. `q` becomes the best configuration that was met;
-/// returns what is left there (lengths over reach, rad).
+/// returns its remainder (lengths over reach, rad).
 pub(crate) fn newton(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> f64 {
     newton_judged(arm, target, q, most).0
 }
 
-/// The same, with how well the first step was: the second one over it, 1 if it was too long to be taken. Where another configuration is as near
-/// to the one that is reached as the start was, this is about 1 (kantorovich1948).
+/// The same steps, with the ratio of the second step to the first; 1 if the first was too long to be taken. If another configuration is as near
+/// to the reached one as the start was, this is about 1 (kantorovich1948).
 pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most: u32) -> (f64, f64) {
     let (mut first, mut ratio) = (0.0, 0.0_f64);
     let reach = arm.reach_m();
@@ -210,8 +210,8 @@ pub(crate) fn newton_judged(arm: &Six<'_>, target: &Pose, q: &mut [f64; 6], most
     (squared.sqrt(), ratio)
 }
 
-/// Damped steps (Levenberg and Marquardt) of any number of joints, the least motion that brings the tip closer;
-/// returns what is left.
+/// Damped steps (Levenberg-Marquardt) of any number of joints, the least motion that brings the tip closer;
+/// returns the remainder.
 pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 {
     let reach = arm.reach_m();
     let n = arm.joints().min(q.len());
@@ -260,7 +260,7 @@ pub(crate) fn damped(arm: &Arm, target: &Pose, q: &mut [f64], most: u32) -> f64 
     squared.sqrt()
 }
 
-/// A damped step of `n` joints by their columns, the least motion that takes away what is left; `None` if it cannot be computed.
+/// A damped step of `n` joints by their columns, the least motion that removes the remainder; `None` if it cannot be computed.
 #[inline]
 fn damped_step(
     columns: &[[f64; 6]; MOST_JOINTS],
@@ -270,7 +270,7 @@ fn damped_step(
 ) -> Option<[f64; MOST_JOINTS]> {
     let mut step = [0.0; MOST_JOINTS];
     let is_solved = if n >= 6 {
-        // Jᵀ (J Jᵀ + λ)⁻¹ e: of all steps that do the same, the least.
+        // Jᵀ (J Jᵀ + λ)⁻¹ e: the least of all steps with the same effect.
         let mut a = [[0.0; 6]; 6];
         for (i, row) in a.iter_mut().enumerate() {
             for (j, it) in row.iter_mut().enumerate() {
@@ -298,14 +298,14 @@ fn damped_step(
     is_solved.then_some(step)
 }
 
-/// Most steps of each kind to the nearest configuration.
+/// Largest number of steps of each kind to the nearest configuration.
 const MOST_STEPS: u32 = 30;
 const MOST_DAMPED: u32 = 200;
 
 impl Arm {
-    /// Takes joint values (rad, m) to the nearest configuration that has the tip at a pose of the base, or as close to it as the iteration
-    /// comes: undamped steps, and damped ones (Levenberg and Marquardt, the least motion of more than six joints) where they fail. Returns
-    /// what is left: the length over [`Arm::reach_m`] and the angle (rad), as one root of squares; some 1e-15 where the pose is reached.
+    /// Changes joint values (rad, m) to the nearest configuration with the tip at a pose of the base, or as close to it as the iteration
+    /// comes. Steps are undamped; if they fail, they are damped (Levenberg-Marquardt, the least motion of more than six joints). Returns
+    /// the remainder: the length over [`Arm::reach_m`] and the angle (rad), as one root of squares; some 1e-15 if the pose is reached.
     ///
     /// ```
     /// use nalgebra::Vector3;

@@ -11,20 +11,20 @@ use crate::placed::MOST_JOINTS;
 
 /// First number of a list, the version of its order: without curves, and with them.
 const VERSIONS: [f64; 2] = [1.0, 2.0];
-/// Limit of a reading that has none; every language can write it.
+/// Limit of a reading without one; every language can write it.
 const UNLIMITED: f64 = 1e300;
-/// Most joints, waves or weights of a list.
+/// Largest number of joints, waves or weights of a list.
 const MOST: usize = 1000;
 
 impl Model {
-    /// All numbers of the model (m, rad), in this order: 1 (the version; 2 with curves); the numbers of readings, joints and drawn joints; home as three rows
-    /// of rotation and translation; gravity; of each reading its smallest and largest value (±1e300 if there is none); of each joint its
-    /// axis, constant, the number of its linear parts with (reading, factor) each, the number of its waves with (reading, factor, offset,
-    /// order, cosine, sine) each, and the number of its weights, before them, if there are any, (drawn joints before it, 1 if it slides,
-    /// direction, place), with (drawn joints that carry it, size, place) each; of each drawn joint its axis, reading, factor and constant.
-    /// With curves their number follows, and of each its joint, its coefficient, the number of letters of its term's name with the code of each,
-    /// and of its argument constant, linear parts and weights as of a joint. An axis is 1 if it slides or 0, a direction and a point. Indices
-    /// count from 0.
+    /// All numbers of the model (m, rad), in this order. First come 1 (the version; 2 with curves); the numbers of readings, joints and nominal
+    /// joints; home as three rows of rotation and translation; gravity; for each reading its smallest and largest value (±1e300 without a limit). For
+    /// each joint follow its axis, constant, the number of its linear parts with (reading, factor) each, the number of its waves with (reading,
+    /// factor, offset, order, cosine, sine) each, and the number of its weights. If there are weights, (nominal joints before it, 1 if it is
+    /// prismatic, direction, position) precede them, with (nominal joints that carry it, size, position) each. For each nominal joint follow its
+    /// axis, reading, factor and constant. With curves their number follows, and for each its joint, its coefficient, the number of letters of its
+    /// term's name with the code of each, and for its argument constant, linear parts and weights as for a joint. An axis is 1 if it is prismatic or
+    /// 0, a direction and a point. Indices count from 0.
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
@@ -78,7 +78,7 @@ impl Model {
         out
     }
 
-    /// The model of such numbers; `None` if they are none.
+    /// The model of such numbers; `None` if they are no model.
     #[must_use]
     pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let mut rest = Rest(numbers);
@@ -179,7 +179,7 @@ impl Rest<'_> {
         (0..self.count()?).map(|_| Some((self.count()?, self.number()?))).collect()
     }
 
-    /// Weights, if there are any; `None` of numbers that are none.
+    /// Weights, if there are any; `None` if the numbers are no model.
     fn pull(&mut self) -> Option<Option<Pull>> {
         let weights = self.count()?;
         if weights == 0 {

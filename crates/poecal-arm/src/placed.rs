@@ -1,13 +1,14 @@
-//! Frames on axes, and how the tip moves.
+//! Frames on axes, and motions of the tip.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::lie::{Pose, Screw, rotation};
 
-/// Most joints of an arm, so that nothing is allocated where it is computed with.
+/// Largest number of joints of an arm, so that computations with it allocate nothing.
 pub const MOST_JOINTS: usize = 16;
 
-/// Where an arm of up to `N` joints is: its tip, and how that moves with each reading, `velocity = v + w × tip` and `angular = w`, in the base.
+/// Pose of an arm of up to `N` joints: its tip, and the motion of that with each reading, `velocity = v + w × tip` and `angular = w`, in
+/// the base.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<const N: usize> {
     pub(crate) v: [Vector3<f64>; N],
@@ -16,7 +17,7 @@ pub(crate) struct Placed<const N: usize> {
 }
 
 impl<const N: usize> Placed<N> {
-    /// How the tip moves with a reading: its point, and its turn.
+    /// Motion of the tip with a reading: of its point, and its rotation.
     #[inline]
     pub(crate) fn column(&self, reading: usize) -> (Vector3<f64>, Vector3<f64>) {
         let w = self.w[reading];
@@ -24,7 +25,7 @@ impl<const N: usize> Placed<N> {
     }
 }
 
-/// A frame on a joint's axis, which is its z, where it is nearest to a point.
+/// A frame on a joint's axis, which is its z, with the origin nearest to a point.
 pub(crate) fn along(screw: &Screw, near: &Vector3<f64>) -> Pose {
     let direction = screw.direction();
     let x = rotation::perpendicular(&direction).normalize();

@@ -1,4 +1,4 @@
-//! Arms whose joint values are more than their readings: what does not depend on the configuration.
+//! Arms whose joint values are more than their readings: the part that does not depend on the configuration.
 
 use alloc::vec::Vec;
 
@@ -9,24 +9,24 @@ use crate::model::{Curve, Drawn, JointValue, Model, Pull, Wave};
 use crate::placed::along;
 use crate::terms::Term;
 
-/// A chain of joints, with what does not depend on the configuration.
+/// A chain of joints, with quantities that do not depend on the configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Real {
     pub(crate) links: Vec<Link>,
     pub(crate) tip: Pose,
     pub(crate) readings: usize,
-    /// Whether values depend on cosines and sines of the readings.
+    /// True if values depend on cosines and sines of the readings.
     pub(crate) has_functions: bool,
-    /// Whether they depend on moments of weights.
+    /// True if they depend on moments of weights.
     pub(crate) has_moments: bool,
     pub(crate) drawing: Vec<(Pose, Drawn)>,
     pub(crate) gravity: Vector3<f64>,
 }
 
-/// A joint: its place, and its value as of a [`JointValue`].
+/// A joint: its frame, and its value as in a [`JointValue`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Link {
-    /// Its frame, the axis along z, in that of the link before.
+    /// Frame, the axis along z, in that of the link before.
     pub(crate) frame: Pose,
     pub(crate) slides: bool,
     pub(crate) own: Sum,
@@ -50,14 +50,14 @@ impl Sum {
     }
 }
 
-/// A [`Pull`] with the weights of each body as one.
+/// A [`Pull`] with the weights of each body joined.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moment {
     pub(crate) after: usize,
     pub(crate) slides: bool,
     pub(crate) direction: Vector3<f64>,
     pub(crate) place: Vector3<f64>,
-    /// Number of joints that carry them, sum of sizes, and of sizes times places.
+    /// Number of joints that carry them, sum of sizes, and of sizes times positions.
     pub(crate) weights: Vec<(usize, f64, Vector3<f64>)>,
 }
 
@@ -88,7 +88,7 @@ impl Moment {
 /// Angle below which a few terms of the series are exact.
 pub(crate) const SMALL: f64 = 0.05;
 
-/// `(cos, sin)` of a small angle, as of joints that give.
+/// `(cos, sin)` of a small angle, such as that of a compliant joint.
 #[inline(always)]
 pub(crate) fn small(angle: f64) -> (f64, f64) {
     let z = angle * angle;
@@ -97,7 +97,7 @@ pub(crate) fn small(angle: f64) -> (f64, f64) {
     (cosine, sine)
 }
 
-/// Whether a wave is of the reading itself.
+/// True if a wave is of the reading itself.
 pub(crate) fn is_plain(wave: &Wave) -> bool {
     wave.factor == 1.0 && wave.offset == 0.0
 }

@@ -1,6 +1,6 @@
 //! Linear equations of a few unknowns, without allocation.
 
-// Rows and columns by their numbers, as equations have them.
+// Rows and columns are by their numbers, as in the equations.
 #![allow(clippy::needless_range_loop)]
 
 use nalgebra::Vector3;
@@ -47,8 +47,8 @@ pub(crate) fn solve<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N], lea
 /// Least determinant of three directions by which the others are eliminated.
 const LEAST: f64 = 0.05;
 
-/// Joint velocities of six joints, whose columns are `(v, w)`, for a velocity of the tip: the last three joints take the turn, the first three
-/// the rest. `None` where these directions are almost in a plane.
+/// Joint velocities of six joints, whose columns are `(v, w)`, for a velocity of the tip: the last three joints take the rotation, the first
+/// three the rest. `None` if these directions are almost in a plane.
 #[inline(always)]
 pub(crate) fn solve_halves(
     columns: &[(Vector3<f64>, Vector3<f64>); 6],
@@ -148,7 +148,7 @@ pub(crate) fn determinant<const N: usize>(a: &mut [[f64; N]; N]) -> f64 {
     out
 }
 
-/// The vector that a singular matrix takes to zero: elimination with full pivots, and one step of inverse iteration by its triangle.
+/// Null vector of a singular matrix: elimination with full pivots, and one step of inverse iteration by its triangle.
 pub(crate) fn null_vector(a: &mut [[f64; 6]; 6]) -> [f64; 6] {
     let mut order = [0, 1, 2, 3, 4, 5];
     for k in 0..5 {

@@ -8,7 +8,7 @@ use nalgebra::{ComplexField as _, RealField as _};
 
 /// π/2 in three parts of 33 bits, so that their products with a number of quarter turns below 2²⁰ are exact.
 const QUARTER: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
-/// Adding and subtracting it rounds to a whole number, which then stands in the lowest bits.
+/// Number whose addition and subtraction rounds to a whole number, which is then in the lowest bits.
 const ROUND: f64 = 1.5 * (1_u64 << 52) as f64;
 /// Largest angle for three parts of π/2: some 80,000 turns.
 pub const LARGEST: f64 = 5e5;
@@ -31,8 +31,8 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
-/// `(cos, sin)` of an angle up to [`LARGEST`], to within about a unit in the last place; without branches, so that loops of it are made of
-/// vector instructions, and without fused products, so that the bits are the same on every machine.
+/// `(cos, sin)` of an angle up to [`LARGEST`], to within about a unit in the last place. There are no branches, so that loops compile to
+/// vector instructions, and no fused products, so that the bits are the same on every machine.
 #[inline(always)]
 #[must_use]
 pub fn cosine_and_sine(angle_rad: f64) -> (f64, f64) {

@@ -1,4 +1,4 @@
-//! Zeros of an arm's joints by which its tip is nearest to that of another arm.
+//! Zeros of an arm's joints with which its tip is nearest to that of another arm.
 
 use nalgebra::Vector3;
 
@@ -11,10 +11,10 @@ use crate::small;
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
-/// Configurations by which zeros are fitted.
+/// Number of configurations by which zeros are fitted.
 pub(crate) const CONFIGURATIONS: u32 = 48;
 
-/// A joint without limits turns by half a turn to each side, or slides by so much (m).
+/// Range of a joint without limits: half a turn to each side, or this translation (m).
 const SLIDE: f64 = 0.5;
 
 /// One of the configurations, within an arm's limits.
@@ -27,7 +27,7 @@ pub(crate) fn configuration(arm: &Arm, row: u32) -> [f64; MOST_JOINTS] {
     })
 }
 
-/// Zeros of the actual arm's joints, by least squares (Levenberg and Marquardt); none if these do not converge.
+/// Zeros of the actual arm's joints, by least squares (Levenberg-Marquardt); all 0 if these do not converge.
 pub(crate) fn zeros(nominal: &Arm, actual: &Arm) -> [f64; MOST_JOINTS] {
     let n = actual.joints();
     let reach = actual.reach_m();
@@ -91,7 +91,7 @@ pub(crate) fn zeros(nominal: &Arm, actual: &Arm) -> [f64; MOST_JOINTS] {
 
 const PRIMES: [u32; MOST_JOINTS] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
-/// The digits of a number behind the point, the last one first (halton1960).
+/// Radical inverse: the digits of a number behind the point, the last one first (halton1960).
 fn radical_inverse(mut number: u32, base: u32) -> f64 {
     let (mut out, mut digit) = (0.0, 1.0 / f64::from(base));
     while number > 0 {

@@ -1,4 +1,4 @@
-//! What the standard library would bring: a panic handler and an allocator, by C's own functions.
+//! Replacement of the standard library: a panic handler and an allocator, by C's own functions.
 
 use core::alloc::{GlobalAlloc, Layout};
 use core::ffi::c_void;
@@ -35,6 +35,6 @@ fn panicked(_: &PanicInfo<'_>) -> ! {
     unsafe { abort() }
 }
 
-/// What Rust's own `alloc` names where it was built to unwind; nothing unwinds here.
+/// Symbol that Rust's own `alloc` refers to if it was built to unwind; nothing unwinds here.
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}

@@ -1,11 +1,11 @@
 //! The kinematics of [`poecal_arm`] for C: an arm is made of numbers (`poecal export CALIBRATION --format c`), then computes without
 //! threads, files or allocation. Poses are 16 numbers, the rows of a 4 × 4 matrix; lengths are metres, angles radians.
 //!
-//! Every function takes null pointers (and then does nothing but say so); other pointers have to be valid, which C cannot promise:
-//! that is what `unsafe` stands for here, and all there is of it.
+//! Every function accepts null pointers (and then only reports them); other pointers have to be valid, which C cannot guarantee: this is the meaning
+//! of `unsafe` here, and its only use.
 //!
-//! For programs in C and controllers, as a part of poecal; a test compares the header, which cbindgen writes. `bare.rs` is what the standard library
-//! would bring where there is none. Not here: computation.
+//! For programs in C and controllers, as a part of poecal; a test compares the header, which cbindgen writes. `bare.rs` replaces the standard library
+//! on targets without one. This crate has no computation of its own.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 
@@ -32,7 +32,7 @@ pub struct PoecalArm {
     branches: Option<AllBranches>,
 }
 
-/// What an inverse leaves: 0 of a pose that is reached.
+/// Remainder of an inverse: 0 for a reached pose.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoecalLeft {
@@ -42,15 +42,15 @@ pub struct PoecalLeft {
     pub rotation_rad: f64,
 }
 
-/// The tip is where it was meant.
+/// The tip is at the intended pose.
 pub const POECAL_REACHED: i32 = 0;
-/// Its point is, its orientation is not, near a singularity.
+/// The tip's point is at the intended position, but its orientation is not, near a singularity.
 pub const POECAL_TURNED: i32 = 1;
-/// It is as near as an arm of fewer than six joints can have it.
+/// The tip is as near as an arm of fewer than six joints can reach.
 pub const POECAL_NEAREST: i32 = 2;
-/// The arm does not reach it: the readings are those that were meant.
+/// The arm does not reach the pose: the readings are the intended ones.
 pub const POECAL_OUT_OF_REACH: i32 = 3;
-/// A joint would have to move too far: the readings are those that were meant.
+/// A joint would have to move too far: the readings are the intended ones.
 pub const POECAL_TOO_FAR: i32 = 4;
 
 /// Corrections of readings.
@@ -58,21 +58,21 @@ pub struct PoecalCorrections {
     corrections: Corrections,
 }
 
-/// What became of readings that were to be corrected.
+/// Outcome of a correction of readings.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoecalCorrected {
-    /// Distance that is left, metres.
+    /// Remaining distance, metres.
     pub position_m: f64,
-    /// Angle that is left, radians.
+    /// Remaining angle, radians.
     pub rotation_rad: f64,
-    /// `POECAL_REACHED` and the following; -1 of null.
+    /// `POECAL_REACHED` and the following; -1 for null.
     pub outcome: i32,
 }
 
 const NOTHING: PoecalLeft = PoecalLeft { position_m: f64::NAN, rotation_rad: f64::NAN };
 
-/// The arm of these numbers; null if they are none. Allocates; takes some milliseconds of an arm of six joints.
+/// The arm of these numbers; null if they describe none. Allocates; takes some milliseconds for an arm of six joints.
 ///
 /// # Safety
 /// `numbers` is null or points to `count` numbers.
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn poecal_arm_free(arm: *mut PoecalArm) {
     }
 }
 
-/// Number of readings; 0 of null.
+/// Number of readings; 0 for null.
 ///
 /// # Safety
 /// `arm` is null or was made by `poecal_arm_new`.
@@ -110,7 +110,7 @@ pub unsafe extern "C" fn poecal_joints(arm: *const PoecalArm) -> usize {
     unsafe { arm.as_ref() }.map_or(0, |it| it.arm.joints())
 }
 
-/// The pose of the tip at readings; returns 0, or -1 of null.
+/// The pose of the tip at readings; returns 0, or -1 for null.
 ///
 /// # Safety
 /// `arm` is null or was made by `poecal_arm_new`; `q` is null or points to `poecal_joints(arm)` numbers, `pose` to 16.
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn poecal_forward(arm: *const PoecalArm, q: *const f64, po
     0
 }
 
-/// How the tip moves with each reading, six numbers a reading: of its point (x, y, z), and its turn, in the base; returns 0, or -1 of null.
+/// Jacobian of the tip, six numbers for each reading: motion of its point (x, y, z), and its turn, in the base; returns 0, or -1 for null.
 ///
 /// # Safety
 /// As `poecal_forward`; `jacobian` is null or points to 6 times `poecal_joints(arm)` numbers.
@@ -156,7 +156,7 @@ pub unsafe extern "C" fn poecal_jacobian(arm: *const PoecalArm, q: *const f64, j
     0
 }
 
-/// Takes readings to the nearest configuration that has the tip at a pose, or as close to it as can be; what is left, NaN of null.
+/// Moves readings to the nearest configuration that has the tip at a pose, or as close to it as possible; returns the remainder, NaN for null.
 ///
 /// # Safety
 /// As `poecal_forward`; `pose` is null or points to 16 numbers.
@@ -184,8 +184,8 @@ fn nearest(arm: &PoecalArm, target: &Pose, q: &mut [f64]) -> PoecalLeft {
     PoecalLeft { position_m: (tip.translation - target.translation).norm(), rotation_rad: turn.norm() }
 }
 
-/// All configurations of an arm of six turning joints that have its tip at a pose, six readings (-π to π) each; returns their number, or -1
-/// of null or of another arm.
+/// All configurations of an arm of six turning joints that have its tip at a pose, six readings (-π to π) each; returns their number, or -1 for null
+/// or for another arm.
 ///
 /// # Safety
 /// `arm` is null or was made by `poecal_arm_new`; `pose` is null or points to 16 numbers, `q` to 6 times `POECAL_MOST_BRANCHES`.
@@ -203,9 +203,9 @@ pub unsafe extern "C" fn poecal_branches(arm: *const PoecalArm, pose: *const f64
     i32::try_from(found.as_slice().len()).unwrap_or(-1)
 }
 
-/// Corrections of readings for a nominal and an actual arm; null of null, of arms with different joints, or of sizes that are not above 0.
-/// How far a joint may move beyond its zero: one that turns, and one that slides; 2 degrees and 2 mm are usual. Allocates; takes some hundred
-/// microseconds. The arms may be freed afterwards.
+/// Corrections of readings for a nominal and an actual arm; null for null, for arms with different joints, or for limits that are not above 0. The
+/// limits are the largest motions of a joint beyond its zero: of one that turns, and of one that slides; 2 degrees and 2 mm are usual. Allocates;
+/// takes some hundred microseconds. The arms may be freed afterwards.
 ///
 /// # Safety
 /// The arms are null or were made by `poecal_arm_new`.
@@ -241,8 +241,8 @@ pub unsafe extern "C" fn poecal_corrections_free(corrections: *mut PoecalCorrect
     }
 }
 
-/// Readings with which the actual arm has its tip where the nominal one has it at the readings `meant`, on the same branch; where there are
-/// none, `q` is `meant`. What became of it, NaN of null.
+/// Readings with which the actual arm's tip has the pose of the nominal one's at the readings `meant`, on the same branch; if there are none, `q` is
+/// `meant`. Returns the outcome, NaN for null.
 ///
 /// # Safety
 /// `corrections` is null or was made by `poecal_corrections_new`; `meant` and `q` are null or point to `poecal_joints` of its arms numbers.

@@ -1,8 +1,8 @@
-//! The header is that of the code.
+//! The committed header matches the code.
 
 use std::path::Path;
 
-/// Set to write the header anew.
+/// Environment variable that requests rewriting the header.
 const WRITE: &str = "POECAL_WRITE_HEADER";
 
 #[test]

@@ -1,14 +1,14 @@
 //! From a robot and measurements to a calibrated and judged robot.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and is not stable
+//! by itself.
 //!
-//! `steps/calibrate.rs` calls the steps, each once, in order, and has no formulas. `run` is the session ready for a fit, with its options; `robust`,
+//! `steps/calibrate.rs` calls the steps, each once, in order, and has no formulas. `run` is the session ready for a fit, with its options. `robust`,
 //! `corrections`, `pictures`, `events` and `moves` are the loops around a fit; `doubts`, `trust`, `acceptance`, `validate` and `workspace` judge it.
-//! To understand a calibration, read `steps/calibrate.rs`, then `poecal-fit`'s `problem/mod.rs` and `problem/fast.rs`, then
-//! `poecal-numerics`'s `solve/levenberg_marquardt.rs`: all other files are called from there.
+//! To understand a calibration, read `steps/calibrate.rs`, then `poecal-fit`'s `problem/mod.rs` and `problem/fast.rs`, then `poecal-numerics`'s
+//! `solve/levenberg_marquardt.rs`: all other files are called from there.
 //!
-//! Not here: files, tables, pages; the solver and the problem, which are called.
+//! This crate has no files, tables or pages, and calls the solver and the problem.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Limits of errors as they are typed: `0.2mm`, `max:0.5mm,0.05deg`.
+//! Text form of limits of errors: `0.2mm`, `max:0.5mm,0.05deg`.
 
 use std::str::FromStr;
 

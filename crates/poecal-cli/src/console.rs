@@ -25,7 +25,7 @@ fn kept(add: impl FnOnce(&mut Said)) -> bool {
     KEPT.with_borrow_mut(|kept| kept.as_mut().map(add)).is_some()
 }
 
-/// Does some work, and returns what it would print on standard output and standard error.
+/// Does some work, and returns its output on standard output and standard error.
 pub(crate) fn captured(work: impl FnOnce() -> u8) -> Said {
     KEPT.replace(Some(Said::default()));
     let code = work();
@@ -78,7 +78,7 @@ impl Console {
         self.bytes(text.as_bytes())
     }
 
-    /// Bytes on standard output, as [`Console::data`]. Where output is kept as text, bytes that are no UTF-8 are shown.
+    /// Bytes on standard output, as [`Console::data`]. If output is kept as text, bytes that are no UTF-8 are made visible.
     pub(crate) fn bytes(&self, bytes: &[u8]) -> Result<()> {
         if kept(|said| said.out.push_str(&String::from_utf8_lossy(bytes))) {
             return Ok(());
@@ -131,7 +131,7 @@ impl Console {
         if is_json { self.data(&json()?) } else { self.say(&table()) }
     }
 
-    /// A result about written files. If it cannot be printed, the files exist all the same: returns the exit code.
+    /// A result about written files. If it cannot be printed, the files exist nevertheless: returns the exit code.
     pub(crate) fn say_of(&self, text: &str, written: &Path) -> u8 {
         self.told(self.say(text), written)
     }
@@ -164,7 +164,7 @@ impl Console {
         }
     }
 
-    /// Lines of warnings and remarks until now, on a wide terminal.
+    /// Number of lines of warnings and remarks until now, on a wide terminal.
     pub(crate) fn lines_said(&self) -> usize {
         self.said.load(Ordering::Relaxed)
     }
@@ -173,18 +173,18 @@ impl Console {
         messages.iter().for_each(|message| self.warning(message));
     }
 
-    /// What reading files found, and its warnings.
+    /// Findings of reading files, and its warnings.
     pub(crate) fn said_of(&self, file: &MeasurementFile) {
         file.notes.iter().for_each(|note| self.remark(note));
         self.warnings(&file.warnings);
     }
 
-    /// What a result is made of, on standard error, unless `--quiet` suppresses it.
+    /// Sources of a result, on standard error, unless `--quiet` suppresses them.
     pub(crate) fn remark(&self, message: impl Display) {
         self.aside("note:", &message.to_string());
     }
 
-    /// A line about the run itself, which was asked for and is never suppressed.
+    /// A line about the run itself, which was requested and is never suppressed.
     pub(crate) fn note(&self, line: impl Display) {
         let line = visible(&line.to_string()).into_owned();
         if kept(|said| said.err.push_str(&format!("{line}\n"))) {

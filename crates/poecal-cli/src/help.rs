@@ -8,7 +8,7 @@ use poecal_report::table::broken;
 use crate::args::{Arguments, exclusive};
 use crate::console::help_width;
 
-/// Columns before what a command does.
+/// Columns before the description of a command.
 const NAMES: usize = 15;
 
 /// Headings, and the commands below each in the order of their use.
@@ -19,7 +19,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Keep", &["validate", "track", "compare", "fleet"]),
 ];
 
-/// The command line as the program understands it.
+/// The command line in the program's form.
 pub(crate) fn command_line() -> Command {
     let command = Arguments::command().mut_subcommand("plan", exclusive);
     let template = format!(
@@ -29,7 +29,7 @@ pub(crate) fn command_line() -> Command {
     command.help_template(template)
 }
 
-/// The list of commands: what each does, in groups.
+/// The list of commands: the purpose of each, in groups.
 fn listed(command: &Command) -> String {
     let width = help_width();
     let mut list = String::new();

@@ -1,12 +1,12 @@
 //! The `poecal` program as a function from arguments to an exit code. Commands read files, call the library and print; they compute
 //! nothing.
 //!
-//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` asks, do not
-//! show that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
+//! Exit codes: 0 done, and a calibration is usable; 1 there are results, but they should not be used, are worse than `--require` demands, do not show
+//! that they keep a limit of `--accept`, or could not be printed; 2 refused: wrong input or usage, and nothing was written; 3 there is no result.
 //!
 //! For people and scripts: options, exit codes and JSON of the program follow semantic versioning, the functions here do not. `lib.rs::understood`
-//! lets clap turn typed words into arguments; where a command has settings, `settings.rs` adds those of `poecal.toml` as further words, and clap
-//! reads all of them again. Not here: computation, and sentences on results, which `poecal-report` has.
+//! lets clap turn typed words into arguments. If a command has settings, `settings.rs` adds those of `poecal.toml` as further words, and clap reads
+//! all of them again. Not here: computation, and sentences on results, which `poecal-report` has.
 
 mod args;
 mod commands;
@@ -42,7 +42,7 @@ use quantity::Allowed;
 
 /// Done.
 pub(crate) const DONE: u8 = 0;
-/// Done, but the result should not be used, or is worse than `--require` asks.
+/// Done, but the result should not be used, or is worse than `--require` demands.
 pub(crate) const WORSE: u8 = 1;
 /// Refused: wrong input or usage.
 const REFUSED: u8 = 2;
@@ -141,7 +141,7 @@ pub fn run_captured(arguments: impl IntoIterator<Item = OsString>) -> Said {
     console::captured(|| run_to_code(arguments))
 }
 
-/// Refuses commands of pictures and drawings where the program has no part for them: without an operating system.
+/// Refuses commands of pictures and drawings in a program built without them: without an operating system.
 fn need_pictures(typed: &[OsString]) -> Result<(), poecal_numerics::error::Error> {
     match typed.get(1).and_then(|word| word.to_str()) {
         Some(command @ ("detect" | "fleet")) if cfg!(not(any(unix, windows))) => ErrorKind::Option.refuse(format!(
@@ -166,7 +166,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         console.error(sentence);
         return REFUSED;
     }
-    // Where there are no threads, the work is done by this one: a pool that cannot be built would be missed later.
+    // Without further threads, this one does the work: the failure to build a pool would appear later.
     if let Some(threads) = arguments.threads
         && cfg!(not(target_family = "wasm"))
     {
@@ -175,7 +175,7 @@ fn run_to_code(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
     let work = || run_command(&arguments.command, &typed, &console);
     let work = || match arguments.command {
-        // These read what grows, many sessions, or tables that are never held whole.
+        // These read growing files, many sessions, or tables that are never held whole.
         Command::Watch(_) | Command::Predict(_) | Command::Compensate(_) => work(),
         #[cfg(any(unix, windows))]
         Command::Fleet(_) => work(),
@@ -201,7 +201,7 @@ fn stated_limits(arguments: &Arguments) -> Limits {
     })
 }
 
-/// Runs a command; gives the exit code.
+/// Runs a command; returns the exit code.
 fn run_command(
     command: &Command,
     typed: &[OsString],

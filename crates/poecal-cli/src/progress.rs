@@ -1,6 +1,6 @@
 //! A progress bar on a terminal.
 
-/// A progress bar; nothing where standard error is no terminal.
+/// A progress bar; without effect if standard error is no terminal.
 #[cfg(any(unix, windows))]
 pub(crate) struct Progress(indicatif::ProgressBar);
 

@@ -65,7 +65,7 @@ fn bad(text: &str, what: &str, expected: &str, example: &str) -> Error {
         .error(format!("found `{text}`{what}, expected a number{expected} with a unit, like {example}"))
 }
 
-/// A length and an angle as given by the user: `1deg,2mm` in either order; an omitted one is zero.
+/// A length and an angle as stated by the user: `1deg,2mm` in either order; an omitted one is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LengthAndAngle {
     pub(crate) text: String,
@@ -99,7 +99,7 @@ impl FromStr for LengthAndAngle {
     }
 }
 
-/// Tolerance of the prior, `none`, `auto`, or the file that tells its sizes.
+/// Tolerance of the prior, `none`, `auto`, or the file that determines its sizes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum BelievedTolerance {
     None,
@@ -157,7 +157,7 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-/// Parser of how far joints may move, for clap: what is omitted is the default.
+/// Parser of the largest joint motion for clap: an omitted value is the default.
 pub(crate) fn most_change(text: &str) -> std::result::Result<MostChange, String> {
     let found: LengthAndAngle = text.parse().map_err(|error: Error| error.to_string())?;
     let default = MostChange::default();
@@ -177,7 +177,7 @@ pub(crate) fn error_m(text: &str) -> std::result::Result<f64, String> {
     parse(text, Unit::Metre).map_err(|error| error.to_string())
 }
 
-/// Parser of the errors that a calibration leaves, for clap: of the calibrated model, and of the corrected one.
+/// Parser of the remaining errors of a calibration for clap: of the calibrated model, and of the corrected one.
 pub(crate) fn robot_error(text: &str) -> std::result::Result<RobotError, String> {
     let (calibrated, corrected) =
         text.split_once(',').map_or((text, None), |(first, second)| (first, Some(second.trim())));
@@ -193,7 +193,7 @@ pub(crate) fn robot_error(text: &str) -> std::result::Result<RobotError, String>
     Ok(error)
 }
 
-/// Parser of a place for clap: three numbers, and their unit behind the last.
+/// Parser of a position for clap: three numbers, and their unit behind the last.
 pub(crate) fn place_m(text: &str) -> std::result::Result<[f64; 3], String> {
     let bad =
         || format!("found `{text}`, expected three numbers with a unit behind the last, like 50,0,30mm");
@@ -222,10 +222,10 @@ pub(crate) fn distances_m(text: &str) -> std::result::Result<[f64; 2], String> {
         .ok_or_else(|| format!("found `{text}`, expected two lengths, the shorter first, like 0.5m:10m"))
 }
 
-/// Where a robot will work.
+/// Workspace of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Workspace {
-    /// Within its limits.
+    /// Anywhere within its limits.
     Limits,
     /// In the configurations of a file.
     Tasks(PathBuf),
@@ -294,21 +294,21 @@ pub(crate) fn seconds(text: &str) -> std::result::Result<Duration, String> {
     }
 }
 
-/// What `--limit` states: of files for all commands, and of a change for `compare`, which had the word first.
+/// Value of `--limit`: of files for all commands, and of a change for `compare`, which had the word first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Allowed {
-    /// What a file may take.
+    /// Limit of a file.
     File(FileLimit, u64),
-    /// How far the tip may have moved, metres.
+    /// Largest permitted motion of the tip, metres.
     Change(f64),
 }
 
-/// Parser of what a file may take for clap.
+/// Parser of a file limit for clap.
 pub(crate) fn limit_of_files(text: &str) -> Result<Allowed> {
     limits::parse(text).map(|(limit, most)| Allowed::File(limit, most))
 }
 
-/// Parser of how far the tip may have moved for clap, or of what a file may take.
+/// Parser of the tip's largest permitted motion for clap, or of a file limit.
 pub(crate) fn limit_of_change(text: &str) -> std::result::Result<Allowed, String> {
     if text.contains('=') {
         return limit_of_files(text).map_err(|error| error.to_string());

@@ -15,21 +15,21 @@ use crate::help::command_line;
 
 /// Settings file that is read if no model is named.
 const USUAL: &str = "poecal.toml";
-/// The command whose options settings are.
+/// The command whose options are settings.
 const COMMAND: &str = "calibrate";
-/// Commands that read settings. Each takes those that it has an option for.
+/// Commands that read settings. Each reads those for which it has an option.
 const READERS: [&str; 3] = [COMMAND, "check", "import"];
 /// Options of a single run, which settings cannot hold.
 const NOT_KEPT: [&str; 10] =
     ["settings", "verbose", "json", "timings", "quiet", "threads", "limit", "wait", "help", "force_own"];
-/// The setting that is a table: what is typed replaces the entry of that key.
+/// The setting that is a table: a typed entry replaces the one of that key.
 const TABLE: &str = "record";
 /// Settings with the place of an output.
 const OUTPUTS: [&str; 2] = ["out", "report"];
 /// Settings with file names, relative to the settings' folder.
 const FILES: [&str; 8] =
     ["model", "measurements", "columns", "camera", "markers", "validate", "out", "report"];
-/// Values of these that are words and no files.
+/// Values of these settings that are words and no files.
 const NO_FILES: [(&str, &str); 7] = [
     ("report", "none"),
     ("camera", "unknown:"),
@@ -74,7 +74,7 @@ pub(crate) fn complete(typed: &[OsString], matches: &ArgMatches) -> Result<Optio
     let settings = Settings::read(path, &keys)?;
     let (mut options, mut files) = (Vec::new(), Vec::new());
     if named.is_none() {
-        // So that the command knows its settings file.
+        // The command needs the name of its settings file.
         options.push(OsString::from(format!("--settings={USUAL}")));
     }
     for arg in kept(own) {
@@ -121,7 +121,7 @@ fn kept(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| !NOT_KEPT.contains(&arg.get_id().as_str()))
 }
 
-/// Whether the option was typed, or one that excludes it.
+/// True if the option was typed, or one that excludes it.
 fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
     let typed = |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
     let excluded =
@@ -131,7 +131,7 @@ fn is_replaced(arg: &Arg, command: &Command, matches: &ArgMatches) -> bool {
     typed(arg) || kept(command).any(|other| typed(other) && (excluded(other) || excludes(other)))
 }
 
-/// Whether an entry of a table was typed with its key.
+/// True if an entry of a table was typed with its key.
 fn is_typed_in_table(entry: &Setting, matches: &ArgMatches) -> bool {
     let SettingValue::One(own) = &entry.value else { return false };
     let key = own.split('=').next();
@@ -188,7 +188,7 @@ fn values(arg: &Arg, entry: &Setting, settings: &Settings) -> Result<Vec<OsStrin
     Ok(texts.into_iter().map(word).collect())
 }
 
-/// Whether a path leads out of a folder, by itself or by a link.
+/// True if a path leads out of a folder, by itself or by a link.
 fn leads_out(folder: &Path, path: &Path) -> bool {
     if !path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return true;

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether a signal is about to end the program.
+/// True if a signal is about to end the program.
 static ENDING: AtomicBool = AtomicBool::new(false);
 
 /// Never returns once a signal is about to end the program.
@@ -46,7 +46,7 @@ pub(crate) fn clean_up_on_signals() {
     let _ = wait.recv();
 }
 
-/// Signals ignored by this process, a bit each; 0 where the system does not report them.
+/// Signals ignored by this process, a bit each; 0 if the system does not report them.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

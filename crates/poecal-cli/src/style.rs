@@ -7,9 +7,9 @@ use poecal_calibrate::Level;
 use poecal_numerics::text::visible;
 use poecal_report::table::{INDENT as LABELS, WIDTH, broken, lines};
 
-/// For the word before an error.
+/// Style of the word before an error.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
-/// For the word before a warning.
+/// Style of the word before a warning.
 pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 const GOOD: Style = AnsiColor::Green.on_default().bold();
 const LABEL: Style = Style::new().bold();
@@ -30,19 +30,19 @@ pub(crate) fn shown(path: &Path) -> String {
     visible(&path.display().to_string()).into_owned()
 }
 
-/// A labelled paragraph as in reports, in lines of 80 characters where words are not longer.
+/// A labelled paragraph as in reports, in lines of 80 characters unless words are longer.
 pub(crate) fn labelled(label: &str, text: &str) -> String {
     let mut out = String::new();
     lines(&mut out, label, text.lines());
     out
 }
 
-/// Which files have been written to a folder.
+/// Sentence on the files that were written to a folder.
 pub(crate) fn written(folder: &Path, files: &[String]) -> String {
     labelled("written", &format!("{}\n{}", shown(folder), files.join(", ")))
 }
 
-/// Lines with colours, broken behind commas where they are wider than a terminal.
+/// Lines with colours, broken behind commas if they are wider than a terminal.
 pub(crate) fn listed(text: &str, width: usize) -> String {
     let mut out = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
@@ -65,7 +65,7 @@ pub(crate) fn listed(text: &str, width: usize) -> String {
     out
 }
 
-/// Characters of a text that are shown, without the codes of colours.
+/// Number of visible characters of a text, without the codes of colours.
 fn visible_width(text: &str) -> usize {
     let (mut width, mut is_code) = (0, false);
     for letter in text.chars() {
@@ -84,7 +84,7 @@ pub(crate) fn wrapped(message: &str, before: usize, width: usize) -> String {
     broken(message, before, 2, width)
 }
 
-/// A report with paragraphs for a narrow terminal. Tables stay: broken lines would be unreadable.
+/// A report with paragraphs for a narrow terminal. Tables are unchanged: broken lines would be unreadable.
 pub(crate) fn narrowed(text: &str, width: usize) -> String {
     if width >= WIDTH || width <= 2 * LABELS {
         return text.to_owned();

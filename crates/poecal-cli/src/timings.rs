@@ -6,7 +6,7 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::solve::Summary;
 use serde_json::{Value, json};
 
-/// Time and number of repetitions of a solve, at most.
+/// Largest time and number of repetitions of a solve.
 const LONG_ENOUGH: Duration = Duration::from_millis(300);
 const MOST_REPEATS: usize = 2000;
 const FEWEST_REPEATS: usize = 5;
@@ -29,7 +29,7 @@ impl Span {
     }
 }
 
-/// A stop watch for both.
+/// A stop watch for both times.
 #[cfg(any(unix, windows))]
 struct Watch {
     cpu: cpu_time::ProcessTime,
@@ -47,7 +47,7 @@ impl Watch {
     }
 }
 
-/// A stop watch that stands still: without an operating system there are no clocks.
+/// A stop watch without a clock: without an operating system there are no clocks.
 #[cfg(not(any(unix, windows)))]
 struct Watch;
 
@@ -62,7 +62,7 @@ impl Watch {
     }
 }
 
-/// Refuses to tell times where there are no clocks.
+/// Refuses to measure times without clocks.
 pub(crate) fn need_clocks() -> Result<()> {
     if cfg!(any(unix, windows)) {
         return Ok(());
@@ -109,7 +109,7 @@ impl Timings {
     }
 }
 
-/// Median of repeated solves, how many, and the iterations of each.
+/// Median of repeated solves, their number, and the iterations of each.
 fn repeated(solve: &impl Fn() -> Summary) -> (Span, usize, usize) {
     let begin = Watch::start();
     let (mut cpu, mut wall, mut iterations) = (Vec::new(), Vec::new(), 0);

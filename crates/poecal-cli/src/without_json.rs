@@ -1,10 +1,10 @@
-//! Commands without `--json`: the form of what they print, and the command that prints JSON of it.
+//! Commands without `--json`: the form of their output, and the command that prints JSON of it.
 
 use std::ffi::OsString;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-/// Each command without `--json`, what it prints or writes, and where the same is as JSON.
+/// Each command without `--json`, its output, and the source of the same as JSON.
 const COMMANDS: [(&str, &str, &str); 11] = [
     ("simulate", "it writes the files of a session", "use `poecal check … --json` on them"),
     ("import", "it writes a table and a mapping", "use `poecal check … --json` on the table"),
@@ -23,7 +23,7 @@ const COMMANDS: [(&str, &str, &str); 11] = [
     ("man", "it writes manual pages", "leave --json away"),
 ];
 
-/// The sentence for `--json` of a command that has none.
+/// The sentence for `--json` of a command without that option.
 pub(crate) fn sentence(typed: &[OsString], error: &clap::Error) -> Option<String> {
     let is_json = matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(argument)) if argument == "--json");
     if error.kind() != ErrorKind::UnknownArgument || !is_json {

@@ -1,4 +1,4 @@
-//! Options that are one of a few words: of each its help and what it means to the library. Command line and Python package read the same tables.
+//! Options with a few words as values: the help of each word and its meaning for the library. Command line and Python package read the same tables.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use poecal_calibrate::{AcceptedModel, DeviceFrameKnowledge, Level, Loss, Repairs, Robust};
@@ -16,12 +16,12 @@ use poecal_results::predictions::PredictionFrame;
 /// Words, each with its help and its meaning.
 pub type Words<T> = &'static [(&'static str, &'static str, T)];
 
-/// The word of a meaning; empty where it has none.
+/// The word of a meaning; empty if it has none.
 pub(crate) fn word_of<T: PartialEq>(words: Words<T>, meaning: &T) -> &'static str {
     words.iter().find(|(.., it)| it == meaning).map_or("", |(word, ..)| word)
 }
 
-/// What is known of the measuring device's frame.
+/// Knowledge of the measuring device's frame.
 pub const FRAME: Words<DeviceFrameKnowledge> = &[
     ("unknown", "The device frame is unknown", DeviceFrameKnowledge::Unknown),
     ("base", "Measurements are in the robot's base frame", DeviceFrameKnowledge::Base),
@@ -34,38 +34,38 @@ pub const TEST_FRAME: Words<TestFrame> = &[
     ("calibration", "The device stands where the calibration has it", TestFrame::Calibration),
 ];
 
-/// Where the camera of simulated pictures is.
+/// Position of the camera of simulated pictures: on the arm or beside it.
 #[cfg(any(unix, windows))]
 pub const CAMERA: Words<CameraPlace> = &[
     ("in-hand", "On the tip, and the board stays", CameraPlace::InHand),
     ("beside", "Beside the robot, and the board is on the tip", CameraPlace::Beside),
 ];
 
-/// Where the camera of a hand-eye calibration is.
+/// Position of the camera of a hand-eye calibration: on the arm or beside it.
 pub const HAND_EYE_CAMERA: Words<CameraPlace> = &[
     ("in-hand", "On the flange, and the target stays", CameraPlace::InHand),
     ("beside", "Beside the robot, and the target is on the flange", CameraPlace::Beside),
 ];
 
-/// Whether the arm's poses are inverted.
+/// Inversion of the arm's poses.
 pub const FLANGE_POSES: Words<bool> = &[
     ("base-from-flange", "The flange in the base, as controllers show it", false),
     ("flange-from-base", "The base in the flange", true),
 ];
 
-/// Whether the target's poses are inverted.
+/// Inversion of the target's poses.
 pub const TARGET_POSES: Words<bool> = &[
     ("camera-from-target", "The target as the camera sees it, as OpenCV's rvec and tvec", false),
     ("target-from-camera", "The camera in the target's frame", true),
 ];
 
-/// Whether the device stands where it stood.
+/// State of the device: unmoved or moved.
 pub const DEVICE: Words<bool> = &[
     ("refit", "It was set up anew: its frame is fitted, and a shift of the first joint does not show", false),
     ("known", "It stands where it stood, as on fixed nests", true),
 ];
 
-/// Whether the tool was mounted anew.
+/// State of the tool: unchanged or mounted anew.
 pub const TOOL: Words<bool> = &[
     ("same", "It stayed on the flange, or was mounted on pins", false),
     (
@@ -75,13 +75,13 @@ pub const TOOL: Words<bool> = &[
     ),
 ];
 
-/// Which rows share a device frame.
+/// Sets of rows that share a device frame.
 pub const FRAMES: Words<Frames> = &[
     ("common", "All, or those of one name in the column `instrument`", Frames::Common),
     ("per-file", "Those of a file", Frames::PerFile),
 ];
 
-/// How two files are joined.
+/// Methods of joining two files.
 pub const JOIN: Words<Join> = &[
     ("name", "By the names of their rows (`id`), or the numbers at the end of these", Join::Name),
     (
@@ -97,19 +97,19 @@ pub const JOIN: Words<Join> = &[
     ),
 ];
 
-/// From where third axes count.
+/// Zeros of the counts of third axes.
 pub const THIRD_AXIS: Words<ThirdAxis> = &[
     ("level", "From the level: where J2 turns alone, the forearm keeps its direction", ThirdAxis::Level),
     ("arm", "From the lower arm, as joint 3 of a model", ThirdAxis::Arm),
 ];
 
-/// How planes are touched.
+/// Methods of touching planes.
 pub const CONTACT: Words<PlaneContact> = &[
     ("point", "By a point: a height", PlaneContact::Point),
     ("flush", "By a face that lies flush: a height and two tilts", PlaneContact::Flush),
 ];
 
-/// How errors of the joints are parameterised.
+/// Parameterisations of the joints' errors.
 pub const FORMULATION: Words<Formulation> = &[
     ("adjoint", "Axes move as rigid bodies, without offsets: minimal, unconstrained", Formulation::Adjoint),
     ("screw", "Screws are free numbers, normalised after every step", Formulation::Screw),
@@ -129,7 +129,7 @@ pub const METHOD: Words<Method> = &[
     ("gauss-newton", "Full steps, taken as they are", Method::GaussNewton),
 ];
 
-/// How to treat outliers.
+/// Treatments of outliers.
 pub const ROBUST: Words<Robust> = &[
     ("auto", "Least squares, unless outliers are evident: then the tukey loss, and a warning", Robust::Auto),
     ("off", "Least squares: every row counts in full", Robust::Off),
@@ -138,13 +138,13 @@ pub const ROBUST: Words<Robust> = &[
     ("tukey", "Large residuals have no influence", Robust::Loss(Loss::Tukey)),
 ];
 
-/// Whether a session is repaired.
+/// Repair of a session: on or off.
 pub const REPAIR: Words<Repairs> = &[
     ("auto", "What evidently happened is repaired, if other rows are predicted better then", Repairs::Auto),
     ("off", "It is said only", Repairs::Off),
 ];
 
-/// The verdicts that can be asked for.
+/// The verdicts that can be required.
 pub const REQUIRED_LEVEL: Words<Level> = &[
     ("good", "Good to use anywhere within the limits", Level::Good),
     ("inside_sampled_range", "Good to use inside the sampled range, or better", Level::InsideSampledRange),
@@ -162,13 +162,13 @@ pub const PREDICT_IN: Words<PredictionFrame> = &[
     ("device", "The measuring device of a calibration", PredictionFrame::Device),
 ];
 
-/// Which model of a calibration predicts, or shall keep limits.
+/// Model of a calibration that predicts, or that shall keep limits.
 pub const MODEL: Words<AcceptedModel> = &[
     ("corrected", "Screws and terms of the joints", AcceptedModel::Corrected),
     ("calibrated", "Geometry alone, as a URDF holds it", AcceptedModel::Calibrated),
 ];
 
-/// What a program is written in.
+/// Form of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgramLanguage {
     /// A table of joint readings.
@@ -177,7 +177,7 @@ pub enum ProgramLanguage {
     Robot(Language),
 }
 
-/// What a program may be written in.
+/// Forms of a program.
 pub const LANGUAGE: Words<ProgramLanguage> = &[
     ("csv", "A table of joint readings", ProgramLanguage::Table),
     ("urscript", "URScript of Universal Robots (.script)", ProgramLanguage::Robot(Language::UrScript)),
@@ -189,9 +189,9 @@ pub const LANGUAGE: Words<ProgramLanguage> = &[
 /// A form, or one that cannot be written, with the reason.
 #[derive(Clone, Copy, Debug)]
 pub enum ExportForm {
-    /// One that can.
+    /// A form that can be written.
     Open(ExportFormat),
-    /// One that cannot, and why.
+    /// A form that cannot be written, with the reason.
     Closed(&'static str),
 }
 
@@ -200,7 +200,7 @@ const fn open(format: ExportFormat, help: &'static str) -> (&'static str, &'stat
     (format.word(), help, ExportForm::Open(format))
 }
 
-/// A form that is not public, and why no file of it can be written.
+/// A form that is not public, with the reason why no file of it can be written.
 const fn closed(word: &'static str, why: &'static str) -> (&'static str, &'static str, ExportForm) {
     (word, why, ExportForm::Closed(why))
 }
@@ -223,7 +223,7 @@ pub(crate) fn export_form_help() -> String {
     format!("The form. No file can be written for {closed}: {INSTEAD}")
 }
 
-/// The way to a controller whose form is not public.
+/// Advice for a controller whose form is not public.
 pub(crate) const INSTEAD: &str = "use --format offsets for mastering and `poecal compensate` for programs";
 
 /// The forms of exports, also those that cannot be written.
@@ -257,7 +257,7 @@ const EXPORT_FORMAT: Words<ExportForm> = &[
     closed("abb", "the frames and signs of ABB's MOC.cfg are not published"),
 ];
 
-/// Words that the library knows: of each its help and its meaning.
+/// Values of words that the library knows: the help and the meaning of each.
 fn listed<T: Clone + Send + Sync + 'static>(
     words: Vec<(&'static str, &'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
@@ -289,12 +289,12 @@ fn kinds(some: Vec<Kind>) -> impl TypedValueParser<Value = Kind> {
     })
 }
 
-/// Parser of what a simulated device sees.
+/// Parser of a simulated device's kind of measurement.
 pub(crate) fn simulated() -> impl TypedValueParser<Value = Kind> {
     kinds(Kind::all().into_iter().collect())
 }
 
-/// Parser of what a session measures.
+/// Parser of a session's kind of measurement.
 pub(crate) fn measured() -> impl TypedValueParser<Value = Kind> {
     kinds(Kind::all().into_iter().filter(|kind| kind.session().plural.is_some()).collect())
 }
@@ -306,7 +306,7 @@ pub enum Refit {
     Device,
     /// The targets.
     Tool,
-    /// The frame of the device where the rows show that.
+    /// The frame of the device if the rows show that it moved.
     Auto,
 }
 
@@ -330,7 +330,7 @@ pub enum OuterFrame {
 pub const OUTER_FRAME: Words<OuterFrame> =
     &[("base", "The base frame", OuterFrame::Base), ("tip", "The tip frame", OuterFrame::Tip)];
 
-/// What a planned list shall be good at.
+/// Purpose of a planned list.
 pub const CRITERION: Words<PlanCriterion> = &[
     (
         "expected",
@@ -343,7 +343,7 @@ pub const CRITERION: Words<PlanCriterion> = &[
     ("G", "Largest variance of a prediction in the workspace", PlanCriterion::G),
 ];
 
-/// Whether collisions of the robot with itself are avoided.
+/// Avoidance of collisions of the robot with itself.
 pub const SELF_COLLISION: Words<bool> = &[
     ("avoid", "Configurations in which links overlap are left out", true),
     ("ignore", "Shapes are not looked at", false),

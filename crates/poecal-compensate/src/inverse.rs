@@ -6,10 +6,10 @@ use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 use poecal_numerics::threads::concat_chunks;
 
-/// Poses that a thread takes at a time. Each is searched for itself.
+/// Poses that a thread processes at a time. Each search is independent.
 const SOME: usize = 64;
 
-/// Inverse kinematics of a robot's tip, with terms of its joints at given values of its factors.
+/// Inverse kinematics of a robot's tip, with terms of its joints at stated values of its factors.
 #[derive(Clone, Debug)]
 pub struct Inverse {
     arm: Reach,
@@ -19,23 +19,23 @@ pub struct Inverse {
 }
 
 impl Inverse {
-    /// Of a robot, at these values of its factors.
+    /// Inverse kinematics of a robot, at these values of its factors.
     ///
     /// # Errors
-    /// As [`Robot::arm`].
+    /// Those of [`Robot::arm`].
     pub fn new(robot: &Robot, factors: &[f64]) -> Result<Self> {
         let (arm, readings) = robot.arm(factors)?;
         Ok(Inverse { arm: Reach::new(arm), readings, count: robot.joint_reading_names().len() })
     }
 
-    /// Whether all branches can be found: of six turning joints, each with a reading of its own.
+    /// True if all branches can be found: for six turning joints, each with a reading of its own.
     #[must_use]
     pub fn has_branches(&self) -> bool {
         self.arm.branches().is_some()
     }
 
-    /// The configuration nearest to `near` (rad, m, in the order of [`Robot::reading_names`]) that has the tip at a pose of the base; within
-    /// limits, if that is asked. `None` if there is none.
+    /// The configuration nearest to `near` (rad, m, in the order of [`Robot::reading_names`]) that has the tip at a pose of the base; on request
+    /// within limits. `None` if there is none.
     #[must_use]
     pub fn nearest(&self, target: &Pose, near: &[f64], within_limits: bool) -> Option<Vec<f64>> {
         let mut q: Vec<f64> = self.readings.iter().map(|&at| near.get(at).copied().unwrap_or(0.0)).collect();
@@ -53,7 +53,7 @@ impl Inverse {
         is_reached.then(|| self.all(near, &q))
     }
 
-    /// All configurations that have the tip at a pose, nearest to `near` first; within limits, if that is asked, else from -π to π.
+    /// All configurations that have the tip at a pose, nearest to `near` first; on request within limits, else from -π to π.
     #[must_use]
     pub fn branches(&self, target: &Pose, near: &[f64], within_limits: bool) -> Vec<Vec<f64>> {
         let Some(branches) = self.arm.branches() else { return Vec::new() };
@@ -63,15 +63,15 @@ impl Inverse {
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
-    /// Of an arm of seven turning joints, the index (in the order of [`Robot::reading_names`]) of the reading that is best held as redundancy
-    /// angle: without its joint the arm is nearest to one with branches in closed form. `None` of other arms.
+    /// For an arm of seven turning joints, the index (in the order of [`Robot::reading_names`]) of the reading that is best held as redundancy angle:
+    /// without its joint the arm is nearest to one with branches in closed form. `None` for other arms.
     #[must_use]
     pub fn redundant(&self) -> Option<usize> {
         self.readings.get(self.arm.best()?).copied()
     }
 
-    /// All configurations of an arm of seven turning joints that have the tip at a pose with one reading held at a value (rad): its index, in
-    /// the order of [`Robot::reading_names`], and the value. Nearest to `near` first; within limits, if that is asked. None of other arms.
+    /// All configurations of an arm of seven turning joints that have the tip at a pose with one reading held at a value (rad): its index, in the
+    /// order of [`Robot::reading_names`], and the value. Nearest to `near` first; on request within limits. Empty for other arms.
     #[must_use]
     pub fn branches_held(
         &self,
@@ -89,7 +89,7 @@ impl Inverse {
         found.as_slice().iter().map(|q| self.all(near, q)).collect()
     }
 
-    /// What `find` finds for each of many poses, whose index it gets too, by all threads, in their order.
+    /// Results of `find` for each of many poses, whose index it receives too, by all threads, in their order.
     #[must_use]
     pub fn of_many<T: Send>(
         &self,
@@ -111,7 +111,7 @@ impl Inverse {
         q.iter().zip(self.arm.arm().limits()).all(|(q, (low, high))| (low - 1e-7..=high + 1e-7).contains(q))
     }
 
-    /// All readings of the robot: those that do not move the tip are where they were.
+    /// All readings of the robot: those that do not move the tip keep their values.
     fn all(&self, near: &[f64], q: &[f64]) -> Vec<f64> {
         let mut all: Vec<f64> = (0..self.count).map(|at| near.get(at).copied().unwrap_or(0.0)).collect();
         for (&at, value) in self.readings.iter().zip(q) {

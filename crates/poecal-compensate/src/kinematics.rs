@@ -8,27 +8,27 @@ use poecal_numerics::error::Result;
 use poecal_numerics::kernels::by_best;
 use poecal_numerics::threads::fill_chunks;
 
-/// Configurations that a thread takes at a time. Each is computed for itself, so that results do not depend on it.
+/// Configurations that a thread processes at a time. Each is computed independently, so that results do not depend on it.
 const SOME: usize = 1024;
 
-/// Where a robot's tip is in many configurations, how it moves there, and what weights do to it, with terms of its joints at given values of
-/// its factors. Eight configurations are computed side by side, and all threads share them; results have the same bits for any number.
+/// Pose of a robot's tip in many configurations, its Jacobian there, and its deflection by weights, with terms of its joints at stated values of its
+/// factors. Eight configurations are computed side by side, and all threads share them; results have the same bits for any number of threads.
 ///
-/// Configurations are given one after the other, the readings of each (rad, m) in the order of [`Robot::reading_names`] without factors.
+/// Configurations are passed one after the other, the readings of each (rad, m) in the order of [`Robot::reading_names`] without factors.
 #[derive(Clone, Debug)]
 pub struct Kinematics {
     arm: Arm,
-    /// Of each reading of the arm, its index among the robot's.
+    /// Index of each reading of the arm among the robot's.
     readings: Vec<usize>,
     /// Number of the robot's joint readings.
     count: usize,
 }
 
 impl Kinematics {
-    /// Of a robot, at these values of its factors.
+    /// Kinematics of a robot, at these values of its factors.
     ///
     /// # Errors
-    /// As [`Robot::arm`].
+    /// Those of [`Robot::arm`].
     pub fn new(robot: &Robot, factors: &[f64]) -> Result<Self> {
         let (arm, readings) = robot.arm(factors)?;
         Ok(Kinematics { arm, readings, count: robot.joint_reading_names().len() })
@@ -47,8 +47,8 @@ impl Kinematics {
         tips
     }
 
-    /// In each configuration the Jacobian by rows, six rows of as many numbers as readings: the motion of the tip's point (m/rad, or m/m of
-    /// a sliding joint) and its turn (rad/rad, or rad/m), in the base; what weights add is in it.
+    /// Jacobian in each configuration by rows, six rows with one number per reading: the motion of the tip's point (m/rad, or m/m for a sliding
+    /// joint) and its turn (rad/rad, or rad/m), in the base; the contribution of weights is included.
     #[must_use]
     pub fn jacobians(&self, readings: &[f64]) -> Vec<f64> {
         let n = self.readings.len();
@@ -73,8 +73,8 @@ impl Kinematics {
         jacobians
     }
 
-    /// What weights move the tip in each configuration: how far its point is shifted (m) and how far it is turned, as a rotation vector
-    /// (rad), in the base, from where it would be without what joints and links give under weights. Zero where the model has no such terms.
+    /// Deflection of the tip by weights in each configuration: shift of its point (m) and its turn, as a rotation vector (rad), in the base, relative
+    /// to joints and links without compliance. Zero if the model has no such terms.
     #[must_use]
     pub fn sag(&self, readings: &[f64]) -> Vec<[f64; 6]> {
         let mut sag = vec![[0.0; 6]; self.rows(readings)];
@@ -92,12 +92,12 @@ impl Kinematics {
         readings.len() / self.count.max(1)
     }
 
-    /// Whether the arm's readings are those of the robot.
+    /// True if the arm's readings are those of the robot.
     fn is_whole(&self) -> bool {
         self.readings.iter().copied().eq(0..self.count)
     }
 
-    /// Fills so many numbers of each configuration from the arm's readings there.
+    /// Fills a fixed count of numbers of each configuration from the arm's readings there.
     fn of_each<T: Send>(
         &self,
         readings: &[f64],

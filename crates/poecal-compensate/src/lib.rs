@@ -1,13 +1,13 @@
-//! Readings and programs corrected so that the actual robot does what was programmed for the nominal one.
+//! Readings and programs corrected so that the actual robot executes the motion programmed for the nominal one.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and is not stable
+//! by itself.
 //!
 //! `table.rs` corrects files of joint readings, `programs` targets in the text of robot programs; [`Inverse`] and [`Kinematics`] compute inverses,
 //! poses, Jacobians and sag of many configurations.
 //!
-//! Not here: iterations, which are `poecal-arm`'s; languages, which are `poecal-programs`'s; base and tool, with which
-//! `poecal-results`'s `calibration_file/taught.rs` provides the nominal robot.
+//! Not here: iterations, which are `poecal-arm`'s; languages, which are `poecal-programs`'s; base and tool, with which `poecal-results`'s
+//! `calibration_file/taught.rs` provides the nominal robot.
 
 #![forbid(unsafe_code)]
 
@@ -40,30 +40,30 @@ use poecal_numerics::threads::map_chunks;
 /// Distance (m) and angle (rad) below which a pose counts as reached.
 pub const REACHED: f64 = 1e-9;
 
-/// How far readings may be changed.
+/// Limits of the changes of readings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ChangeOptions {
-    /// How far a joint may move beyond its zero.
+    /// Largest motion of a joint beyond its zero.
     pub most_change: MostChange,
-    /// Whether the nearest configuration is taken where an arm of six or more joints cannot have the tip where it was meant.
+    /// True if the nearest configuration is used when an arm of six or more joints cannot reach the intended pose of the tip.
     pub nearest: bool,
 }
 
-/// Compensation of joint readings: those with which the actual robot has its tip where the nominal one has it,
+/// Compensation of joint readings: those with which the actual robot's tip has the pose of the nominal one's,
 /// `base_from_tip(q) = nominal base_from_tip(q₀)`, on the branch of `q₀` (theory.md §2).
 #[derive(Clone, Debug)]
 pub struct Compensation {
     corrections: Arc<Corrections>,
     nearest: bool,
-    /// Of each reading of the arm, its index among the robot's.
+    /// Index of each reading of the arm among the robot's.
     readings: Vec<usize>,
     names: Vec<String>,
-    /// The last change: where the next one begins.
+    /// The last change: start of the next one.
     last: Vec<f64>,
     before: Vec<f64>,
-    /// Number of changes that are known of the configurations just before: 0, 1, or 2.
+    /// Number of known changes of the configurations just before: 0, 1, or 2.
     known: usize,
-    /// Number of configurations since the last one that began without.
+    /// Number of configurations since the last one that started without a known change.
     since: usize,
     expected: Vec<f64>,
     q: Vec<f64>,
@@ -71,39 +71,38 @@ pub struct Compensation {
     out: Vec<f64>,
 }
 
-/// A configuration, corrected or as it was.
+/// A configuration, corrected or unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensated<'a> {
     /// Readings to command (rad, m), in the order of [`Robot::reading_names`].
     pub readings: &'a [f64],
-    /// How far the actual robot's tip would have been off without correction, metres.
+    /// Distance of the actual robot's tip from its intended position without correction, metres.
     pub moved_m: f64,
-    /// The same of its orientation, radians.
+    /// Angle of its tip from the intended orientation without correction, radians.
     pub turned_rad: f64,
-    /// Distance that is left, metres.
+    /// Remaining distance, metres.
     pub left_m: f64,
-    /// Angle that is left, radians.
+    /// Remaining angle, radians.
     pub left_rad: f64,
-    /// What became of it.
+    /// Outcome of the correction.
     pub outcome: Outcome,
-    /// Whether it is corrected; otherwise the readings are as they were, and what is left is without correction.
+    /// True if it is corrected; otherwise the readings are unchanged, and the remaining error is that without correction.
     pub is_corrected: bool,
 }
 
 impl Compensation {
-    /// Of two robots with the same joints, at these values of the actual one's factors.
+    /// Compensation between two robots with the same joints, at these values of the actual one's factors.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if their joints differ, or as [`Robot::arm`].
+    /// [`ErrorKind::Model`] if their joints differ, or those of [`Robot::arm`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
         Compensation::holding(nominal, actual, factors, &[], options)
     }
 
-    /// The same where some readings (each by its index among the robot's, with its value in rad or m) stay as they are: the others are
-    /// corrected for them.
+    /// Compensation with some readings held (each by its index among the robot's, with its value in rad or m): the others are corrected for them.
     ///
     /// # Errors
-    /// As [`Compensation::new`].
+    /// Those of [`Compensation::new`].
     pub fn holding(
         nominal: &Robot,
         actual: &Robot,
@@ -162,13 +161,13 @@ impl Compensation {
         &self.corrections
     }
 
-    /// Of each reading of the arms, its index among all readings.
+    /// Index of each reading of the arms among all readings.
     #[must_use]
     pub fn readings(&self) -> &[usize] {
         &self.readings
     }
 
-    /// Whether readings are beyond the actual arm's limits.
+    /// True if readings are beyond the actual arm's limits.
     #[must_use]
     pub fn is_beyond_limits(&self, readings: &[f64]) -> bool {
         let of = |&at: &usize| readings.get(at).copied().unwrap_or(0.0);
@@ -179,8 +178,8 @@ impl Compensation {
             .any(|(it, &(low, high))| it < low || it > high)
     }
 
-    /// Readings of the actual robot for readings of the nominal one (rad, m); those that do not move the tip stay as they are, and all of a
-    /// configuration that cannot be corrected. The search begins with the changes before, and every [`TOGETHER`] configurations without.
+    /// Readings of the actual robot for readings of the nominal one (rad, m). Readings that do not move the tip are unchanged, and so are all of a
+    /// configuration that cannot be corrected. The search starts with the changes before, and every [`TOGETHER`] configurations without.
     pub fn joints(&mut self, meant: &[f64]) -> Compensated<'_> {
         if self.since == TOGETHER {
             self.forget();
@@ -199,7 +198,7 @@ impl Compensation {
             let nothing = Correction { outcome: Outcome::Reached, left_m: 0.0, left_rad: 0.0 };
             return self.told((moved_m, turned_rad), nothing);
         }
-        // Along a path, changes change evenly.
+        // Along a path, changes vary evenly.
         for (to, (last, before)) in self.expected.iter_mut().zip(self.last.iter().zip(&self.before)) {
             *to = if self.known > 1 { 2.0 * last - before } else { *last };
         }
@@ -224,7 +223,7 @@ impl Compensation {
         self.told((moved_m, turned_rad), found)
     }
 
-    /// Whether what was found is commanded.
+    /// True if the solution is commanded.
     fn is_taken(&self, outcome: Outcome) -> bool {
         match outcome {
             Outcome::Reached | Outcome::Turned => true,
@@ -233,7 +232,7 @@ impl Compensation {
         }
     }
 
-    /// The largest change of a joint beyond its zero, over what is allowed.
+    /// The largest change of a joint beyond its zero, relative to the limit.
     #[must_use]
     pub fn share_of_most(&self, meant: &[f64], commanded: &[f64]) -> f64 {
         let own = |all: &[f64]| -> Vec<f64> {
@@ -242,7 +241,7 @@ impl Compensation {
         self.corrections.share_of_most(&own(meant), &own(commanded))
     }
 
-    /// Why a configuration stays as it is, by what became of it and what is left (m, rad).
+    /// Reason why a configuration is unchanged, by its outcome and remaining error (m, rad).
     #[must_use]
     pub fn reason(&self, outcome: Outcome, (left_m, left_rad): (f64, f64)) -> Cow<'static, str> {
         match outcome {
@@ -271,7 +270,7 @@ impl Compensation {
         }
     }
 
-    /// The next configuration begins without those before.
+    /// Starts the next configuration without those before.
     fn forget(&mut self) {
         (self.since, self.known) = (0, 0);
     }
@@ -288,8 +287,8 @@ impl Compensation {
         }
     }
 
-    /// Readings of many configurations, one after the other, as [`Compensation::joints`] of a new compensation one by one, but by all threads;
-    /// and what changed, by the index of each row from 0, with every row, if that is asked for.
+    /// Readings of many configurations, one after the other, as by [`Compensation::joints`] of a new compensation one by one, but by all threads.
+    /// Also the summary of changes, by the index of each row from 0; on request with every row.
     #[must_use]
     pub fn of_many(&self, readings: &[f64], each: bool) -> (Vec<f64>, Summary) {
         let width = self.names.len().max(1);
@@ -324,7 +323,7 @@ impl Compensation {
     }
 }
 
-/// Configurations that are corrected one after the other, each from where the one before led; the next ones begin anew, so that several
+/// Configurations that are corrected one after the other, each starting from the change of the one before; the next ones restart, so that several
 /// threads find the same bits.
 pub const TOGETHER: usize = 256;
 

@@ -1,4 +1,4 @@
-//! An arm that moves to poses.
+//! An arm with its inverse kinematics.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,15 +6,15 @@ use poecal_arm::{AllBranches, Arm, HeldBranches};
 
 use poecal_arm::lie::Pose;
 
-/// Remainder (m, rad) of which it does not matter where it is.
+/// Remainder (m, rad) that is negligible.
 const NOTHING: f64 = 1e-11;
 
-/// An arm, and all its branches once they are asked for: what is computed once for them takes as long as thousands of searches.
+/// An arm, and all its branches on first use: computing them once takes as long as thousands of searches.
 #[derive(Clone, Debug)]
 pub(crate) struct Reach {
     arm: Arm,
     branches: Arc<OnceLock<Option<AllBranches>>>,
-    /// Of an arm of seven, with each joint held.
+    /// Branches of an arm of seven, with each joint held.
     held: Arc<[OnceLock<Option<HeldBranches>>; 7]>,
     /// Index of the joint that is best held.
     best: Arc<OnceLock<Option<usize>>>,
@@ -43,7 +43,7 @@ impl Reach {
         *self.best.get_or_init(|| HeldBranches::new(&self.arm, None).map(|it| it.joint()))
     }
 
-    /// As [`AllBranches::nearest`] and [`HeldBranches::nearest`], and as [`Arm::nearest`] of an arm that has neither; what is left.
+    /// As [`AllBranches::nearest`] and [`HeldBranches::nearest`], or [`Arm::nearest`] for an arm that has neither; returns the remainder.
     pub(crate) fn nearest(&self, target: &Pose, q: &mut [f64]) -> f64 {
         let start: Option<[f64; 6]> = (&*q).try_into().ok();
         let left = self.arm.nearest(target, q);

@@ -1,4 +1,4 @@
-//! What compensation changes in a program.
+//! Changes of a program or table by compensation.
 
 use std::fmt::Write as _;
 
@@ -7,22 +7,22 @@ use serde::Serialize;
 use super::{Compensated, Compensation, Outcome};
 use poecal_programs::Listed;
 
-/// Change of a correction from one row to the next (rad, m) from which it is told as a jump.
+/// Change of a correction from one row to the next (rad, m) from which it is reported as a jump.
 const JUMP: f64 = 0.02;
-/// Targets that a terminal lists.
+/// Most targets that a terminal lists.
 const MOST_LINES: usize = 1000;
 
-/// A largest value, and the line of the program where it is.
+/// A largest value, and its line of the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Largest {
     /// The value.
     pub value: f64,
-    /// Its line, from 1; 0 of none.
+    /// Line, from 1; 0 without a value.
     pub line: usize,
 }
 
 impl Largest {
-    /// Takes a value if it is larger.
+    /// Adopts a value if it is larger.
     pub fn include(&mut self, value: f64, line: usize) {
         if value > self.value || self.line == 0 {
             *self = Largest { value, line };
@@ -30,7 +30,7 @@ impl Largest {
     }
 }
 
-/// What became of a target that was corrected.
+/// Outcome of a corrected target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CorrectedTarget {
     /// Line of the program, from 1.
@@ -39,20 +39,20 @@ pub struct CorrectedTarget {
     pub joint: usize,
     /// Its change, rad or m.
     pub change: f64,
-    /// What is left of the tip's distance, metres.
+    /// Remaining distance of the tip, metres.
     pub left_m: f64,
-    /// What is left of its angle, radians.
+    /// Remaining angle of the tip, radians.
     pub left_rad: f64,
 }
 
-/// What is computed once more from the written numbers, by the robots' own forward kinematics.
+/// Results recomputed from the written numbers, by the robots' own forward kinematics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Checked {
-    /// Distance that is left, metres.
+    /// Remaining distance, metres.
     pub left_m: Largest,
-    /// Angle that is left, radians.
+    /// Remaining angle, radians.
     pub left_rad: Largest,
-    /// How far a joint is from where its reading and its zero have it, over what is allowed.
+    /// Distance of a joint from the value by its reading and its zero, relative to the limit.
     pub change: Largest,
 }
 
@@ -64,7 +64,7 @@ impl Checked {
     }
 }
 
-/// Counts one more on a line; whether it is the first.
+/// Counts one more on a line; true if it is the first.
 fn count(number: &mut usize, first: &mut usize, line: usize) -> bool {
     *number += 1;
     if *number == 1 {
@@ -73,27 +73,27 @@ fn count(number: &mut usize, first: &mut usize, line: usize) -> bool {
     *number == 1
 }
 
-/// What a compensation changes, and what is left.
+/// Changes by a compensation, and the remaining error.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Summary {
-    /// Number of targets that are corrected.
+    /// Number of corrected targets.
     pub rows: usize,
-    /// What stays as it is, in the order of the lines.
+    /// Unchanged targets, in the order of the lines.
     pub listed: Vec<Listed>,
-    /// Every target that is corrected, if that was asked for.
+    /// Every corrected target, on request.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub targets: Option<Vec<CorrectedTarget>>,
     /// Names of the readings.
     pub joints: Vec<String>,
     /// Largest correction of each reading, rad or m.
     pub largest: Vec<Largest>,
-    /// How far the tip would have been off, metres.
+    /// Distance of the tip from its intended position without correction, metres.
     pub moved_m: Largest,
-    /// How far it would have been turned, radians.
+    /// Angle of the tip from its intended orientation without correction, radians.
     pub turned_rad: Largest,
-    /// What is left of that, metres.
+    /// Remaining distance, metres.
     pub left_m: Largest,
-    /// What is left, radians.
+    /// Remaining angle, radians.
     pub left_rad: Largest,
     /// Targets that the actual robot cannot reach, so that the nearest configuration is written, and the first of them.
     pub unreached: (usize, usize),
@@ -103,10 +103,10 @@ pub struct Summary {
     pub beyond_limits: (usize, usize, String),
     /// Jumps of a correction between consecutive targets, and the largest.
     pub jumps: (usize, Largest),
-    /// What an independent computation finds.
+    /// Result of an independent computation.
     pub checked: Option<Checked>,
     sum_moved: f64,
-    /// What a place of the program is called.
+    /// Name of a position in the program.
     #[serde(skip)]
     place: &'static str,
     #[serde(skip)]
@@ -118,7 +118,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of no targets yet.
+    /// Summary without targets.
     #[must_use]
     pub fn new(compensation: &Compensation) -> Self {
         let limits = compensation.readings().iter().zip(compensation.actual().limits());
@@ -131,12 +131,12 @@ impl Summary {
         }
     }
 
-    /// The same of rows without lines.
+    /// Summary of rows without lines.
     pub(crate) fn of_rows(compensation: &Compensation, each: bool) -> Self {
         Summary { place: "row", targets: each.then(Vec::new), ..Summary::new(compensation) }
     }
 
-    /// Mean distance by which the tip would have been off, metres.
+    /// Mean distance of the tip from its intended position without correction, metres.
     #[must_use]
     pub fn mean_moved_m(&self) -> f64 {
         if self.rows == 0 { 0.0 } else { self.sum_moved / self.rows as f64 }
@@ -200,16 +200,16 @@ impl Summary {
         self.listed.push(Listed { line, name: name.to_owned(), reason: reason.into() });
     }
 
-    /// Whether every target is corrected.
+    /// True if every target is corrected.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.listed.is_empty()
     }
 
-    /// The joint that is changed most, of those that turn or of those that slide.
+    /// The joint that is changed most, among those that turn or those that slide.
     fn most(&self, slides: &dyn Fn(&str) -> bool) -> Option<(&str, Largest)> {
         let all = self.joints.iter().map(String::as_str).zip(self.largest.iter().copied());
-        // Of both kinds, those that turn: what a millimetre is beside a degree depends on the arm.
+        // With both kinds present, those that turn: the ratio of a millimetre to a degree depends on the arm.
         let of = |is_sliding: bool| {
             let some = all.clone().filter(move |(name, _)| slides(name) == is_sliding);
             some.max_by(|(_, one), (_, other)| one.value.total_cmp(&other.value))
@@ -217,7 +217,7 @@ impl Summary {
         of(false).filter(|(_, it)| it.value > 0.0).or_else(|| of(true))
     }
 
-    /// Corrections and what is left, in words.
+    /// Corrections and remaining errors, in words.
     fn changes(&self, out: &mut String, slides: &dyn Fn(&str) -> bool, what: &str) {
         let mm = |it: f64| format!("{:.4} mm", it * 1e3);
         let degrees = |it: f64| format!("{:.4} deg", it.to_degrees());
@@ -263,7 +263,7 @@ impl Summary {
         }
     }
 
-    /// How many targets are corrected, how far off the tip would have been, and what is left, in a sentence.
+    /// Number of corrected targets, the uncorrected error of the tip, and the remaining one, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         format!(
@@ -275,7 +275,7 @@ impl Summary {
         )
     }
 
-    /// The summary in words, for the terminal; joints that slide are told by their names.
+    /// The summary in words, for the terminal; sliding joints are listed by their names.
     #[must_use]
     pub fn text(&self, slides: &dyn Fn(&str) -> bool, what: &str) -> String {
         let mut out = String::new();
@@ -304,7 +304,7 @@ impl Summary {
         out
     }
 
-    /// What a user has to look at, a sentence each.
+    /// Points that a user has to check, a sentence each.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let (mut out, place) = (Vec::new(), self.place);

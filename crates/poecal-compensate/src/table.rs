@@ -7,24 +7,24 @@ use poecal_import::{ReadOptions, RewrittenTable, rewrite_joints};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// How tables are compensated.
+/// Options of the compensation of tables.
 #[derive(Clone, Debug, Default)]
 pub struct TableOptions {
     /// Columns, units and names.
     pub read: ReadOptions,
-    /// Compute what is left once more, from the written numbers by the robots' own forward kinematics.
+    /// True if the remaining error is recomputed from the written numbers by the robots' own forward kinematics.
     pub check: bool,
-    /// How far readings may be changed.
+    /// Limits of the changes of readings.
     pub change: ChangeOptions,
-    /// Keep what became of every row.
+    /// True if the outcome of every row is kept.
     pub each: bool,
 }
 
-/// Corrects the joint columns of a CSV row by row ([`rewrite_joints`]), for readings of `nominal` and the robot `actual` at these values of
-/// its factors. Rows that cannot be corrected stay as they are and are listed.
+/// Corrects the joint columns of a CSV row by row ([`rewrite_joints`]), for readings of `nominal` and the robot `actual` at these values of its
+/// factors. Rows that cannot be corrected are unchanged and listed.
 ///
 /// # Errors
-/// As [`rewrite_joints`] and [`Compensation::new`].
+/// Those of [`rewrite_joints`] and [`Compensation::new`].
 pub fn compensate_table(
     path: impl AsRef<Path>,
     (nominal, actual): (&Robot, &Robot),
@@ -37,7 +37,7 @@ pub fn compensate_table(
     let mut summary = Summary::new(&compensation);
     summary.targets = options.each.then(Vec::new);
     let mut plain = actual.clone();
-    // Factors are values of this compensation, no columns of the program.
+    // Factors are values of this compensation, not columns of the program.
     plain.factors.clear();
     plain.terms.clear();
     let mut with_factors: Vec<f64> = Vec::new();

@@ -1,5 +1,5 @@
-//! Prints the corners of a board in pictures as a table, or why there are none: `corners BOARD PICTURE...`. Of no picture with corners it prints which
-//! other board fits.
+//! Prints the corners of a board in pictures as a table, or the reason for a rejection: `corners BOARD PICTURE...`. If no picture has corners, it
+//! prints another board that fits.
 
 #![allow(clippy::print_stdout)]
 

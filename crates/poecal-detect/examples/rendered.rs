@@ -1,5 +1,5 @@
-//! Draws pictures of boards with their truth, finds the corners, and prints how many and how well: `rendered [PICTURES [FOLDER]]`. In a folder the
-//! pictures and the truth are left, for other detectors; `-` is none. What is missing or off is told beside the table.
+//! Draws pictures of boards with their truth, finds the corners, and prints their number and accuracy: `rendered [PICTURES [FOLDER]]`. The pictures
+//! and the truth are written to the folder, for other detectors; `-` is none. Missing and inaccurate corners are printed beside the table.
 
 #![allow(clippy::print_stderr)]
 
@@ -28,7 +28,7 @@ const BOARDS: [(&str, &str); 12] = [
     ("aprilgrid", "aprilgrid:6x6:88mm:0.3"),
 ];
 
-/// Boards that are sought in pictures without them.
+/// Boards that are searched for in pictures without them.
 const SOUGHT: [&str; 7] = [
     "charuco:7x5:36.195mm:18.256mm:DICT_6X6_250",
     "chessboard:10x7:28mm",
@@ -39,7 +39,7 @@ const SOUGHT: [&str; 7] = [
     "aprilgrid:6x6:88mm:0.3",
 ];
 
-/// Boards that are not the sought one.
+/// Boards other than the sought one.
 const OTHERS: [&str; 10] = [
     "charuco:7x5:36mm:18mm:DICT_5X5_250",
     "charuco:11x8:24mm:18mm:DICT_6X6_250",
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let pictures: usize = arguments.next().map_or(Ok(40), |it| it.parse())?;
     let folder = arguments.next().filter(|it| it != "-");
-    // One of the boards, for a look at it; `none` for pictures without them.
+    // One of the boards, to examine it alone; `none` for pictures without them.
     let only = arguments.next();
     let mut out = io::stdout();
     writeln!(
@@ -96,14 +96,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         print(&mut out, name, pictures, tally)?;
     }
     if only.as_ref().is_none_or(|it| it.starts_with("none")) {
-        // Of one kind: `none-circles`.
+        // Boards of one kind: `none-circles`.
         let kind = only.as_deref().and_then(|it| it.strip_prefix("none-")).unwrap_or_default();
         false_corners(&mut out, pictures * 25, kind)?;
     }
     Ok(())
 }
 
-/// What scenes of a board have: a pitch of an asymmetric grid is shorter than the way between its dots.
+/// Scenes of a board: a pitch of an asymmetric grid is shorter than the distance between its dots.
 fn draw(name: &str) -> Draw {
     let square_px = match name {
         "circles-asymmetric" => [28.0, 78.0],
@@ -141,7 +141,7 @@ fn tally(detector: &Detector, drawn: &[(usize, Drawn)]) -> Tally {
 }
 
 impl Tally {
-    /// Adds the corners of a picture; returns how many of the visible ones there are.
+    /// Adds the corners of a picture; returns the number of detected visible ones.
     fn add(&mut self, number: usize, found: &Found, drawn: &Drawn) -> usize {
         let last = drawn.truth.len() - 1;
         let turn = turned(found, drawn);
@@ -173,7 +173,7 @@ impl Tally {
     }
 }
 
-/// Whether corners count from the other end: of a board that looks the same from both.
+/// True if corners count from the other end, for a board that looks the same from both.
 fn turned(found: &Found, drawn: &Drawn) -> bool {
     let last = drawn.truth.len() - 1;
     let off = |turn: bool| {
@@ -202,7 +202,7 @@ fn print(out: &mut impl Write, name: &str, pictures: usize, mut tally: Tally) ->
     )
 }
 
-/// Pictures without the board, each fifth with another one.
+/// Pictures without the board, every fifth with another one.
 fn false_corners(
     out: &mut impl Write,
     pictures: usize,

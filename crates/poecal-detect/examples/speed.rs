@@ -1,5 +1,6 @@
-//! Times the detection of a board in pictures, decoding apart: `speed BOARD ROUNDS PICTURE...` prints milliseconds of one processor per picture, the
-//! mean over pictures of the least of some rounds, how many pictures have corners, how many corners, and a number that changes with any bit of them.
+//! Times the detection of a board in pictures, decoding apart: `speed BOARD ROUNDS PICTURE...`. It prints milliseconds of one processor per picture
+//! (the mean over pictures of the least of some rounds), the number of pictures with corners, the number of corners, and a number that changes with
+//! any bit of them.
 
 #![allow(clippy::print_stdout)]
 

@@ -1,4 +1,4 @@
-//! Kalibr's grid of tags: where the corners of tags and of the dark squares between them meet, two edges cross as on a chessboard.
+//! Kalibr's grid of tags: at the common corners of tags and of the dark squares between them, two edges cross as on a chessboard.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,11 @@ use crate::median::median;
 use crate::quads::{Quad, quads_apart};
 use crate::saddle::{Expected, Saddle, refine};
 
-/// Fewest tags that are a board.
+/// Fewest tags that form a board.
 const LEAST: usize = 2;
-/// Weight of a corner of a tag as it was read beside a corner where edges cross.
+/// Weight of a corner read from a tag, relative to a corner of crossing edges.
 const ANCHOR: f64 = 0.04;
-/// Largest distance of a corner from where others have it, pixels and sides of a tag.
+/// Largest distance of a corner from its prediction by others, pixels and sides of a tag.
 const OFF: (f64, f64) = (0.8, 0.02);
 /// Quarter turns of Kalibr's tags against OpenCV's.
 const TURNS: usize = 2;
@@ -29,7 +29,7 @@ pub(crate) fn detect(gray: &Gray, layout: &Layout, reader: &Reader, noise: f64) 
     of_quads(gray, layout, (reader, noise), &quads_apart(gray, noise))
 }
 
-/// The same of quadrangles that were found apart from the squares at their corners.
+/// Finds the corners in quadrangles that were separated from the squares at their corners.
 pub(crate) fn of_quads(
     gray: &Gray,
     layout: &Layout,
@@ -82,10 +82,10 @@ pub(crate) fn of_quads(
     Ok(Found { corners, markers: agreeing.len(), turnable: false, blur_px, noise })
 }
 
-/// What is known of a corner by others.
+/// Prediction of a corner by the others.
 fn expected(gray: &Gray, layout: &Layout, tags: &Tagged, pairs: &[Pair], id: usize) -> Option<Expected> {
     let point = layout.corner(id);
-    // Its own corner of a tag counts too: from beside it.
+    // The corner's own detection from its tag counts too, since the map is taken beside it.
     let (map, nearest) = map_near(pairs, point + Vector2::new(0.01, 0.01))?;
     let (place, slope) = (map.map(point)?, map.slope(point)?);
     if nearest > 1.8 || !gray.holds(place, 1.0) {

@@ -1,7 +1,7 @@
-//! From the middle of a circle's picture to the picture of its middle.
+//! Offset between the middle of a circle's image and the image of its middle.
 //!
-//! A circle's picture is an ellipse, but its middle is not the picture of the circle's middle: that is nearer to the far side. How much follows from
-//! how the plane is seen around: by a pinhole, and by what a lens adds, to second order.
+//! The image of a circle is an ellipse whose middle is not the image of the circle's middle: the latter is nearer to the far side. The surrounding
+//! map of the plane determines the offset: that of a pinhole, and the part that a lens adds, to second order.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
@@ -12,7 +12,7 @@ const REACH: [f64; 2] = [1.8, 4.5];
 /// Points on a circle.
 const AROUND: usize = 16;
 
-/// How the plane is seen near a point: a homography, and a polynomial of second order on top.
+/// Map of the plane near a point: a homography, and a polynomial of second order on top.
 struct Local {
     map: Homography,
     point: Vector2<f64>,
@@ -33,7 +33,7 @@ impl Local {
             normal += row * row.transpose() * *weight;
             right += row * left.transpose() * *weight;
         }
-        // Where points do not determine the second order, it is none.
+        // If points do not determine the second order, it is zero.
         normal += SMatrix::identity() * (1e-6 * normal.trace());
         let bend = normal.cholesky()?.solve(&right);
         Some(Local { map, point, bend })
@@ -48,7 +48,7 @@ impl Local {
     }
 }
 
-/// From the picture of a circle's middle to the middle of the ellipse that fits its picture, pixels: by points of the plane and their places.
+/// Offset from the image of a circle's middle to the middle of the ellipse that fits its image, pixels: by points of the plane and their positions.
 pub(crate) fn bias(pairs: &[Pair], middle: Vector2<f64>, radius: f64) -> Option<Vector2<f64>> {
     let local = Local::new(pairs, middle)?;
     let (own, slope) = (local.at(Vector2::zeros())?, local.slope()? * radius);
@@ -57,7 +57,7 @@ pub(crate) fn bias(pairs: &[Pair], middle: Vector2<f64>, radius: f64) -> Option<
     for k in 0..AROUND {
         let (sin, cos) = (k as f64 * std::f64::consts::TAU / AROUND as f64).sin_cos();
         let outwards = Vector2::new(cos, sin);
-        // How far the outline is from a circle there, in radii; the first harmonic of it moves the ellipse.
+        // Deviation of the outline from a circle there, in radii; its first harmonic moves the ellipse.
         let off = back * (local.at(outwards * radius)? - own) - outwards;
         shift += outwards * (outwards.dot(&off) * 2.0 / AROUND as f64);
     }
@@ -89,7 +89,7 @@ mod tests {
         let pairs: Vec<Pair> = plane.map(|it| (it, map.map(it).unwrap(), 1.0)).collect();
         let found = bias(&pairs, middle, radius).unwrap();
         println!("{found:?}, by its tangents {expected:?}");
-        // To second order: the next is smaller by the square of the depth of a circle beside its distance.
+        // Accuracy of second order: the next term is smaller by the square of the circle's depth over its distance.
         assert!((found - expected).norm() < 0.01 * expected.norm() && expected.norm() > 0.1);
     }
 }

@@ -12,18 +12,19 @@ use crate::markers::{Marker, Reader};
 use crate::median::median;
 use crate::quads::{Quad, quads};
 
-/// Fewest corners and markers that are a board.
+/// Fewest corners and markers that form a board.
 const LEAST_CORNERS: usize = 4;
 const LEAST_MARKERS: usize = 2;
-/// Corners that are enough to do without those of markers.
+/// Number of corners that suffices without the corners of markers.
 const ENOUGH: usize = 9;
-/// So many markers have to agree for each one on the board that does not. Of a board of the other pattern six of seven agree, one square aside.
+/// Number of markers that must agree for each one on the board that does not. With a board of the other pattern six of seven agree, shifted by one
+/// square.
 const DOUBT: usize = 12;
-/// One of so many markers among the corners that were found has to be read, unless the whole board is found.
+/// Least share of the markers among the detected corners that must be read, as one in this number, unless the whole board is found.
 const READ: usize = 3;
-/// Weight of a corner of a marker beside a corner of squares: five times as far off.
+/// Weight of a corner of a marker relative to a corner of squares: its error is five times as large.
 const ANCHOR: f64 = 0.04;
-/// Largest deviation of a marker's side from what the board has, as a part.
+/// Largest relative deviation of a marker's side from that of the board.
 const SIDE: f64 = 0.12;
 
 /// Finds a board by its markers; if they are too few, by the grid of its squares.
@@ -102,7 +103,7 @@ fn of_markers(
     let nodes = nodes_of(layout);
     growth.grow(&nodes);
     if growth.nodes.len() >= ENOUGH {
-        // Corners of squares are better, where they are enough to check each other.
+        // Corners of squares are better, if they are numerous enough to check each other.
         growth.anchors.clear();
     }
     growth.prune();
@@ -118,7 +119,8 @@ fn of_markers(
     if wrong * DOUBT > right || !is_marker_side(layout, &growth, markers, &agreeing) {
         return Err(Rejected::Other);
     }
-    // Another board with the same markers agrees in a few: of blurred ones no others may be left to say so, but all corners of this one are not there.
+    // Another board with the same markers agrees in a few. In a blurred one no other marker may be left to contradict, but not all corners of this
+    // board are present.
     let markers = right.max(agreeing.len());
     let is_doubtful = growth.nodes.len() < nodes.len() && markers * READ < right + unread;
     if markers < LEAST_MARKERS || is_doubtful {
@@ -134,7 +136,7 @@ fn nodes_of(layout: &Layout) -> Vec<Node> {
     (1..rows).flat_map(|y| (1..columns).map(move |x| [x, y])).collect()
 }
 
-/// The markers, by their places in the list, that one map of the board explains, and the map: of a pair of them, or of the only one.
+/// The markers, by their indices in the list, that one map of the board explains, and the map: from a pair of them, or from the only one.
 pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homography, Vec<usize>)> {
     let known: Vec<(usize, [Vector2<f64>; 4], Quad)> = markers
         .iter()
@@ -144,7 +146,7 @@ pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homograp
         .collect();
     let mut best: Option<(Homography, Vec<usize>)> = None;
     let count = known.len();
-    // Of many markers not every pair: some hundred are enough to have a good one.
+    // With many markers not every pair: some hundred suffice to include a good one.
     let step = (count * count / 800).max(1);
     let pairs = (0..count).flat_map(|a| (a..count).map(move |b| (a, b))).filter(|(a, b)| a != b || count < 3);
     for (a, b) in pairs.step_by(step) {
@@ -163,7 +165,7 @@ pub(crate) fn consensus(layout: &Layout, markers: &[Marker]) -> Option<(Homograp
     best
 }
 
-/// Whether a marker is where a map has it, as exactly as the lens lets it so far from where the map comes from.
+/// True if a marker is at its predicted position, within the tolerance of the lens at this distance from the origin of the map.
 fn agrees(map: &Homography, corners: &[Vector2<f64>; 4], seen: &Quad, near: Vector2<f64>) -> bool {
     let side = (seen[2] - seen[0]).norm().max((seen[3] - seen[1]).norm()) * 0.7;
     let limit = side * (0.25 + 0.08 * (corners[0] - near).norm());
@@ -173,7 +175,7 @@ fn agrees(map: &Homography, corners: &[Vector2<f64>; 4], seen: &Quad, near: Vect
         .all(|(corner, place)| map.map(*corner).is_some_and(|predicted| (predicted - place).norm() < limit))
 }
 
-/// How many markers that do not agree are far from the board: nothing against it.
+/// Number of disagreeing markers that are far from the board: they do not contradict it.
 fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agreeing: &[usize]) -> usize {
     let [columns, rows] = layout.squares.map(|it| it as f64);
     let around = [[-1.0, -1.0], [columns + 1.0, -1.0], [columns + 1.0, rows + 1.0], [-1.0, rows + 1.0]];
@@ -189,7 +191,7 @@ fn strangers_outside(layout: &Layout, map: &Homography, markers: &[Marker], agre
     strangers.filter(|(_, marker)| !inside(marker.corners.iter().sum::<Vector2<f64>>() * 0.25)).count()
 }
 
-/// The markers where the corners have them: how many are right, how many say something else, and how many say nothing.
+/// Counts of the markers at their predicted positions: right ones, wrong ones, and unreadable ones.
 struct Again {
     right: usize,
     wrong: usize,
@@ -228,7 +230,7 @@ fn predicted(layout: &Layout, growth: &Growth<'_>, id: usize) -> Option<Quad> {
     Some(quad)
 }
 
-/// Whether the markers are as large as the board has them, beside its squares.
+/// True if the ratio of the markers to the squares is that of the board.
 fn is_marker_side(layout: &Layout, growth: &Growth<'_>, markers: &[Marker], agreeing: &[usize]) -> bool {
     let diagonals = |quad: &Quad| (quad[2] - quad[0]).norm() + (quad[3] - quad[1]).norm();
     let parts = agreeing.iter().filter_map(|at| {

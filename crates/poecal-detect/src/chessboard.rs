@@ -6,7 +6,7 @@ use crate::grid::{Grid, SCALES_PX, grids, middle_slope};
 use crate::growth::{Growth, Node, place_of};
 use crate::layout::Layout;
 
-/// Fewest corners that a grid begins with.
+/// Fewest corners from which a grid starts.
 const LEAST: usize = 6;
 /// Most grids that are tried.
 const GRIDS: usize = 6;
@@ -63,7 +63,7 @@ fn grown<'a>(gray: &'a Gray, layout: &Layout, noise: f64, grid: &Grid) -> Option
     Some(growth)
 }
 
-/// Takes single corners beyond the board away, where it has full lines within: what lies behind the board may look like a corner.
+/// Removes single corners beyond the board if it has full lines within: background may look like a corner.
 fn peel(layout: &Layout, growth: &mut Growth<'_>) {
     while is_larger(layout, growth.nodes.keys().copied(), 0) {
         let Some([low, high]) = extent(growth.nodes.keys().copied()) else { return };
@@ -96,7 +96,7 @@ fn extent(nodes: impl Iterator<Item = Node>) -> Option<[Node; 2]> {
     })
 }
 
-/// Whether corners reach farther than those of the board, and some more.
+/// True if corners reach farther than those of the board, and some more.
 fn is_larger(layout: &Layout, nodes: impl Iterator<Item = Node>, more: usize) -> bool {
     let [columns, rows] = layout.inner();
     extent(nodes).is_some_and(|[low, high]| {
@@ -132,7 +132,7 @@ fn named(gray: &Gray, layout: &Layout, noise: f64, growth: &Growth<'_>) -> Resul
     Ok(Found { turnable: turns.len() > 1, ..found(growth, noise, id) })
 }
 
-/// Columns and rows from the first corner, of a board turned by so many right angles.
+/// Columns and rows from the first corner, of a board turned by this number of right angles.
 fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
     let [left, up] = [node[0] - low[0], node[1] - low[1]];
     let [right, down] = [high[0] - node[0], high[1] - node[1]];
@@ -145,7 +145,7 @@ fn turned(node: Node, low: Node, high: Node, turn: usize) -> [usize; 2] {
     place.map(|it| it as usize)
 }
 
-/// The turns that make the grid the board, with dark and light where they are, the one with the first corner highest in the picture first.
+/// Turns that map the grid onto the board with matching dark and light squares, the one with the first corner highest in the picture first.
 fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usize> {
     let inner = layout.inner();
     let fits = |turn: &usize| {
@@ -157,13 +157,13 @@ fn turns(layout: &Layout, growth: &Growth<'_>, low: Node, high: Node) -> Vec<usi
         }
         let Some(node) = growth.nodes.keys().next() else { return false };
         let [x, y] = turned(*node, low, high, *turn);
-        // A quarter turn has another square before the corner: dark and light change.
+        // A quarter turn places another square before the corner: dark and light change.
         let dark = growth.dark_before(*node) != (*turn % 2 == 1);
         dark == layout.is_dark(x, y)
     };
     let mut found: Vec<usize> = (0..4).filter(fits).collect();
     if found.is_empty() {
-        // A board that begins with a light square is the same board.
+        // A board that begins with a light square is equivalent.
         found = (0..4).filter(|turn| inner_size(low, high, *turn) == inner).collect();
     }
     let height = |turn: &usize| {
@@ -181,15 +181,15 @@ fn inner_size(low: Node, high: Node, turn: usize) -> [usize; 2] {
     if turn.is_multiple_of(2) { size } else { [size[1], size[0]] }
 }
 
-/// Standard deviation of the levels across a light square, as a part of half the contrast, from which on it is not plain.
+/// Standard deviation of the levels across a light square, as a part of half the contrast, from which it is not plain.
 const UNEVEN: f64 = 0.45;
 
-/// Whether the light squares are plain, as those of a board with markers are not.
+/// True if the light squares are plain, unlike those of a board with markers.
 fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
     let mut kinds = [0, 0];
     for (node, saddle) in &growth.nodes {
         let opposite = growth.nodes.get(&[node[0] + 1, node[1] + 1]);
-        // The square after a corner is as the one before it.
+        // The square after a corner has the shade of the one before it.
         let (Some(opposite), false) = (opposite, growth.dark_before(*node)) else { continue };
         let at = |part: f64| gray.at(saddle.place + (opposite.place - saddle.place) * part);
         let levels = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75].map(at);
@@ -201,8 +201,8 @@ fn is_plain(gray: &Gray, growth: &Growth<'_>) -> bool {
     kinds[1] * 2 <= kinds[0]
 }
 
-/// Whether the outermost squares of all four sides are seen, as wide as the others, dark and light in turn: a field of tiles is cut off anywhere,
-/// and a larger board may go on outside of the picture.
+/// True if the outermost squares of all four sides are visible, as wide as the others, dark and light in turn. A field of tiles is cut off anywhere,
+/// and a larger board may continue outside the picture.
 fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
     let sides = [(0, low[0], -1.0), (0, high[0], 1.0), (1, low[1], -1.0), (1, high[1], 1.0)];
     sides.into_iter().all(|(k, line, way)| {
@@ -216,13 +216,13 @@ fn has_rim(gray: &Gray, growth: &Growth<'_>, low: Node, high: Node) -> bool {
     })
 }
 
-/// Whether the squares beyond a corner of the outermost ones go on to [`RIM`]; `None` outside of the picture.
+/// True if the squares beyond an outermost corner continue to [`RIM`]; `None` outside the picture.
 fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> Option<bool> {
     let (map, _) = growth.map_near(place_of(node))?;
     // In the square before the corner and in the one after it, along the side.
     let level = |beside: f64| {
         let mut sum = 0.0;
-        // Some places, against noise.
+        // Several samples, against noise.
         for (aside, out) in [(-0.2, RIM), (0.0, RIM), (0.2, RIM), (-0.1, RIM - 0.15), (0.1, RIM - 0.15)] {
             let mut off = nalgebra::Vector2::new(beside + aside, beside + aside);
             off[k] = way * out;
@@ -232,12 +232,12 @@ fn is_rim(gray: &Gray, growth: &Growth<'_>, node: Node, k: usize, way: f64) -> O
         Some(sum)
     };
     let rise = level(0.5)? - level(-0.5)?;
-    // Before the corner it is as in the square before it, beyond it the other way round.
+    // The shade before the corner is that of the square before it, beyond the corner the opposite.
     let is_dark = growth.dark_before(node) == (way < 0.0);
     Some(if is_dark { rise } else { -rise } > growth.nodes.get(&node)?.half_contrast)
 }
 
-/// How far out the outermost squares are looked at, squares.
+/// Distance from the outermost corners at which the outermost squares are examined, squares.
 const RIM: f64 = 0.8;
 
 #[cfg(test)]
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn turns_keep_the_hand() {
-        // x to the right and y down stay so: the corner after the first along x, and the one along y, are a right turn apart.
+        // x to the right and y down are preserved: the corner after the first along x, and the one along y, are a right turn apart.
         let (low, high) = ([2, 3], [5, 4]);
         for turn in 0..4 {
             let all: Vec<(Node, [usize; 2])> = (3..=4)

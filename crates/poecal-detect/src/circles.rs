@@ -1,4 +1,4 @@
-//! Grids of dots: their middles, corrected by what the tilt of a circle moves the middle of its picture.
+//! Grids of dots: their middles, corrected for the offset due to the tilt of a circle.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -15,25 +15,25 @@ use crate::named::{Named, OFF, keep_round, pairs, radius, seek};
 use crate::parts::{Blob, Shades};
 use crate::whole::is_whole;
 
-/// Parts that look like dots for each dot of the board, of which one picture may have more.
+/// Candidate dots for each dot of the board, of which one picture may have more.
 const FOR_EACH: usize = 3;
 /// Most lattices that are tried.
 const LATTICES: usize = 5;
-/// One dot of so many may be beyond the board: something else that looks like one.
+/// Share of the dots that may lie beyond the board, as one in this number: other objects that look like dots.
 const BEYOND: usize = 12;
 /// Fewest pixels of a dot.
 const FEWEST_PX: u32 = 12;
-/// Difference of middles, pixels, and of shapes, as a part, up to which two parts are one.
+/// Difference of middles, pixels, and relative difference of shapes, up to which two candidates are the same.
 const SAME: (f64, f64) = (0.3, 0.03);
 
 /// Finds a grid of dots that reaches over all its columns and rows.
 pub(crate) fn detect(gray: &Gray, layout: &Layout, noise: f64, most: usize) -> Result<Found, Rejected> {
-    // A board of many dots is one.
+    // The limit is at least a multiple of the board's own number of dots.
     let most = most.max(FOR_EACH * layout.corners());
     of_dots(gray, layout, noise, &dots(gray, noise, most)?)
 }
 
-/// The same of dots that were found.
+/// Finds the grid among detected dots.
 pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) -> Result<Found, Rejected> {
     let (mut most, mut reason) = (0, Rejected::NoBoard);
     for lattice in lattices(dots).into_iter().take(LATTICES) {
@@ -46,12 +46,12 @@ pub(crate) fn of_dots(gray: &Gray, layout: &Layout, noise: f64, dots: &[Dot]) ->
     Err(reason)
 }
 
-/// Dark dots of any size, of at most so many parts that look like one: each is compared with all others.
+/// Dark dots of any size, at most `most` candidates: each is compared with all others.
 pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rejected> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
     let mut found: Vec<Dot> = Vec::new();
-    // What is no dot is a part of several windows, too.
+    // A candidate that is no dot appears in several windows, too.
     let mut refused: Vec<(Vector2<f64>, Matrix2<f64>)> = Vec::new();
     for half in [longest / 110, longest / 36, longest / 12].map(|it| it.max(7)) {
         for blob in shades.dark_parts(half).blobs(FEWEST_PX) {
@@ -75,7 +75,7 @@ pub(crate) fn dots(gray: &Gray, noise: f64, most: usize) -> Result<Vec<Dot>, Rej
     Ok(found)
 }
 
-/// What makes a circle of a part of the picture, if it is nearly an ellipse.
+/// Matrix that maps a part of the picture to a circle, if it is nearly an ellipse.
 fn round(blob: &Blob) -> Option<Matrix2<f64>> {
     // The area of the ellipse with the moments of the part.
     let area = 4.0 * std::f64::consts::PI * blob.spread.determinant().sqrt();
@@ -89,7 +89,7 @@ fn round(blob: &Blob) -> Option<Matrix2<f64>> {
     Some(axes.eigenvectors * scale * axes.eigenvectors.transpose())
 }
 
-/// Column and row on the board of a node of a lattice that is turned by so many right angles.
+/// Column and row on the board of a node of a lattice that is turned by this number of right angles.
 fn on_board(layout: &Layout, node: Node, turn: usize) -> Node {
     let [u, v] = node;
     let [a, b] = match turn {
@@ -131,7 +131,7 @@ fn extent(nodes: &[(Node, usize)]) -> Option<[Node; 2]> {
     }))
 }
 
-/// The dots of a turned lattice with their numbers, if they reach over the board and no farther.
+/// The dots of a turned lattice with their numbers, if they extend over exactly the board.
 fn numbered(layout: &Layout, dots: &[Dot], lattice: &Lattice, turn: usize) -> Result<Named, Rejected> {
     let nodes = peeled(layout, lattice, turn);
     let [low, high] = extent(&nodes).ok_or(Rejected::NoBoard)?;
@@ -147,7 +147,7 @@ fn numbered(layout: &Layout, dots: &[Dot], lattice: &Lattice, turn: usize) -> Re
     all.collect::<Option<_>>().ok_or(Rejected::Other)
 }
 
-/// The board, if a lattice is one: of several turns that fit, the one whose first dot is highest to the left.
+/// The board, if the lattice fits: among several fitting turns, the one whose first dot is farthest to the upper left.
 fn named(
     gray: &Gray,
     layout: &Layout,
@@ -187,7 +187,7 @@ fn named(
     Ok(Found { corners, markers: 0, turnable, blur_px, noise })
 }
 
-/// The middles of the circles: with what the tilt moves the middle of their pictures taken away.
+/// The middles of the circles: measured middles less the offset due to the tilt.
 fn corrected(layout: &Layout, named: &Named, radius: f64) -> Vec<Corner> {
     let measured = pairs(layout, named);
     let mut better = measured.clone();

@@ -17,7 +17,7 @@ pub struct Detector {
     most_dots: usize,
 }
 
-/// Most parts of a picture that may look like dots of a grid, if nothing else is asked for.
+/// Default limit of the candidate dots in a picture.
 pub const MOST_DOTS: usize = 6_000;
 
 /// Levels below which a picture is dark, edges beyond which it is blurred, and white parts beyond which it is overexposed.
@@ -26,7 +26,7 @@ const WIDE_PX: f64 = 14.0;
 const WHITE: f64 = 0.35;
 
 impl Detector {
-    /// What finds a board.
+    /// A detector of a board.
     #[must_use]
     pub fn new(spec: &Spec) -> Self {
         let layout = Layout::new(spec);
@@ -40,7 +40,7 @@ impl Detector {
         Detector { spec: spec.clone(), layout, reader, most_dots: MOST_DOTS }
     }
 
-    /// The same where so many parts of a picture may look like dots: time grows with their square.
+    /// The detector with this limit of candidate dots: time grows with its square.
     #[must_use]
     pub fn with_most_dots(self, most_dots: usize) -> Self {
         Detector { most_dots, ..self }
@@ -61,7 +61,7 @@ impl Detector {
     /// The corners of the board in a picture.
     ///
     /// # Errors
-    /// Why there are none.
+    /// The reason for the rejection of a picture without corners.
     pub fn detect(&self, gray: &Gray) -> Result<Found, Rejected> {
         let noise = noise(gray);
         let found = match (&self.spec, &self.reader) {
@@ -85,7 +85,7 @@ impl Detector {
         })
     }
 
-    /// Another board that pictures show in which this one was not found: with columns and rows exchanged, of the other pattern, with other markers.
+    /// Another board in pictures in which this one was not found: with columns and rows exchanged, of the other pattern, or with other markers.
     #[must_use]
     pub fn suggest(&self, pictures: &[&Gray]) -> Option<Suggestion> {
         suggest::suggest(&self.spec, pictures, self.most_dots)

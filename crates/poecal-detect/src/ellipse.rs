@@ -1,7 +1,7 @@
-//! The place of a dark dot: a blurred ellipse on light ground, fitted to the levels of the pixels around.
+//! Position of a dark dot: a blurred ellipse on light ground, fitted to the levels of the surrounding pixels.
 //!
 //! The model of the light at p is `(m + b s)(1 + g · (p - p₀))`, with s the sign of the distance from the ellipse under a Gaussian blur. Dots are
-//! dark within. Both shades are unknowns, so neither a slope of the light nor a wrong limit between dark and light moves the centre.
+//! dark within. Both shades are unknowns, so neither a gradient of the light nor a wrong threshold between dark and light moves the centre.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
@@ -9,12 +9,12 @@ use crate::gray::Gray;
 use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
 use crate::vector::vectorized;
 
-/// A dot that was found.
+/// A detected dot.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dot {
     /// The middle of the ellipse.
     pub(crate) place: Vector2<f64>,
-    /// What makes a unit circle of the ellipse.
+    /// Matrix that maps the ellipse to a unit circle.
     pub(crate) to_circle: Matrix2<f64>,
     /// Standard deviation of each coordinate, pixels.
     pub(crate) sigma_px: f64,
@@ -24,34 +24,34 @@ pub(crate) struct Dot {
     pub(crate) half_contrast: f64,
     /// Level between dark and light.
     pub(crate) mean: f64,
-    /// What the ellipse leaves beyond the noise, as a part of the half contrast.
+    /// Residual of the ellipse beyond the noise, as a part of the half contrast.
     pub(crate) misfit: f64,
 }
 
 const UNKNOWNS: usize = 10;
 type Unknowns = SVector<f64, UNKNOWNS>;
 
-/// Largest part of the contrast that the model may leave beyond the noise.
+/// Largest residual of the model beyond the noise, as a part of the contrast.
 const MISFIT: f64 = 0.22;
-/// What no fit is better than, pixels: uneven ink and light, pixels of a finite size.
+/// Floor of the standard deviation, pixels: uneven ink and light, pixels of a finite size.
 const FLOOR_PX: f64 = 0.008;
-/// Least certain centre that counts, pixels.
+/// Largest standard deviation of an accepted centre, pixels.
 const WORST_PX: f64 = 0.4;
 /// Shortest half axis, pixels.
 const SHORTEST_PX: f64 = 1.6;
 /// Least half contrast, gray levels.
 const LEAST_HALF: f64 = 2.0;
-/// Pixels that find most of the way.
+/// Number of pixels that suffices for a coarse fit.
 const ENOUGH: usize = 200;
-/// The same of a fit to a part of the pixels, which is not at its end.
+/// Largest residual of a coarse fit to a part of the pixels, which has not converged.
 const COARSE_MISFIT: f64 = 0.28;
-/// Longest last step, pixels, and what it may gain, as a part of the squares: of a first fit, and of the last one.
+/// Longest last step, pixels, and its largest relative gain of the squares: for a first fit, and for the last one.
 const COARSE: [f64; 2] = [0.05, 0.02];
 const FINE: [f64; 2] = [2e-3, 1e-4];
-/// Most pixels that are fitted.
+/// Most fitted pixels.
 const MOST: usize = 40_000;
 
-/// Finds a dot near where an ellipse is: its middle, and what makes a unit circle of it. `None` if none is there.
+/// Finds a dot near an ellipse: its middle, and the matrix that maps it to a unit circle. `None` if there is no dot.
 pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noise: f64) -> Option<Dot> {
     let pixels = window(gray, place, &to_circle)?;
     let start = Model::start(place, to_circle, &pixels);
@@ -60,7 +60,7 @@ pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noi
     let mut middle = coarse.place;
     let mut pixels = window(gray, middle, &coarse.to_circle)?;
     let (mut model, mut sums) = descended(coarse, &pixels, middle, FINE)?;
-    // A window that is off leaves out pixels that tell much, and has some of other dots.
+    // A misplaced window omits informative pixels, and includes some of other dots.
     if is_far(&coarse, &model) {
         middle = model.place;
         pixels = window(gray, middle, &model.to_circle)?;
@@ -71,9 +71,9 @@ pub(crate) fn fit(gray: &Gray, place: Vector2<f64>, to_circle: Matrix2<f64>, noi
     sound.then_some(dot)
 }
 
-/// A fit to a part of the pixels, which goes most of the way, and tells most of what is no dot: that is most of what is tried.
+/// A fit to a part of the pixels, which nearly converges, and rejects most candidates that are no dots: most candidates are none.
 fn begun(start: Model, pixels: &Pixels, noise: f64) -> Option<Model> {
-    // Blur takes a part of the contrast of a small dot, but not so much.
+    // Blur reduces the contrast of a small dot only to a limited extent.
     if start.half < 0.5 * noise.max(LEAST_HALF) {
         return None;
     }
@@ -83,7 +83,7 @@ fn begun(start: Model, pixels: &Pixels, noise: f64) -> Option<Model> {
     (model.half > 0.0 && sums.squares < most * few.len() as f64).then_some(model)
 }
 
-/// Whether a fit is farther from its start than the window of its pixels may be.
+/// True if a fit is farther from its start than the window of its pixels may be.
 fn is_far(start: &Model, fit: &Model) -> bool {
     let grown = (fit.to_circle - start.to_circle).norm() / start.to_circle.norm();
     (fit.place - start.place).norm() > 0.3 || grown > 0.03
@@ -102,7 +102,7 @@ fn thinned(pixels: &Pixels) -> Pixels {
     kept
 }
 
-/// The pixels of an ellipse, and of the light around it as far as another dot is not near.
+/// The pixels of an ellipse, and of the light around it up to a near dot.
 fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option<Pixels> {
     let axes = to_circle.try_inverse()?;
     let least = axes.symmetric_eigenvalues().min();
@@ -130,7 +130,7 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
         );
         for (k, level) in gray.row(row).get(columns.clone())?.iter().enumerate() {
             let off = offs[k / LANES][k % LANES];
-            // Deep within there is nothing that tells the place.
+            // Pixels deep inside contain no information on the position.
             if off < beyond as f32 && off > -within as f32 {
                 pixels.push(from + k as f32, y, *level);
             }
@@ -142,17 +142,17 @@ fn window(gray: &Gray, middle: Vector2<f64>, to_circle: &Matrix2<f64>) -> Option
 /// The outline of an ellipse near the origin of pixels.
 struct Outline {
     place: [f32; 2],
-    /// The matrix that makes a unit circle of it: both of the diagonal, and the one beside it.
+    /// Symmetric matrix that maps the ellipse to a unit circle: both diagonal elements, and the one beside them.
     to_circle: [f32; 3],
 }
 
-/// How far a place is from an ellipse.
+/// Distance of a point from an ellipse, with derivatives.
 struct Off {
-    /// To first order, positive outside.
+    /// Distance to first order, positive outside.
     off: f32,
-    /// Which way it grows.
+    /// Direction of its increase.
     outwards: [f32; 2],
-    /// The way there in the circle, of length 1, and how fast the radius grows along `outwards`.
+    /// Unit direction in the circle, and derivative of the radius along `outwards`.
     circle: [f32; 2],
     steep: f32,
 }
@@ -163,7 +163,7 @@ impl Outline {
         Outline { place, to_circle }
     }
 
-    /// The distance of a place from it, by the way there from its middle.
+    /// The distance of a point from the ellipse, by its vector from the middle.
     #[inline(always)]
     fn distance(&self, dx: f32, dy: f32) -> Off {
         let [xx, yy, xy] = self.to_circle;
@@ -181,7 +181,7 @@ impl Outline {
         }
     }
 
-    /// The distances of the pixels of a row from it.
+    /// The distances of the pixels of a row from the ellipse.
     #[inline(always)]
     fn row(&self, from: f32, y: f32, offs: &mut [Lanes]) {
         for (at, offs) in offs.iter_mut().enumerate() {
@@ -212,7 +212,7 @@ struct Sums {
 impl Model {
     fn start(place: Vector2<f64>, to_circle: Matrix2<f64>, pixels: &Pixels) -> Self {
         let outline = Outline::new(&to_circle, pixels.offset(place));
-        // The inside and the outside.
+        // Inside and outside pixels.
         let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
         for [x, y, level] in pixels.each() {
             let side = outline.distance(x - outline.place[0], y - outline.place[1]).off >= 0.0;
@@ -307,7 +307,7 @@ impl Model {
             && axes.min() > 0.0
             && axes.max() < 1.0 / SHORTEST_PX
             && self.blur * axes.max() < 0.75;
-        // How far beyond the noise it is by more than chance.
+        // Residual beyond the noise that chance does not explain.
         let chance = 1.0 + 2.5 * (2.0 / pixels as f64).sqrt();
         let beyond = (variance - noise * noise * chance).max(0.0).sqrt();
         let (Model { place, to_circle, blur, mean, half, .. }, misfit) = (*self, beyond / self.half);
@@ -315,7 +315,7 @@ impl Model {
     }
 }
 
-/// Levenberg-Marquardt from a start, until a step is short and gains little.
+/// Levenberg-Marquardt from a start, until a step is short and its gain small.
 fn descended(
     mut model: Model,
     pixels: &Pixels,

@@ -1,11 +1,11 @@
-//! What can be wrong with a specification or a file.
+//! Errors of specifications and files.
 
 use std::fmt;
 
 /// A result with the error of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// One sentence: what was found and what was expected, with the path of a file.
+/// Error message of one sentence: the found and the expected, with the path of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     message: String,
@@ -13,7 +13,7 @@ pub struct Error {
 
 impl Error {
     pub(crate) fn new(message: impl Into<String>) -> Self {
-        // Of other crates some have several lines.
+        // Some messages of other crates have several lines.
         let message: String = message.into();
         Error { message: message.split_whitespace().collect::<Vec<_>>().join(" ") }
     }

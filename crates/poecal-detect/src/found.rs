@@ -1,11 +1,11 @@
-//! What a detector says of a picture.
+//! Results of a detector for a picture.
 
 use std::fmt;
 
 use crate::growth::{Growth, Node};
 use crate::median::median;
 
-/// What a point of a board is.
+/// Kind of a point of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
@@ -13,13 +13,13 @@ pub enum Kind {
     Corner,
     /// The middle of a dot.
     Dot,
-    /// A corner of a tag: four times the number of the tag, and 0 to 3 for the upper left, upper right, lower right and lower left one of the tag
-    /// as it is printed, which is the order of OpenCV.
+    /// A corner of a tag. Its number is four times that of the tag, and 0 to 3 for the upper left, upper right, lower right and lower left corner of
+    /// the printed tag, which is the order of OpenCV.
     Tag,
 }
 
 impl Kind {
-    /// The name of the point with a number: `corner0`, `dot0`, `tag0.0`, …
+    /// Name of the point with a number: `corner0`, `dot0`, `tag0.0`, …
     #[must_use]
     pub fn name(self, id: usize) -> String {
         match self {
@@ -33,36 +33,35 @@ impl Kind {
 /// A corner in a picture, or the middle of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Its number among the inner corners or dots, along x first; that of OpenCV on a ChArUco board and a grid of dots.
-    /// Of tags see [`Kind::Tag`].
+    /// Number among the inner corners or dots, along x first; that of OpenCV on a ChArUco board and a grid of dots. For tags see [`Kind::Tag`].
     pub id: usize,
-    /// What it is.
+    /// Kind of the point.
     pub kind: Kind,
     /// Column, pixels from the centre of the first one.
     pub u_px: f64,
     /// Row, pixels from the centre of the first one.
     pub v_px: f64,
-    /// Standard deviation of each of both, pixels.
+    /// Standard deviation of each coordinate, pixels.
     pub sigma_px: f64,
 }
 
 impl Corner {
-    /// Its name on the board: `corner0`, `corner1`, …, `dot0`, …, or `tag0.0`, …
+    /// Name on the board: `corner0`, `corner1`, …, `dot0`, …, or `tag0.0`, …
     #[must_use]
     pub fn name(&self) -> String {
         self.kind.name(self.id)
     }
 }
 
-/// A board that was found.
+/// A detected board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Its corners that are seen, by their numbers.
+    /// Its visible corners, by their numbers.
     pub corners: Vec<Corner>,
     /// Markers that agree with it.
     pub markers: usize,
-    /// Whether it looks the same turned by 180°, so that its first corner may be its last: chessboards whose sides are both even or both odd,
-    /// grids of dots but asymmetric ones with an odd number of rows. A square grid of dots looks the same at each quarter turn.
+    /// True if it looks the same turned by 180°, so that its first corner may be its last: chessboards whose sides are both even or both odd, and
+    /// grids of dots except asymmetric ones with an odd number of rows. A square grid of dots looks the same at each quarter turn.
     pub turnable: bool,
     /// Blur of the edges, pixels: median of the corners.
     pub blur_px: f64,
@@ -70,12 +69,12 @@ pub struct Found {
     pub noise: f64,
 }
 
-/// Why a picture has no corners.
+/// Reason for a picture without corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rejected {
     /// Nothing looks like the board.
     NoBoard,
-    /// So many of its corners were seen, too few to know which.
+    /// This number of its corners were visible, too few to identify them.
     Few(usize),
     /// More parts than this look like dots: a mesh or a perforated sheet.
     Many(usize),
@@ -83,9 +82,9 @@ pub enum Rejected {
     Other,
     /// No board, and edges as wide as this, pixels.
     Blurred(f64),
-    /// No board, and nothing is lighter than this level of 255.
+    /// No board, and no pixel is lighter than this level of 255.
     Dark(f64),
-    /// No board, and so large a part of the picture is white.
+    /// No board, and this share of the picture is white.
     Overexposed(f64),
 }
 
@@ -110,7 +109,7 @@ impl fmt::Display for Rejected {
     }
 }
 
-/// What a grown board is to the caller: with the number of each of its nodes.
+/// Result of a grown board, with the number of each of its nodes.
 pub(crate) fn found(growth: &Growth<'_>, noise: f64, id: impl Fn(Node) -> Option<usize>) -> Found {
     let mut corners: Vec<Corner> = growth
         .nodes

@@ -18,7 +18,7 @@ impl Gray {
     /// A picture of levels, row by row.
     ///
     /// # Errors
-    /// If their number is not width times height, or nothing, or one is no number.
+    /// If their number is not width times height, or zero, or one is not a number.
     pub fn new(width: usize, height: usize, levels: Vec<f32>) -> Result<Self> {
         if width == 0 || width.checked_mul(height) != Some(levels.len()) {
             let found = levels.len();
@@ -35,7 +35,7 @@ impl Gray {
     /// A picture of bytes, row by row.
     ///
     /// # Errors
-    /// As of [`Gray::new`].
+    /// Those of [`Gray::new`].
     pub fn from_bytes(width: usize, height: usize, bytes: &[u8]) -> Result<Self> {
         Gray::new(width, height, bytes.iter().map(|it| f32::from(*it)).collect())
     }
@@ -82,23 +82,23 @@ impl Gray {
         self.levels.iter().map(|it| it.round().clamp(0.0, 255.0) as u8).collect()
     }
 
-    /// Whether a place is at least so far within the centres of the outermost pixels.
+    /// True if a point is at least this far inside the centres of the outermost pixels.
     #[inline]
     pub(crate) fn holds(&self, place: Vector2<f64>, margin_px: f64) -> bool {
         let [right, bottom] = [self.width, self.height].map(|it| it as f64 - 1.0 - margin_px);
         place.x >= margin_px && place.y >= margin_px && place.x <= right && place.y <= bottom
     }
 
-    /// The level at a place between pixels, bilinear; that of the nearest border outside.
+    /// The level at a point between pixels, bilinear; outside the picture that of the nearest border.
     #[inline]
     pub(crate) fn at(&self, place: Vector2<f64>) -> f64 {
         let x = place.x.clamp(0.0, self.width as f64 - 1.0);
         let y = place.y.clamp(0.0, self.height as f64 - 1.0);
-        // Short whole numbers are turned into others faster.
+        // Short integers are converted faster.
         let (column, row) = (x as i32, y as i32);
         let (a, b) = (x - f64::from(column), y - f64::from(row));
         let first = row as usize * self.width + column as usize;
-        // At the last column and row the next one has no part.
+        // At the last column and row the next one has weight zero.
         let [right, below] =
             [(column, self.width), (row, self.height)].map(|(at, size)| (at as usize + 1 < size) as usize);
         let level = |at: usize| f64::from(self.levels[at]);
@@ -108,7 +108,7 @@ impl Gray {
         upper * (1.0 - b) + lower * b
     }
 
-    /// The picture with a Gaussian blur, up to so many standard deviations.
+    /// The picture with a Gaussian blur, truncated at this number of standard deviations.
     #[must_use]
     pub fn blurred(&self, sigma_px: f64, deviations: f64) -> Self {
         let reach = (deviations * sigma_px).ceil().clamp(0.0, 1000.0) as usize;
@@ -145,7 +145,7 @@ impl Gray {
     }
 }
 
-/// Sums of levels at the same place of some rows, with weights.
+/// Weighted sums of levels at the same column of some rows.
 #[inline(always)]
 fn sums<'a>(target: &mut [f32], weights: &[f32], row: impl Fn(usize) -> &'a [f32]) {
     let (many, rest) = target.as_chunks_mut::<LANES>();

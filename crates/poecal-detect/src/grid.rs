@@ -1,4 +1,4 @@
-//! Grids of squares: places where two edges cross, joined along the edges.
+//! Grids of squares: crossings of two edges, joined along the edges.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -14,35 +14,35 @@ pub(crate) type Grid = Vec<(Node, Vector2<f64>)>;
 
 /// Blurs before second derivatives are taken, pixels: for sharp pictures, and for dim or blurred ones.
 pub(crate) const SCALES_PX: [f64; 2] = [1.8, 3.6];
-/// Least crossing beside what noise makes.
+/// Least strength of a crossing relative to that of noise.
 const BESIDE_NOISE: f64 = 5.0;
-/// Least crossing, gray levels, times the square of the blur.
+/// Least strength of a crossing, gray levels, times the square of the blur.
 const LEAST: f64 = 1.1;
-/// Least of the smaller curvature beside the larger one: edges at an angle of 28°.
+/// Least ratio of the smaller curvature to the larger one: edges at an angle of 28°.
 const NARROW: f64 = 0.06;
-/// Farthest place without slope from the strongest saddle, blurs.
+/// Farthest point of zero gradient from the strongest saddle, blurs.
 const LEVEL: f64 = 0.8;
-/// Radius at which edges are sought, blurs.
+/// Radius at which edges are searched for, blurs.
 const RING: f64 = 3.3;
-/// Most places that are joined.
+/// Most crossings that are joined.
 const MOST: usize = 8000;
-/// Of more places than this, only those near each other are joined.
+/// Number of crossings above which only near ones are joined.
 const MANY: usize = 2000;
-/// How near the places are that are tried first, pixels.
+/// Distance of the crossings that are tried first, pixels.
 const NEAR_PX: f64 = 80.0;
 /// Longest side of a square, as a part of the picture's longer side.
 const LONGEST: f64 = 0.25;
-/// Least cosine between an edge and the way to the next corner, and between the edges of both.
+/// Least cosine between an edge and the direction to the next corner, and between the edges of both.
 const ALONG: f64 = 0.97;
 const ALIKE: f64 = 0.90;
 
-/// A place where two edges cross.
+/// A crossing of two edges.
 struct Cross {
     place: Vector2<f64>,
     strength: f64,
     /// Directions of both edges; the second is to the right of the first, and between them it is light.
     edges: [Vector2<f64>; 2],
-    /// The next places along the first and the second edge, and against them.
+    /// The next crossings along the first and the second edge, and against them.
     next: [Option<usize>; 4],
 }
 
@@ -53,7 +53,7 @@ impl Cross {
     }
 }
 
-/// Grids of squares in a picture, the largest first: x and y as on a board that is seen from its front.
+/// Grids of squares in a picture, the largest first: x and y as on a board seen from the front.
 pub(crate) fn grids(gray: &Gray, noise: f64, blur_px: f64) -> Vec<Grid> {
     let smooth = gray.blurred(blur_px, 2.6);
     // Noise has a standard deviation of `0.244 / σ³` of a pixel's in a second derivative.
@@ -77,7 +77,7 @@ const BESIDE: usize = 3;
 /// Rows that are kept for that.
 const KEPT: usize = 2 * BESIDE + 1;
 
-/// Places where the second derivatives are those of a saddle, the strongest first.
+/// Points whose second derivatives are those of a saddle, the strongest first.
 fn crosses(smooth: &Gray, least: f64, blur_px: f64) -> Vec<Cross> {
     let mut found = vectorized(
         #[inline(always)]
@@ -88,7 +88,7 @@ fn crosses(smooth: &Gray, least: f64, blur_px: f64) -> Vec<Cross> {
     found
 }
 
-/// The same, row by row.
+/// The saddles, row by row.
 #[inline(always)]
 fn peaks(smooth: &Gray, least: f32, blur_px: f64) -> Vec<Cross> {
     let (width, height) = (smooth.width(), smooth.height());
@@ -126,7 +126,7 @@ fn peaks(smooth: &Gray, least: f32, blur_px: f64) -> Vec<Cross> {
     found
 }
 
-/// The strength of the pixels of a row as saddles, by the rows around.
+/// Strength of the pixels of a row as saddles, by the surrounding rows.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)]
 fn strengths(rows: [&[f32]; 5], target: &mut [f32]) {
@@ -158,7 +158,7 @@ fn cross_at(smooth: &Gray, [x, row]: [usize; 2], own: f32, blur_px: f64) -> Opti
     if !is_saddle {
         return None;
     }
-    // The slope is none there; on edges and at the ends of them it is.
+    // The gradient is zero at a saddle; on edges and at their ends it is not.
     let slope_x = 0.5 * f64::from(rows[2][x + 1] - rows[2][x - 1]);
     let slope_y = 0.5 * f64::from(rows[3][x] - rows[1][x]);
     let area = xx * yy - xy * xy;
@@ -175,8 +175,8 @@ fn cross_at(smooth: &Gray, [x, row]: [usize; 2], own: f32, blur_px: f64) -> Opti
     })
 }
 
-/// The directions of the edges through a place: where a ring around it changes between dark and light, four times. Second derivatives would have
-/// them too, but ink that spreads, or light that does, moves those more.
+/// Directions of the edges through a point: a ring around it changes between dark and light four times. Second derivatives contain them too, but
+/// spread ink, or scattered light, biases those more.
 fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<f64>; 2]> {
     const POINTS: usize = 32;
     let direction = |k: f64| {
@@ -205,11 +205,11 @@ fn edges(smooth: &Gray, place: Vector2<f64>, radius_px: f64) -> Option<[Vector2<
     // Each edge goes through the middle: the directions of its two ends are opposite.
     let edge = |k: usize| (direction(changes[k].0) - direction(changes[k + 2].0)).try_normalize(1.0);
     let (one, other) = (edge(0)?, edge(1)?);
-    // Behind the first it becomes light, clockwise.
+    // Clockwise behind the first edge it becomes light.
     Some(if changes[0].1 { [one, other] } else { [other, -one] })
 }
 
-/// Joins each place with the nearest ones along its edges, if both take each other.
+/// Joins each crossing with the nearest ones along its edges, if both choose each other.
 fn join(smooth: &Gray, crosses: &mut [Cross]) {
     let size = smooth.width().max(smooth.height()) as f64;
     let longest = if crosses.len() > MANY { 3.0 * NEAR_PX } else { LONGEST * size };
@@ -232,7 +232,7 @@ fn join(smooth: &Gray, crosses: &mut [Cross]) {
     }
 }
 
-/// Places by the cell of the picture in which they are.
+/// Crossings by the cell of the picture that contains them.
 struct Cells(BTreeMap<(i32, i32), Vec<usize>>);
 
 impl Cells {
@@ -248,7 +248,7 @@ impl Cells {
         ((place.x / NEAR_PX) as i32, (place.y / NEAR_PX) as i32)
     }
 
-    /// Places that may be so near to another one.
+    /// Crossings within a distance of a point.
     fn near(&self, place: Vector2<f64>, reach_px: f64) -> Vec<usize> {
         let (x, y) = Cells::cell(place);
         let reach = (reach_px / NEAR_PX).ceil() as i32;
@@ -258,7 +258,7 @@ impl Cells {
     }
 }
 
-/// The nearest places along the edges of one, in the directions that have none yet.
+/// The nearest crossings along the edges of one, in the directions without a neighbour.
 fn neighbours(
     smooth: &Gray,
     crosses: &[Cross],
@@ -274,7 +274,7 @@ fn neighbours(
         if at == own || length < 6.0 {
             continue;
         }
-        // A corner that is near may be off its edge by some pixels.
+        // A near corner may be off its edge by some pixels.
         let straight = (ALONG * length).min((length * length - 9.0).max(0.0).sqrt());
         for (k, list) in near.iter_mut().enumerate() {
             if from.direction(k).dot(&way) > straight {
@@ -292,7 +292,7 @@ fn neighbours(
     }
 }
 
-/// Whether two places are the ends of one edge: dark on the same side all along, and light and dark exchanged beyond.
+/// True if two crossings are the ends of one edge: dark on the same side all along, and light and dark exchanged beyond.
 fn is_next(smooth: &Gray, from: &Cross, to: &Cross) -> bool {
     let way = (to.place - from.place).normalize();
     let which = |cross: &Cross| {
@@ -321,9 +321,9 @@ fn is_next(smooth: &Gray, from: &Cross, to: &Cross) -> bool {
     one_sided && least > 0.35 * most && least > 2.0
 }
 
-/// All places that are joined with one, with columns and rows.
+/// All crossings that are joined with one, with columns and rows.
 fn grid_from(crosses: &[Cross], first: usize, free: &mut [bool]) -> Grid {
-    // Of each place the axes x and y of the grid there.
+    // Axes x and y of the grid at each crossing.
     let mut frames: BTreeMap<usize, (Node, [Vector2<f64>; 2])> = BTreeMap::new();
     let mut taken: BTreeMap<Node, usize> = BTreeMap::new();
     let [a, b] = crosses[first].edges;
@@ -367,7 +367,7 @@ fn nearest_axis(cross: &Cross, axis: Vector2<f64>) -> Vector2<f64> {
     best
 }
 
-/// The affine map of a whole grid, pixels a square.
+/// The affine map of a whole grid, pixels per square.
 pub(crate) fn middle_slope(grid: &Grid) -> Option<Matrix2<f64>> {
     let count = grid.len() as f64;
     let at = |node: Node| Vector2::new(f64::from(node[0]), f64::from(node[1]));

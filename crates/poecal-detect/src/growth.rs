@@ -1,4 +1,4 @@
-//! From some known points of a board to all its corners that are seen.
+//! Growth from some known points of a board to all its visible corners.
 
 use std::collections::BTreeMap;
 
@@ -12,29 +12,29 @@ use crate::saddle::{Expected, Saddle, refine};
 /// A corner of squares: columns and rows before it.
 pub(crate) type Node = [i32; 2];
 
-/// Corners that have been found on a board, and what they were found from.
+/// Detected corners of a board, and the points from which they were found.
 pub(crate) struct Growth<'a> {
     gray: &'a Gray,
     pub(crate) noise: f64,
-    /// How far from a corner its squares are plain, squares.
+    /// Distance from a corner within which its squares are plain, squares.
     plain: f64,
-    /// Whether the square (0, 0) is dark.
+    /// True if the square (0, 0) is dark.
     first_dark: bool,
-    /// Points of the board that are known less well: corners of markers.
+    /// Less accurate points of the board: corners of markers.
     pub(crate) anchors: Vec<Pair>,
     pub(crate) nodes: BTreeMap<Node, Saddle>,
-    /// Where corners were sought in vain.
+    /// Positions at which corners were searched for without success.
     tried: BTreeMap<Node, Vector2<f64>>,
 }
 
-/// Standard deviation of the weights of points by their distance, and the farthest that a map takes, squares.
+/// Standard deviation of the weights of points by their distance, and the largest distance of a map, squares.
 const REACH: [f64; 2] = [1.2, 3.2];
-/// How far beyond known points a corner is sought, squares.
+/// Distance beyond known points at which a corner is searched for, squares.
 const STEP: f64 = 1.6;
-/// Largest distance of a corner from where its neighbours have it, pixels and squares.
+/// Largest distance of a corner from its prediction by neighbours, pixels and squares.
 const OFF: (f64, f64) = (0.8, 0.035);
 
-/// Standard deviation of a corner beside the usual one from which on it is none.
+/// Ratio of a corner's standard deviation to the usual one from which it is rejected.
 const VAGUE: f64 = 6.0;
 
 pub(crate) fn place_of(node: Node) -> Vector2<f64> {
@@ -47,18 +47,18 @@ impl<'a> Growth<'a> {
         Growth { gray, noise, plain, first_dark, anchors, nodes, tried }
     }
 
-    /// Whether the square before a corner is dark.
+    /// True if the square before a corner is dark.
     pub(crate) fn dark_before(&self, node: Node) -> bool {
         ((node[0] + node[1]) % 2 == 0) == self.first_dark
     }
 
-    /// The map near a point of the board, from what is around it but not at it, and how far the nearest of it is, squares.
+    /// The map near a point of the board, from the surrounding points without that point, and the distance of the nearest of them, squares.
     pub(crate) fn map_near(&self, point: Vector2<f64>) -> Option<(Homography, f64)> {
         let nodes = self.nodes.iter().map(|(node, saddle)| (place_of(*node), saddle.place, 1.0));
         map_near(nodes.chain(self.anchors.iter().copied()), point, REACH)
     }
 
-    /// Seeks those of some corners that are not found, from the nearest outwards, until none is added.
+    /// Searches for missing corners among some, from the nearest outwards, until none is added.
     pub(crate) fn grow(&mut self, candidates: &[Node]) {
         const ROUNDS: usize = 40;
         for _ in 0..ROUNDS {
@@ -103,7 +103,7 @@ impl<'a> Growth<'a> {
         Some(Expected { place, slope, plain: self.plain, dark_before: self.dark_before(node), search_px })
     }
 
-    /// A corner near a place, with a slope of the board there.
+    /// Adds a corner near a position, with a slope of the board there.
     pub(crate) fn seed(&mut self, node: Node, place: Vector2<f64>, slope: nalgebra::Matrix2<f64>) -> bool {
         let dark_before = self.dark_before(node);
         let expected = Expected { place, slope, plain: self.plain, dark_before, search_px: 2.0 };
@@ -114,7 +114,7 @@ impl<'a> Growth<'a> {
         found.is_some()
     }
 
-    /// Takes corners away that are not where their neighbours have them, the worst first; those without neighbours too.
+    /// Removes corners that contradict the prediction by their neighbours, the worst first; those without neighbours too.
     pub(crate) fn prune(&mut self) {
         while let Some(worst) = self.worst() {
             self.nodes.remove(&worst);

@@ -8,10 +8,10 @@ pub(crate) struct Homography {
     matrix: Matrix3<f64>,
 }
 
-/// A point of the plane, its place in the picture, and its weight.
+/// A point of the plane, its position in the picture, and its weight.
 pub(crate) type Pair = (Vector2<f64>, Vector2<f64>, f64);
 
-/// Pairs near a point of the plane, with weights that fall with their distance from it: by their standard deviation, and the farthest that counts.
+/// Pairs near a point of the plane, with weights that decrease with the distance from it: by their standard deviation, and the largest distance.
 pub(crate) fn near(
     pairs: impl IntoIterator<Item = Pair>,
     point: Vector2<f64>,
@@ -25,7 +25,7 @@ pub(crate) fn near(
     pairs.into_iter().filter_map(weighed).collect()
 }
 
-/// The map near a point of the plane, from what is around it but not at it, and how far the nearest of it is.
+/// The map near a point of the plane, from the surrounding pairs without that point, and the distance of the nearest of them.
 pub(crate) fn map_near(
     pairs: impl IntoIterator<Item = Pair>,
     point: Vector2<f64>,
@@ -38,14 +38,15 @@ pub(crate) fn map_near(
 }
 
 impl Homography {
-    /// The map that fits pairs best: linear, with both sides moved and scaled. `None` below four pairs, or of pairs on a line.
+    /// The map that fits pairs best: the direct linear transformation with both sides centred and scaled. `None` with fewer than four pairs, or for
+    /// collinear points.
     pub(crate) fn fit(pairs: &[Pair]) -> Option<Self> {
         if pairs.len() < 4 {
             return None;
         }
         let from = Scaling::new(pairs.iter().map(|it| (it.0, it.2)))?;
         let to = Scaling::new(pairs.iter().map(|it| (it.1, it.2)))?;
-        // With the last number 1: eight unknowns. Moved to the middle of the points it is not near 0.
+        // The last element is fixed to 1, so there are eight unknowns. In coordinates about the middle of the points it is not near 0.
         let mut normal = SMatrix::<f64, 8, 8>::zeros();
         let mut right = SVector::<f64, 8>::zeros();
         for (plane, picture, weight) in pairs {
@@ -73,27 +74,27 @@ impl Homography {
         whole.iter().all(|it| it.is_finite()).then_some(Homography { matrix: whole })
     }
 
-    /// Of four corners.
+    /// The map of four corners.
     pub(crate) fn of_corners(plane: &[Vector2<f64>; 4], picture: &[Vector2<f64>; 4]) -> Option<Self> {
         let pairs = [0, 1, 2, 3].map(|k| (plane[k], picture[k], 1.0));
         Homography::fit(&pairs)
     }
 
-    /// Where a point of the plane is in the picture; `None` behind the horizon.
+    /// Position of a point of the plane in the picture; `None` behind the horizon.
     pub(crate) fn map(&self, point: Vector2<f64>) -> Option<Vector2<f64>> {
         let mapped = self.matrix * Vector3::new(point.x, point.y, 1.0);
         let place = mapped.xy() / mapped.z;
         (place.x.is_finite() && place.y.is_finite() && mapped.z * self.matrix[(2, 2)] > 0.0).then_some(place)
     }
 
-    /// The same from an origin, where its last row is 1: rows of the matrix.
+    /// Rows of the matrix relative to an origin at which its last row is 1.
     pub(crate) fn around(&self, origin: Vector2<f64>) -> [[f32; 3]; 3] {
         let moved = self.matrix * Matrix3::new_translation(&origin);
         let scaled = moved / moved[(2, 2)];
         [0, 1, 2].map(|row| [0, 1, 2].map(|column| scaled[(row, column)] as f32))
     }
 
-    /// How a place in the picture moves with its point: columns are by x and y of the plane.
+    /// Derivative of the position in the picture by the point: columns are by x and y of the plane.
     pub(crate) fn slope(&self, point: Vector2<f64>) -> Option<Matrix2<f64>> {
         let mapped = self.matrix * Vector3::new(point.x, point.y, 1.0);
         let scale = 1.0 / mapped.z;
@@ -107,7 +108,7 @@ impl Homography {
     }
 }
 
-/// What moves points to their middle, and scales them to a spread of one.
+/// Transformation that moves the middle of points to zero, and scales their spread to one.
 struct Scaling {
     middle: Vector2<f64>,
     factor: f64,

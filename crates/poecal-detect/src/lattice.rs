@@ -1,4 +1,4 @@
-//! Dots joined to square lattices: a circle seen as an ellipse tells how its plane is tilted, and so where its neighbours are.
+//! Dots joined to square lattices: the ellipse of a circle determines the tilt of its plane, and so the positions of its neighbours.
 
 use std::collections::BTreeMap;
 
@@ -17,19 +17,19 @@ pub(crate) type Lattice = BTreeMap<Node, usize>;
 const FARTHEST: f64 = 9.0;
 /// Nearest neighbour, in radii: dots that touch have 2.
 const NEAREST: f64 = 2.1;
-/// Largest deviation of a dot from where others have it, as a part of the pitch.
+/// Largest deviation of a dot from its prediction by others, as a part of the pitch.
 const ASIDE: f64 = 0.22;
-/// Largest ratio of the sizes of neighbours, and of their contrasts; and of those that are not the next to each other.
+/// Largest ratio of the sizes of neighbours, and of their contrasts; and the ratios for dots that are not next to each other.
 const ALIKE: [f64; 2] = [1.45, 1.8];
 const ALIKE_FAR: [f64; 2] = [1.25, 1.35];
-/// Standard deviation of the weights of dots by their distance, and the farthest that counts, pitches.
+/// Standard deviation of the weights of dots by their distance, and the largest distance, pitches.
 const REACH: [f64; 2] = [1.6, 4.2];
 
-/// The next places of a lattice, and those beyond: where something covers a part of the board.
+/// The next nodes of a lattice, and those beyond, if an occlusion covers a part of the board.
 const STEPS: [Node; 12] =
     [[1, 0], [0, 1], [-1, 0], [0, -1], [1, 1], [-1, 1], [-1, -1], [1, -1], [2, 0], [0, 2], [-2, 0], [0, -2]];
 
-/// Lattices of dots, the largest first: x and y as on a board that is seen from its front.
+/// Lattices of dots, the largest first: x and y as on a board seen from the front.
 pub(crate) fn lattices(dots: &[Dot]) -> Vec<Lattice> {
     let mut free = vec![true; dots.len()];
     let mut all: Vec<Lattice> = Vec::new();
@@ -54,7 +54,7 @@ fn alike(a: &Dot, b: &Dot, [largest, strongest]: [f64; 2]) -> bool {
     ratio.max(1.0 / ratio) < largest && contrast.max(1.0 / contrast) < strongest
 }
 
-/// Steps of the lattice at a dot, pixels: to two neighbours at a right angle in the plane of the circle, as far away.
+/// Steps of the lattice at a dot, pixels: to two equally distant neighbours at a right angle in the plane of the circle.
 fn bases(dots: &[Dot], own: usize) -> Vec<Matrix2<f64>> {
     let dot = &dots[own];
     let mut near: Vec<(Vector2<f64>, Vector2<f64>)> = dots
@@ -90,7 +90,7 @@ fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
     let mut taken = vec![false; dots.len()];
     taken[first] = true;
     let mut tried = 0;
-    // Near steps from all places first.
+    // Near steps from all nodes first.
     while tried < places.len() * 2 {
         let (far, at) = (tried >= places.len(), tried % places.len());
         tried += 1;
@@ -106,7 +106,7 @@ fn flooded(dots: &[Dot], first: usize, basis: Matrix2<f64>) -> Lattice {
     lattice
 }
 
-/// Joins the dot that is a step from another one, if one is there.
+/// Joins the dot that is a step from another one, if there is one.
 fn joined(
     dots: &[Dot],
     lattice: &mut Lattice,
@@ -133,7 +133,7 @@ fn joined(
     }
 }
 
-/// Where a node beside another one is, by the nodes around, and the length of the way there.
+/// Position of a node beside another one, by the surrounding nodes, and the length of this step.
 fn predicted(
     places: &[(Node, Vector2<f64>)],
     own: Node,
@@ -149,7 +149,7 @@ fn predicted(
     let slope = if near.len() >= 3 { middle_slope(&near).unwrap_or(*basis) } else { *basis };
     let step = Vector2::new(f64::from(next[0] - own[0]), f64::from(next[1] - own[1]));
     let mut way = slope * step;
-    // Two dots in a row tell more than their mean.
+    // Two dots in a row predict better than the mean.
     let before = [2 * own[0] - next[0], 2 * own[1] - next[1]];
     if let Some((_, before)) = near.iter().find(|it| it.0 == before) {
         way = place - before;
@@ -162,7 +162,7 @@ pub(crate) fn map_near(pairs: &[Pair], point: Vector2<f64>) -> Option<(Homograph
     homography::map_near(pairs.iter().copied(), point, REACH)
 }
 
-/// Takes points of a board away that are not where the others have them, the worst first. `off` is the largest distance: pixels, and parts of the
+/// Removes points of a board that contradict the prediction by the others, the worst first. `off` is the largest distance: pixels, and parts of the
 /// unit.
 pub(crate) fn prune<T>(
     layout: &Layout,

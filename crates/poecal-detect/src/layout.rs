@@ -1,4 +1,4 @@
-//! Where corners, squares and markers of a board are.
+//! Positions of the corners, squares and markers of a board.
 
 use nalgebra::Vector2;
 
@@ -6,35 +6,35 @@ use crate::dictionary::Dictionary;
 use crate::found::Kind;
 use crate::spec::{AprilGrid, Charuco, Circles, Spec, Tags};
 
-/// What a board shows.
+/// Pattern of a board.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Pattern {
     /// Squares, dark and light in turn.
     Squares,
-    /// Dots at the inner corners of what would be squares.
+    /// Dots at the inner corners of virtual squares.
     Dots {
-        /// Whether only every second corner has one, from the first on.
+        /// True if only every second corner has one, from the first on.
         asymmetric: bool,
-        /// Their diameter as a part of a square: what is drawn. In pictures it is measured.
+        /// Drawn diameter as a part of a square. In pictures it is measured.
         diameter: f64,
     },
     /// Tags in columns and rows.
     Tags(Tagged),
 }
 
-/// Tags in columns and rows: what is drawn. The first one is a side of a tag from both borders of the board.
+/// Tags in columns and rows, as drawn. The first one is a side of a tag from both borders of the board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tagged {
     /// Tags along x.
     pub columns: usize,
     /// Tags along y.
     pub rows: usize,
-    /// From tag to tag, in sides of a tag.
+    /// Gap between tags, in sides of a tag.
     pub gap: f64,
     /// Cells of the dark border.
     pub border: usize,
-    /// Whether it is Kalibr's: tags count from the lower left one, with dark squares at their corners, and are turned by 180° against OpenCV's.
+    /// True for Kalibr's grid: tags count from the lower left one, with dark squares at their corners, and are turned by 180° relative to OpenCV's.
     pub kalibr: bool,
     /// The tags.
     pub dictionary: Dictionary,
@@ -55,7 +55,7 @@ impl Tagged {
         self.dictionary.bits() + 2 * self.border
     }
 
-    /// Whether a cell of a tag is black, as the board stands: they count from the upper left one, with the border. What is outside is black.
+    /// True if a cell of a tag is black, as the board stands. Cells count from the upper left one, with the border; outside cells are black.
     #[must_use]
     pub fn is_black(&self, tag: usize, column: usize, row: usize) -> bool {
         let last = self.cells() - 1;
@@ -71,14 +71,14 @@ const AROUND: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 /// A point of a board.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// Its name, as of a [`Corner`](crate::Corner) in a picture.
+    /// Name, as of a [`Corner`](crate::Corner) in a picture.
     pub name: String,
-    /// Its place on the board, metres.
+    /// Position on the board, metres.
     pub place_m: [f64; 2],
 }
 
-/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square. Of a grid of dots a square is one
-/// of its pitch, with dots at inner corners.
+/// The geometry of a board, in squares: x to the right, y downwards, from the outer corner of the first square. For a grid of dots a square has the
+/// side of its pitch, with dots at inner corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Squares along x and y.
@@ -87,9 +87,9 @@ pub struct Layout {
     pub square_m: f64,
     /// The markers: their dictionary, and their side as a part of a square's.
     pub markers: Option<(Dictionary, f64)>,
-    /// Whether the first square is dark.
+    /// True if the first square is dark.
     pub first_dark: bool,
-    /// What it shows.
+    /// Pattern of the board.
     pub pattern: Pattern,
 }
 
@@ -128,7 +128,7 @@ impl Layout {
         }
     }
 
-    /// Whether a square is dark.
+    /// True if a square is dark.
     #[must_use]
     pub fn is_dark(&self, column: usize, row: usize) -> bool {
         (column + row).is_multiple_of(2) == self.first_dark
@@ -150,7 +150,7 @@ impl Layout {
         if self.is_asymmetric() { columns / 2 * rows } else { columns * rows }
     }
 
-    /// Place of an inner corner, of a dot, or of the corner of a tag, squares.
+    /// Position of an inner corner, of a dot, or of the corner of a tag, squares.
     #[must_use]
     pub fn corner(&self, id: usize) -> Vector2<f64> {
         if let Pattern::Tags(tags) = &self.pattern {
@@ -166,9 +166,9 @@ impl Layout {
         Vector2::new((id % columns + 1) as f64, (id / columns + 1) as f64)
     }
 
-    /// All points with their names, metres. Of chessboards and dots x is to the right and y downwards from the first one, as the axes of `poecal`'s
-    /// boards and OpenCV's; of Kalibr's grid of tags x is to the right and y upwards from the lower left corner of tag 0. A loose tag is where it is:
-    /// of each its own corners are told, from its middle, with y upwards.
+    /// All points with their names, metres. For chessboards and dots x is to the right and y downwards from the first one, as the axes of `poecal`'s
+    /// boards and OpenCV's. For Kalibr's grid of tags x is to the right and y upwards from the lower left corner of tag 0. Loose tags have no common
+    /// frame: the corners of each are relative to its own middle, with y upwards.
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
         let point = |kind: Kind, id: usize, place: Vector2<f64>| Point {
@@ -192,7 +192,7 @@ impl Layout {
         }
     }
 
-    /// Whether it has dots on every second corner.
+    /// True if it has dots on every second corner.
     pub(crate) fn is_asymmetric(&self) -> bool {
         matches!(self.pattern, Pattern::Dots { asymmetric: true, .. })
     }
@@ -206,7 +206,7 @@ impl Layout {
         (column % 2 == row % 2).then(|| row * (columns / 2) + column / 2)
     }
 
-    /// Radius of dots, squares; 0 without.
+    /// Radius of dots, squares; 0 without dots.
     pub(crate) fn dot_radius(&self) -> f64 {
         match self.pattern {
             Pattern::Squares | Pattern::Tags(_) => 0.0,
@@ -214,7 +214,7 @@ impl Layout {
         }
     }
 
-    /// Whether the square between a corner and the origin's side in both directions is dark.
+    /// True if the square between a corner and the origin's side in both directions is dark.
     #[must_use]
     pub fn dark_before(&self, id: usize) -> bool {
         let columns = self.inner()[0].max(1);
@@ -229,7 +229,7 @@ impl Layout {
         light.filter(|[column, row]| !self.is_dark(*column, *row)).nth(marker)
     }
 
-    /// How many markers it has.
+    /// Number of markers.
     #[must_use]
     pub fn marker_count(&self) -> usize {
         if let Pattern::Tags(tags) = &self.pattern {
@@ -255,7 +255,7 @@ impl Layout {
         Some(signs.map(|[x, y]| middle + Vector2::new(x * side, y * side)))
     }
 
-    /// How far from a corner its squares are plain, squares.
+    /// Distance from a corner within which its squares are plain, squares.
     pub(crate) fn plain(&self) -> f64 {
         self.markers.as_ref().map_or(1.0, |(_, side)| (1.0 - side) / 2.0)
     }

@@ -1,19 +1,19 @@
 //! Points of calibration boards in pictures: corners of chessboards, ChArUco boards, tags and grids of tags, and dots of circle grids, each with its
-//! name, its place and the standard deviation of it.
+//! name, its position and its standard deviation.
 //!
-//! A [`Spec`] says what the board is, [`Picture::open`] reads a picture, and [`Detector::detect`] gives its corners or the reason why there are
-//! none. Pixels are OpenCV's: the centre of the first pixel is (0, 0). Corners have the names of `poecal`'s `Board::chessboard`: `corner0`,
-//! `corner1`, … along x first, from the first inner corner; of a ChArUco board these are OpenCV's ids. Dots are `dot0`, `dot1`, … in
-//! OpenCV's order, and corners of tags `tag12.0` to `tag12.3`: upper left, upper right, lower right and lower left of the tag as it is printed. What a
-//! dictionary of OpenCV calls upright is meant; Kalibr prints AprilTags the other way up, and on its grid they are named as they stand there.
-//! [`Layout::points`] has the places on the board.
+//! A [`Spec`] describes the board, [`Picture::open`] reads a picture, and [`Detector::detect`] returns its corners or the reason why there are none.
+//! Pixels are OpenCV's: the centre of the first pixel is (0, 0). Corners have the names of `poecal`'s `Board::chessboard`: `corner0`, `corner1`, …
+//! along x first, from the first inner corner; on a ChArUco board these are OpenCV's ids. Dots are `dot0`, `dot1`, … in OpenCV's order. Corners of
+//! tags are `tag12.0` to `tag12.3`: upper left, upper right, lower right and lower left of the printed tag. Upright is the orientation in a
+//! dictionary of OpenCV; Kalibr prints AprilTags upside down, and on its grid they are named as they stand there. [`Layout::points`] has the
+//! positions on the board.
 //!
-//! A corner is never guessed: each is where two edges cross, with dark and light as the board has them, and agrees with its neighbours. What is
-//! hidden is left out.
+//! A corner is never guessed: each is a crossing of two edges, with dark and light as on the board, and agrees with its neighbours. Hidden corners
+//! are left out.
 //!
 //! For programs that take pictures of boards; public items follow semantic versioning. Markers are found and read by `quads.rs` and `markers.rs`,
-//! crossings joined to a board by `grid.rs` and `growth.rs` and refined by `saddle.rs`; `suggest.rs` names another board that fits. Not here: robots,
-//! lenses' calibration, and other crates of the workspace.
+//! crossings joined to a board by `grid.rs` and `growth.rs` and refined by `saddle.rs`; `suggest.rs` names another board that fits. This crate
+//! contains no robots, no lens calibration, and no other crates of the workspace.
 
 #![forbid(unsafe_code)]
 

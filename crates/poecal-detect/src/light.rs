@@ -1,8 +1,8 @@
-//! Noise of a picture, and why a board may not be seen in it.
+//! Noise of a picture, and reasons why a board may not be visible in it.
 
 use crate::gray::Gray;
 
-/// Standard deviation of the noise of a pixel, gray levels: of second differences in both directions, half of which have to be noise alone.
+/// Standard deviation of the noise of a pixel, gray levels: from second differences in both directions, at least half of which must be noise alone.
 pub(crate) fn noise(gray: &Gray) -> f64 {
     let (width, height) = (gray.width(), gray.height());
     let mut found: Vec<f32> = Vec::with_capacity(width * height / 16 + 1);
@@ -12,7 +12,7 @@ pub(crate) fn noise(gray: &Gray) -> f64 {
             let sides = own[x - 1] + own[x + 1] + above[x] + below[x];
             let diagonal = above[x - 1] + above[x + 1] + below[x - 1] + below[x + 1];
             let second = (4.0 * own[x] - 2.0 * sides + diagonal).abs();
-            // Where nothing differs, light or dark is cut off.
+            // If nothing differs, light or dark is cut off.
             if second > 0.0 {
                 found.push(second);
             }
@@ -27,9 +27,9 @@ pub(crate) fn noise(gray: &Gray) -> f64 {
     (f64::from(*median) / (6.0 * 0.6745)).clamp(0.3, 255.0)
 }
 
-/// What a picture looks like as a whole.
+/// Appearance of a picture as a whole.
 pub(crate) struct Light {
-    /// Level that one pixel of a hundred is beyond.
+    /// Level that one pixel in a hundred exceeds.
     pub(crate) lightest: f64,
     /// Part of the pixels that are white.
     pub(crate) white: f64,

@@ -1,6 +1,6 @@
 //! The middle of some numbers.
 
-/// The middle one of some numbers in their order, of an even count the larger of both; `None` of none.
+/// The median of some numbers, for an even count the larger of the middle two; `None` without numbers.
 pub(crate) fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);

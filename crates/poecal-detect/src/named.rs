@@ -1,4 +1,4 @@
-//! Dots with their numbers on a board: how large they are, and where one is that was not found.
+//! Dots with their numbers on a board: their size, and the search for missing ones.
 
 use std::collections::BTreeMap;
 
@@ -14,13 +14,13 @@ use crate::median::median;
 /// Dots by their numbers on the board.
 pub(crate) type Named = BTreeMap<usize, Dot>;
 
-/// Largest distance of a dot from where its neighbours have it, pixels and parts of the unit.
+/// Largest distance of a dot from its prediction by neighbours, pixels and parts of the unit.
 pub(crate) const OFF: (f64, f64) = (0.8, 0.035);
 /// Largest deviation of a dot's radius from that of the others, as a part and in pixels.
 const ROUND: (f64, f64) = (0.08, 0.5);
-/// Largest misfit of a dot beside the median one, and beside the contrast: of more, something covers a part of it.
+/// Largest ratio of a dot's misfit to the median one, and to the contrast: beyond them, an occlusion covers a part of it.
 const COVERED: (f64, f64) = (4.0, 0.03);
-/// How far a missing dot may be from the nearest one that was found, units.
+/// Largest distance of a missing dot from the nearest detected one, units.
 pub(crate) const NEAR: f64 = 2.1;
 
 pub(crate) fn pairs(layout: &Layout, named: &Named) -> Vec<Pair> {
@@ -40,7 +40,7 @@ pub(crate) fn radius(layout: &Layout, named: &Named) -> Option<f64> {
     median(named.iter().filter_map(radius))
 }
 
-/// Takes dots away that are not as large as the others.
+/// Removes dots that differ in size from the others.
 pub(crate) fn keep_round(layout: &Layout, named: &mut Named, radius: f64) {
     let all = pairs(layout, named);
     named.retain(|id, dot| is_alike(&all, layout.corner(*id), dot, radius));
@@ -53,7 +53,7 @@ pub(crate) fn is_alike(all: &[Pair], point: Vector2<f64>, dot: &Dot, radius: f64
         .is_some_and(|[own, unit_px]| (own / radius - 1.0).abs() < ROUND.0 + ROUND.1 / (radius * unit_px))
 }
 
-/// Seeks dots that were not found, where the others have them.
+/// Searches for missing dots at their predicted positions.
 pub(crate) fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, radius: f64) {
     let all = pairs(layout, named);
     let missing = (0..layout.corners()).filter(|id| !named.contains_key(id));
@@ -61,7 +61,7 @@ pub(crate) fn seek(gray: &Gray, layout: &Layout, noise: f64, named: &mut Named, 
     named.extend(sought.collect::<Vec<_>>());
 }
 
-/// The dot at a point of the board's plane, if one is there that is as large as the others, where they have it.
+/// The dot at a point of the board's plane, if there is one of the usual size at its predicted position.
 pub(crate) fn dot_at(gray: &Gray, noise: f64, all: &[Pair], point: Vector2<f64>, radius: f64) -> Option<Dot> {
     let (map, nearest) = map_near(all, point).filter(|it| it.1 < NEAR)?;
     let (place, slope) = (map.map(point)?, map.slope(point)?);

@@ -1,14 +1,14 @@
 //! Sums of products of the rows of a least-squares fit to pixels, many pixels side by side.
 //!
-//! Rows are single precision, which is more than levels have; their sums are double after every thousand pixels.
+//! Rows are single precision, which exceeds that of levels; their sums are double after every thousand pixels.
 
 use nalgebra::{SMatrix, SVector, Vector2};
 
 /// Pixels side by side.
 pub(crate) const LANES: usize = 16;
-/// A number of each of them.
+/// A number for each of them.
 pub(crate) type Lanes = [f32; LANES];
-/// Numbers side by side from one on.
+/// Numbers side by side from an index on.
 #[inline(always)]
 pub(crate) fn lanes(all: &[f32], at: usize) -> &Lanes {
     all.get(at..).and_then(<[f32]>::first_chunk).unwrap_or(&[0.0; LANES])
@@ -17,7 +17,7 @@ pub(crate) fn lanes(all: &[f32], at: usize) -> &Lanes {
 /// Additions before sums are added to those of double precision.
 const MANY: usize = 64;
 
-/// Pixels with their levels, [`LANES`] side by side; places are from an origin near them, which is a pixel.
+/// Pixels with their levels, [`LANES`] side by side; positions are relative to an origin near them, which is a pixel.
 pub(crate) struct Pixels {
     pub(crate) origin: Vector2<f64>,
     /// Columns, rows and levels.
@@ -46,7 +46,7 @@ impl Pixels {
         self.count
     }
 
-    /// Columns, rows and levels of pixels side by side, and how many of them there are.
+    /// Columns, rows and levels of pixels side by side, and their number.
     #[inline(always)]
     pub(crate) fn chunks(&self) -> impl Iterator<Item = (&[Lanes; 3], usize)> {
         self.all.iter().enumerate().map(|(at, it)| (it, (self.count - at * LANES).min(LANES)))
@@ -57,7 +57,7 @@ impl Pixels {
         (0..self.count).map(|at| self.all[at / LANES].map(|it| it[at % LANES]))
     }
 
-    /// A place from the origin.
+    /// Position relative to the origin.
     pub(crate) fn offset(&self, place: Vector2<f64>) -> [f32; 2] {
         (place - self.origin).map(|it| it as f32).into()
     }
@@ -65,7 +65,7 @@ impl Pixels {
 
 /// The normal equations of rows.
 pub(crate) struct Normal<const N: usize> {
-    /// Below the diagonal.
+    /// Products below the diagonal.
     products: [[Lanes; N]; N],
     right: [Lanes; N],
     squares: Lanes,
@@ -95,7 +95,7 @@ impl<const N: usize> Normal<N> {
         }
     }
 
-    /// Adds rows side by side with their residuals, the first so many of them.
+    /// Adds the first `count` of rows side by side with their residuals.
     #[inline(always)]
     pub(crate) fn add(&mut self, rows: &mut [Lanes; N], residuals: &mut Lanes, count: usize) {
         if count < LANES {
@@ -137,7 +137,7 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// The mean of a sign at a distance of so many standard deviations, and exp(-x²/2): Abramowitz and Stegun 7.1.26, to 2e-7.
+/// Mean of a sign at a distance of this number of standard deviations, and exp(-x²/2): 7.1.26 of abramowitz1964, to 2e-7.
 #[inline(always)]
 pub(crate) fn sign_and_bell(x: f32) -> (f32, f32) {
     let bell = exp(-0.5 * x * x);
@@ -148,10 +148,10 @@ pub(crate) fn sign_and_bell(x: f32) -> (f32, f32) {
     ((1.0 - series * bell).copysign(x), bell)
 }
 
-/// The exponential of what is not positive.
+/// Exponential of a non-positive number.
 #[inline(always)]
 fn exp(x: f32) -> f32 {
-    // A number of this size has whole steps: its last bits are the nearest whole number.
+    // A number of this size is an integer: its last bits are the nearest integer.
     const WHOLE: f32 = 12_582_912.0;
     let power = x.max(-80.0) * std::f32::consts::LOG2_E;
     let shifted = power + WHOLE;
@@ -182,7 +182,7 @@ mod tests {
                 |[x, y, level]: [f32; 3]| (SVector::from([y, x, x * x].map(f64::from)), f64::from(level));
             let rows: Vec<_> = pixels.each().map(row).collect();
             let expected = rows.iter().fold(SMatrix::zeros(), |sum, it| sum + it.0 * it.0.transpose());
-            // Whole numbers and halves: without rounding.
+            // Integers and halves: without rounding.
             assert_eq!(normal, expected);
             assert_eq!(right, rows.iter().fold(SVector::zeros(), |sum, it| sum + it.0 * it.1));
             assert_eq!(squares, rows.iter().map(|it| it.1 * it.1).sum::<f64>());

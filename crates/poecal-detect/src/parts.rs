@@ -1,11 +1,11 @@
-//! Connected parts of a picture that are darker than what is around them.
+//! Connected parts of a picture that are darker than their surroundings.
 
 use nalgebra::{Matrix2, Vector2};
 
 use crate::gray::Gray;
 use crate::vector::{change, vectorized};
 
-/// A picture made ready to tell dark from light: levels times 16, smoothed over 3 × 3 pixels, and their means over 2 × 2.
+/// A picture prepared for the separation of dark from light: levels times 16, smoothed over 3 × 3 pixels, and their means over 2 × 2.
 pub(crate) struct Shades {
     smooth: Vec<u16>,
     width: usize,
@@ -25,12 +25,12 @@ impl Shades {
         Shades { smooth, width: gray.width(), halved, offset: (0.8 * noise).max(2.0) as i32 }
     }
 
-    /// Parts darker than the mean of a window that reaches so many pixels to each side.
+    /// Parts darker than the mean of a window that extends by this number of pixels to each side.
     pub(crate) fn dark_parts(&self, half: usize) -> Parts {
         self.darker_parts(half, self.offset)
     }
 
-    /// Parts darker than that by so many gray levels. The mean is that of the halved picture.
+    /// Parts darker than that by this number of gray levels. The mean is that of the halved picture.
     pub(crate) fn darker_parts(&self, half: usize, offset: i32) -> Parts {
         vectorized(
             #[inline(always)]
@@ -65,7 +65,7 @@ struct Window<'a> {
     levels: &'a [u16],
     width: usize,
     half: usize,
-    /// Sums of the rows of the window by columns, and of the columns before each. The latter may pass their range, which their differences do not.
+    /// Sums of the rows of the window by columns, and of the columns before each. The latter may overflow; their differences do not.
     columns: Vec<u32>,
     before: Vec<u32>,
 }
@@ -127,20 +127,20 @@ pub(crate) fn cross(a: Vector2<f64>, b: Vector2<f64>) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// What a part looks like: the ellipse with its moments.
+/// Shape of a part: the ellipse with its moments.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blob {
     pub(crate) middle: Vector2<f64>,
-    /// Covariance of the places of its pixels, pixels².
+    /// Covariance of the positions of its pixels, pixels².
     pub(crate) spread: Matrix2<f64>,
-    /// Pixels.
+    /// Area, pixels.
     pub(crate) area: f64,
 }
 
-/// The nearest whole number of one from 0 to 65,535.
+/// The nearest integer to a number from 0 to 65,535.
 #[inline(always)]
 fn whole(number: f32) -> i32 {
-    // One of this size has whole steps: its last bits are the number. Conversions look for what is none, one by one.
+    // A number of this size is an integer: its last bits are the number. Conversions check for invalid numbers, one by one.
     const WHOLE: f32 = 8_388_608.0;
     ((number + WHOLE).to_bits() & 0xf_ffff) as i32
 }
@@ -158,7 +158,7 @@ fn smoothed(gray: &Gray) -> (Vec<u16>, Vec<u16>) {
         let below = gray.row((row + 1).min(height - 1));
         change(&mut columns[1..], [above, own, below], |_, [above, own, below]| above + 2.0 * own + below);
         (columns[0], columns[width + 1]) = (columns[1], columns[width]);
-        // Levels out of range are borne.
+        // Levels out of range are accepted.
         let around = [&columns[..], &columns[1..], &columns[2..]];
         change(target, around, |_, [left, own, right]| {
             whole((2.0 * own + (left + right)).clamp(0.0, 65_535.0)) as u16
@@ -181,7 +181,7 @@ fn smoothed(gray: &Gray) -> (Vec<u16>, Vec<u16>) {
     (smooth, halved)
 }
 
-/// What stands for the number of a part that is too small.
+/// Mark in place of the number of a part that is too small.
 const NO_PART: u32 = u32::MAX;
 
 /// Connected dark pixels, as runs in rows.
@@ -194,7 +194,7 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// Adds the runs of ones in a row, which zeros fill up to a multiple of 64.
+    /// Adds the runs of ones in a row, which is padded with zeros to a multiple of 64.
     #[inline(always)]
     fn add(&mut self, dark: &[u8], row: u32) {
         let (mut last, mut from) = (0, 0);
@@ -227,7 +227,7 @@ impl Parts {
         self.runs.push(run);
     }
 
-    /// Joins runs of a row with those of the row above that they touch by a side.
+    /// Joins runs of a row with those of the row above that share a side.
     fn join(&mut self, above: std::ops::Range<usize>, own: std::ops::Range<usize>) {
         let mut from = above.start;
         for at in own {
@@ -253,8 +253,8 @@ impl Parts {
         at
     }
 
-    /// The number of the part of each first run, of parts of such a size, and how many there are: of pictures of noise most are small, and what is
-    /// kept of each part would take many times the memory of the picture.
+    /// Number of the part of each first run, for parts of at least this size, and their count. In pictures of noise most parts are small, and the
+    /// data kept for each part would take many times the memory of the picture.
     fn large(&mut self, least: u32, size_of: impl Fn([u32; 3]) -> u32) -> (Vec<u32>, usize) {
         let mut numbers = vec![0_u32; self.runs.len()];
         for at in 0..self.runs.len() {
@@ -311,7 +311,7 @@ impl Parts {
         outlines
     }
 
-    /// The moments of each part of so many pixels.
+    /// Moments of each part with at least this number of pixels.
     pub(crate) fn blobs(mut self, least: u32) -> Vec<Blob> {
         let (numbers, count) = self.large(least, |[left, right, _]| right - left + 1);
         // Area, first and second moments.

@@ -1,8 +1,8 @@
-//! The place of a corner: two edges that cross, blurred, fitted to the levels of the pixels around.
+//! Position of a corner: two crossing edges, blurred, fitted to the levels of the surrounding pixels.
 //!
 //! The model of the light at p is `(m + b S)(1 + g · (p - p₀))`, with S the mean of the product of the signs on both sides of two straight lines
-//! under a Gaussian blur. What it needs around a corner are plain squares. The fit is least squares, so its covariance is that of the corner; all
-//! that a homography does to straight edges keeps their crossing.
+//! under a Gaussian blur. It requires plain squares around a corner. The fit is least squares, so its covariance is that of the corner. A homography
+//! keeps edges straight, and so keeps their crossing.
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
@@ -10,22 +10,22 @@ use crate::gray::Gray;
 use crate::normal::{LANES, Lanes, Normal, Pixels, sign_and_bell};
 use crate::vector::vectorized;
 
-/// What is known of a corner before.
+/// Prediction of a corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expected {
-    /// Its place, pixels.
+    /// Predicted position, pixels.
     pub(crate) place: Vector2<f64>,
-    /// How the place moves by x and y of the board, pixels a square.
+    /// Derivative of the position by x and y of the board, pixels per square.
     pub(crate) slope: Matrix2<f64>,
-    /// How far its squares are plain, squares.
+    /// Extent of its plain squares, squares.
     pub(crate) plain: f64,
-    /// Whether the square before it in x and y is dark.
+    /// True if the square before it in x and y is dark.
     pub(crate) dark_before: bool,
-    /// How far from its expected place it is sought, pixels.
+    /// Radius of the search about its predicted position, pixels.
     pub(crate) search_px: f64,
 }
 
-/// A corner that was found.
+/// A detected corner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Saddle {
     pub(crate) place: Vector2<f64>,
@@ -37,20 +37,21 @@ pub(crate) struct Saddle {
     pub(crate) half_contrast: f64,
 }
 
-/// Largest distance of pixels that count from the corner, along each edge.
+/// Largest distance of used pixels from the corner, along each edge.
 const LARGEST_PX: f64 = 11.0;
 /// Smallest window that determines a corner.
 const LEAST_PX: f64 = 2.6;
-/// Largest part of the contrast that the model may leave beyond the noise.
+/// Largest residual of the model beyond the noise, as a part of the contrast.
 const MISFIT: f64 = 0.22;
-/// Largest turn of an edge from where the board has it, rad.
+/// Largest turn of an edge from its prediction by the board, rad.
 const TURN: f64 = 0.45;
-/// What no fit is better than, pixels: curved edges, uneven ink.
+/// Floor of the standard deviation, pixels: curved edges, uneven ink.
 const FLOOR_PX: f64 = 0.006;
-/// Least certain corner that counts, pixels.
+/// Largest standard deviation of an accepted corner, pixels.
 const WORST_PX: f64 = 0.4;
 
-/// Finds a corner near its expected place. `None` if there is none: no two crossing edges, exchanged shades, another direction, too little contrast.
+/// Finds a corner near its predicted position. `None` if there is none: no two crossing edges, exchanged shades, another direction, too little
+/// contrast.
 pub(crate) fn refine(gray: &Gray, expected: &Expected, noise: f64) -> Option<Saddle> {
     let is_front = expected.slope.determinant() > 0.0;
     if !is_front {
@@ -62,14 +63,14 @@ pub(crate) fn refine(gray: &Gray, expected: &Expected, noise: f64) -> Option<Sad
     if whole.is_some() {
         return whole;
     }
-    // Something else may be near.
+    // Another feature may be near.
     let smaller = Window::new(expected, LARGEST_PX * 0.45)?;
     fit(gray, expected, place, &smaller, noise)
 }
 
 /// A parallelogram around a corner in which its squares are plain.
 struct Window {
-    /// From pixels to the sides of the parallelogram, which are at ±1.
+    /// Map from pixels to the parallelogram, whose sides are at ±1.
     inverse: Matrix2<f64>,
     sides: Matrix2<f64>,
 }
@@ -80,7 +81,7 @@ impl Window {
         let mut sides = expected.slope;
         for k in 0..2 {
             let length = expected.slope.column(k).norm();
-            // Pixels across for a step along.
+            // Pixels across per step along.
             let across = area / expected.slope.column(1 - k).norm();
             let free = expected.plain - BLURRED_PX / across;
             let reach = free.max(LEAST_PX / across).min(expected.plain).min(largest_px / length);
@@ -114,10 +115,10 @@ impl Window {
     }
 }
 
-/// How far a marker is blurred beyond its border, pixels.
+/// Width of the blur of a marker beyond its border, pixels.
 const BLURRED_PX: f64 = 1.2;
 
-/// The place with the most contrast between the two pairs of squares.
+/// The position with the most contrast between the two pairs of squares.
 fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
     let window = Window::new(expected, LARGEST_PX)?;
     const AT: [[f64; 2]; 4] = [[0.3, 0.3], [0.7, 0.7], [0.25, 0.65], [0.65, 0.25]];
@@ -148,7 +149,7 @@ fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
     if most <= 0.0 || most.is_nan() {
         return None;
     }
-    // Beside the best: the top is flat.
+    // Weighted mean near the best: the maximum is flat.
     let (mut sum, mut weights) = (Vector2::zeros(), 0.0);
     for (place, response) in found.iter().filter(|it| it.1 > 0.75 * most && (it.0 - best).norm() < 3.5) {
         sum += place * *response;
@@ -160,14 +161,14 @@ fn search(gray: &Gray, expected: &Expected) -> Option<Vector2<f64>> {
 const UNKNOWNS: usize = 9;
 type Unknowns = SVector<f64, UNKNOWNS>;
 
-/// Crossing lines: place, directions, blur, levels, slope of the light.
+/// Crossing lines: position, directions, blur, levels, gradient of the light.
 #[derive(Clone)]
 struct Crossing {
     place: Vector2<f64>,
     /// Directions of the lines along x and y of the board, rad.
     turns: [f64; 2],
     blur: f64,
-    /// Mean level, and half the contrast, positive where the square before the corner is light.
+    /// Mean level, and half the contrast, positive if the square before the corner is light.
     mean: f64,
     half: f64,
     light: Vector2<f64>,
@@ -207,8 +208,8 @@ impl Crossing {
         Sums { normal, right, squares }
     }
 
-    /// How many pixels err together, as sharpened and compressed pictures have it: 1 plus twice the correlations of what is left with that of the
-    /// next pixels and those after them, in four directions.
+    /// Number of pixels with a common error, as in sharpened and compressed pictures: 1 plus twice the correlations of the residuals with those of
+    /// the next pixels and those after them, in four directions.
     fn alike(&self, pixels: &Pixels, middle: Vector2<f64>) -> f64 {
         let near = Near::new(self, pixels, middle);
         let left: Vec<f32> = pixels.chunks().flat_map(|it| near.rows(it.0).1).collect();
@@ -217,7 +218,7 @@ impl Crossing {
             [places().fold(f32::INFINITY, f32::min), places().fold(f32::NEG_INFINITY, f32::max)]
         };
         let ([left_px, right_px], [top_px, bottom_px]) = (ends(0), ends(1));
-        // Row by row, with nothing beside each row.
+        // Row by row, with zeros beside each row.
         let width = (right_px - left_px) as usize + 1 + 2;
         let size = (width * ((bottom_px - top_px) as usize + 1)).next_multiple_of(LANES);
         let mut all = vec![0.0_f32; size + 2 * width + 2];
@@ -241,7 +242,7 @@ impl Crossing {
     }
 
     fn stepped(&self, step: &Unknowns) -> Self {
-        // Beyond a pixel and a third of a radian the slopes say nothing.
+        // Beyond a pixel and a third of a radian the derivatives are not valid.
         let long = (step[0].hypot(step[1]) / 1.5).max(step[2].abs().max(step[3].abs()) / 0.35).max(1.0);
         let step = step / long;
         Crossing {
@@ -321,13 +322,13 @@ impl Near {
     }
 }
 
-/// The part of the blur where both lines are not at right angles: the first terms of Mehler's series.
+/// The part of the blur for lines that are not at right angles: the first terms of Mehler's series.
 #[inline(always)]
 fn skew(rho: f32, h: f32, k: f32) -> f32 {
     rho * (1.0 + rho * (0.5 * h * k + rho / 6.0 * (h * h - 1.0) * (k * k - 1.0)))
 }
 
-/// Fits crossing lines in a window about a place.
+/// Fits crossing lines in a window about a position.
 fn fit(gray: &Gray, expected: &Expected, place: Vector2<f64>, window: &Window, noise: f64) -> Option<Saddle> {
     let mut middle = place;
     let mut pixels = window.pixels(gray, middle);

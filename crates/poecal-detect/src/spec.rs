@@ -1,4 +1,4 @@
-//! What a board is, in one line of text.
+//! Specification of a board, in one line of text.
 
 use std::fmt;
 use std::str::FromStr;
@@ -59,9 +59,9 @@ pub struct Circles {
     pub columns: usize,
     /// Rows of dots.
     pub rows: usize,
-    /// From row to row, metres. In a row the dots are as far apart, or twice as far if the grid is asymmetric.
+    /// Distance from row to row, metres. In a row the dots have this distance, or twice as much if the grid is asymmetric.
     pub pitch_m: f64,
-    /// Whether every second row is moved by a pitch: dot `j` of row `i` is at `(2 j + i % 2, i)` pitches.
+    /// True if every second row is moved by a pitch: dot `j` of row `i` is at `(2 j + i % 2, i)` pitches.
     pub asymmetric: bool,
 }
 
@@ -83,15 +83,15 @@ pub struct AprilGrid {
     pub rows: usize,
     /// Side of a tag with its black border, metres.
     pub size_m: f64,
-    /// From tag to tag, as a part of the side of a tag.
+    /// Gap from tag to tag, as a part of the side of a tag.
     pub spacing: f64,
     /// The tags.
     pub dictionary: Dictionary,
 }
 
-/// Most squares along a side, as of `poecal`'s boards.
+/// Most squares along a side, as for `poecal`'s boards.
 const MOST_SQUARES: usize = 250;
-/// What a specification looks like.
+/// Forms of a specification.
 const CHESSBOARD: &str = "chessboard:COLSxROWS:SQUARE, such as chessboard:10x7:28mm";
 const CIRCLES: &str = "circles:COLSxROWS:PITCH, such as circles:9x6:30mm or circles:4x11:20mm:asymmetric";
 const TAGS: &str = "tags:FAMILY:SIZE, such as tags:36h11:50mm";
@@ -99,8 +99,8 @@ const APRILGRID: &str = "aprilgrid:COLSxROWS:SIZE:SPACING, such as aprilgrid:6x6
 const CHARUCO: &str = "charuco:COLSxROWS:SQUARE:MARKER:DICT, such as charuco:5x7:36mm:18mm:DICT_6X6_250";
 
 impl Spec {
-    /// Squares along x and y; of a grid of dots those that have its dots at their inner corners,
-    /// of tags what holds those that are drawn, in sides of a tag.
+    /// Squares along x and y. For a grid of dots those that have its dots at their inner corners; for tags the extent of the drawn ones, in sides of
+    /// a tag.
     #[must_use]
     pub fn squares(&self) -> [usize; 2] {
         match self {
@@ -127,8 +127,8 @@ impl Spec {
         }
     }
 
-    /// What a ruler measures of a print along x and y, metres: all squares, or all tags of a grid, between their outer edges; dots from the middles of
-    /// the outer ones to each other; one of loose tags.
+    /// Lengths that a ruler measures on a print along x and y, metres: all squares, or all tags of a grid, between their outer edges; dots between
+    /// the middles of the outer ones; a single one of loose tags.
     #[must_use]
     pub fn ruled_m(&self) -> [f64; 2] {
         match self {
@@ -141,7 +141,7 @@ impl Spec {
         }
     }
 
-    /// The board so many times as large, with squares and markers to a micrometre.
+    /// The board scaled by this factor, with squares and markers to a micrometre.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let scaled = |length_m: f64| (length_m * factor * 1e6).round() / 1e6;
         let mut board = self.clone();

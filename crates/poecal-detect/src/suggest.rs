@@ -1,4 +1,4 @@
-//! Another board that fits, where the stated one does not.
+//! Suggestion of another board, if the stated one does not fit.
 
 use std::fmt;
 
@@ -13,14 +13,14 @@ use crate::quads::{Quad, quads, quads_apart};
 use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 use crate::{aprilgrid, charuco, chessboard, circles, tags};
 
-/// A board that pictures show in place of the stated one.
+/// A board that pictures show instead of the stated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suggestion {
     /// The board.
     pub spec: Spec,
-    /// In how many of the pictures it was found.
+    /// Number of the pictures in which it was found.
     pub pictures: usize,
-    /// Corners that it has there.
+    /// Number of its corners there.
     pub corners: usize,
 }
 
@@ -31,7 +31,7 @@ impl fmt::Display for Suggestion {
     }
 }
 
-/// The board that has most corners, if any has some: of several the first that is tried.
+/// The board with the most corners, if any has some: of several the first that is tried.
 pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray], most_dots: usize) -> Option<Suggestion> {
     let seen: Vec<(&Gray, f64)> = pictures.iter().map(|gray| (*gray, noise(gray))).collect();
     let all: Vec<Suggestion> = match spec {
@@ -56,7 +56,7 @@ pub(crate) fn suggest(spec: &Spec, pictures: &[&Gray], most_dots: usize) -> Opti
     all.into_iter().filter(|it| it.corners > 0).rev().max_by_key(|it| it.corners)
 }
 
-/// A picture, its noise, and what is costly to find in it and does not depend on the board.
+/// A picture, its noise, and detections that are costly and do not depend on the board.
 struct Seen<'a, P> {
     gray: &'a Gray,
     noise: f64,
@@ -99,7 +99,7 @@ fn april_grids_in(board: &AprilGrid, seen: &[Seen<'_, Vec<Quad>>]) -> Vec<Sugges
     april_grids(board).into_iter().map(tried).collect()
 }
 
-/// What a board has in pictures.
+/// Detections of a board in pictures.
 fn suggestion<P>(
     spec: Spec,
     seen: &[Seen<'_, P>],
@@ -111,7 +111,7 @@ fn suggestion<P>(
     Suggestion { spec, pictures, corners }
 }
 
-/// Corners counted in place of squares, and the other way round.
+/// Corners counted instead of squares, or the reverse.
 fn chessboards(board: &Chessboard) -> Vec<Spec> {
     let Chessboard { columns, rows, square_m } = *board;
     let others = [(columns + 1, rows + 1), (columns - 1, rows - 1)];
@@ -119,7 +119,7 @@ fn chessboards(board: &Chessboard) -> Vec<Spec> {
     sound.map(|(columns, rows)| Spec::Chessboard(Chessboard { columns, rows, square_m })).collect()
 }
 
-/// Rows and columns exchanged, the other kind, and dots counted as the squares between them, or the other way round.
+/// Rows and columns exchanged, the other kind, and dots counted as the squares between them, or the reverse.
 fn grids_of_dots(board: &Circles) -> Vec<Spec> {
     let Circles { columns, rows, pitch_m, asymmetric } = *board;
     let counts = [(columns, rows), (rows, columns), (columns + 1, rows + 1), (columns - 1, rows - 1)];
@@ -132,7 +132,7 @@ fn grids_of_dots(board: &Circles) -> Vec<Spec> {
     sound.map(circles).filter(|it| it != board).map(Spec::Circles).collect()
 }
 
-/// The other dictionaries that have so many markers.
+/// The other dictionaries with enough markers.
 fn families(own: &Dictionary, markers: usize) -> impl Iterator<Item = Dictionary> {
     Dictionary::smallest(markers).into_iter().filter(move |it| !it.is_alike(own))
 }
@@ -161,7 +161,7 @@ fn charucos(board: &Charuco) -> Vec<Charuco> {
             for legacy in [board.legacy, !board.legacy] {
                 let other =
                     Charuco { columns, rows, dictionary: dictionary.clone(), legacy, ..board.clone() };
-                // With an odd number of rows both patterns are one.
+                // With an odd number of rows both patterns are the same.
                 let alike = legacy != board.legacy && rows % 2 == 1;
                 if other != *board && !alike {
                     all.push(other);

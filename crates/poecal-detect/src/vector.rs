@@ -1,4 +1,4 @@
-//! Loops in the widest vector instructions that the machine has. Rust keeps the order of each sum, so results are the same with any.
+//! Loops in the widest vector instructions of the machine. Rust keeps the order of each sum, so results are the same with any.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -13,13 +13,13 @@ impl<F: FnOnce() -> T, T> WithSimd for Work<F> {
     }
 }
 
-/// Runs what is inlined into a closure, which has to be `#[inline(always)]` itself, with the vector instructions of the machine.
+/// Runs the code inlined into a closure, which has to be `#[inline(always)]` itself, with the vector instructions of the machine.
 #[inline(always)]
 pub(crate) fn vectorized<T>(work: impl FnOnce() -> T) -> T {
     Arch::new().dispatch(Work(work))
 }
 
-/// Changes each of some numbers by those at its place in other slices, as far as all of them go. In iterators the compiler leaves calls.
+/// Changes each number by those at the same index in other slices, up to the shortest of them. With iterators the compiler leaves calls.
 #[inline(always)]
 #[allow(clippy::needless_range_loop)]
 pub(crate) fn change<T: Copy, const N: usize, A: Copy>(

@@ -1,4 +1,4 @@
-//! Whether dots are a board, and no part of something larger.
+//! Decision whether dots are a whole board, and no part of a larger pattern.
 
 use nalgebra::Vector2;
 
@@ -8,19 +8,19 @@ use crate::lattice::map_near;
 use crate::layout::Layout;
 use crate::named::{NEAR, Named, dot_at, pairs};
 
-/// Least part of the outer dots that must be seen.
+/// Least share of the outer dots that must be visible.
 const OUTLINE: f64 = 0.55;
-/// How far from its middle a missing dot is looked at, units; largest difference from the paper of what is bare, as a part of half the contrast; and
-/// how many missing dots may be bare.
+/// Distance from the middle of a missing dot at which it is examined, units; largest difference of bare paper from the paper around, as a part of
+/// half the contrast; and most missing dots that may be bare.
 const INSIDE: f64 = 0.12;
 const EVEN: f64 = 0.3;
 const GAPS: usize = 2;
-/// How far beyond the outer dots there is paper, from their middles, units.
+/// Distance from the middles of the outer dots at which there must be paper, units.
 const PAPER: f64 = 0.8;
-/// How many dots may be where those beyond the board would be.
+/// Most dots that may be at the next positions beyond the board.
 const BEYOND: usize = 1;
 
-/// Whether dots are all of a board that is bare around them.
+/// True if dots are all of a board with bare surroundings.
 pub(crate) fn is_whole(gray: &Gray, layout: &Layout, noise: f64, named: &Named, radius: f64) -> bool {
     has_outline(layout, named)
         && has_paper(gray, layout, named)
@@ -28,7 +28,7 @@ pub(crate) fn is_whole(gray: &Gray, layout: &Layout, noise: f64, named: &Named, 
         && !goes_on(gray, layout, noise, named, radius)
 }
 
-/// Whether most of the outer dots are seen: a board that is cut out of a field across its rows has corners of it only.
+/// True if most of the outer dots are visible: a board that is cut diagonally out of a field has only corners of it.
 fn has_outline(layout: &Layout, named: &Named) -> bool {
     let [columns, rows] = layout.inner().map(|it| it as f64);
     // In every second row of an asymmetric grid the outer dots are a column further inside.
@@ -41,7 +41,7 @@ fn has_outline(layout: &Layout, named: &Named) -> bool {
     named.keys().filter(|id| is_outer(id)).count() as f64 >= OUTLINE * outer as f64
 }
 
-/// Whether there is paper around the outer dots: what is cut off from a field of dots has none.
+/// True if there is paper around the outer dots: a part of a larger field of dots has none.
 fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     let all = pairs(layout, named);
     let [columns, rows] = layout.inner().map(|it| it as f64);
@@ -69,8 +69,8 @@ fn has_paper(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     kinds[0] * 9 <= kinds[1]
 }
 
-/// Whether there is bare paper where several dots should be: a part of another grid has its dots elsewhere, and what covers a board is seldom as even
-/// and as light as its paper.
+/// True if there is bare paper at several expected dots: a part of another grid has its dots elsewhere, and an occlusion is seldom as even and as
+/// light as paper.
 fn has_gaps(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     let all = pairs(layout, named);
     let is_bare = |id: &usize| -> Option<bool> {
@@ -88,13 +88,13 @@ fn has_gaps(gray: &Gray, layout: &Layout, named: &Named) -> bool {
     missing.filter(|id| is_bare(id).unwrap_or(false)).count() > GAPS
 }
 
-/// Whether dots go on beyond the board: as large as its own, and where the next ones would be. The rest of a field has them, and what is there by
-/// chance is a single one.
+/// True if dots continue beyond the board: as large as its own, and at the next positions. The rest of a field has them; by chance there is only a
+/// single one.
 fn goes_on(gray: &Gray, layout: &Layout, noise: f64, named: &Named, radius: f64) -> bool {
     let all = pairs(layout, named);
     let [columns, rows] = layout.inner().map(|it| it as i32);
     let is_beyond = |[x, y]: [i32; 2]| x == 0 || y == 0 || x > columns || y > rows;
-    // In an asymmetric grid every second place of a row has a dot.
+    // In an asymmetric grid every second node of a row has a dot.
     let has_dot = |[x, y]: [i32; 2]| !layout.is_asymmetric() || (x + y) % 2 == 0;
     let places = (0..=rows + 1).flat_map(|y| (0..=columns + 1).map(move |x| [x, y]));
     let beyond = places.filter(|it| is_beyond(*it) && has_dot(*it));
@@ -104,7 +104,7 @@ fn goes_on(gray: &Gray, layout: &Layout, noise: f64, named: &Named, radius: f64)
     beyond.filter(|it| there(*it)).count() > BEYOND
 }
 
-/// Levels at four places around a point of the board, so many units from it; `None` if one is not in the picture.
+/// Levels at four points around a point of the board, at this distance, units; `None` if one is not in the picture.
 fn levels(gray: &Gray, map: &Homography, point: Vector2<f64>, way: f64) -> Option<[f64; 4]> {
     let mut found = [0.0; 4];
     for (out, way) in found.iter_mut().zip([[way, 0.0], [-way, 0.0], [0.0, way], [0.0, -way]]) {

@@ -1,4 +1,4 @@
-//! One way to write a robot that many numbers describe equally well: the base frame of the nominal model is kept and the screws
+//! One choice among the robots that predict the same (gauge). The base frame of the nominal model is kept, and the screws
 //! deviate from nominal as little as the data allow. Predictions do not change (theory.md §8 (37) and (38)).
 
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
@@ -54,8 +54,8 @@ pub fn base_motion(estimate: &Estimate, robot: &Robot, nominal_targets: &[Pose],
     motion
 }
 
-/// Deviation of a screw from nominal: tilt (an arc at `length_m`) and shift as seen from the nominal joint's origin (an axis only), each
-/// with its derivative by a spatial motion of the screw (theory.md §8 (38)).
+/// Deviation of a screw from nominal: tilt (an arc at `length_m`) and shift relative to the nominal joint's origin (an axis only). Each
+/// has its derivative by a spatial motion of the screw (theory.md §8 (38)).
 fn deviations(screw: &Screw, nominal: &Joint, length_m: f64) -> [(Vector3<f64>, Matrix3x6<f64>); 2] {
     let direction = screw.direction();
     let tilt = (direction - nominal.screw.direction()) * length_m;
@@ -81,7 +81,7 @@ pub fn null_step(
     base_free: bool,
 ) -> Option<Vec<f64>> {
     let n = layout.dim();
-    // Positive definite even when shifted by more than that: there is no null space, and no eigenvalue is needed.
+    // The matrix is positive definite even when shifted by more than that: there is no null space, and no eigenvalue is needed.
     let trace: f64 = (0..n).map(|k| gram[k * n + k]).sum();
     if linalg::cholesky(gram, n, -2.0 * NULL * trace).is_some() {
         return None;
@@ -97,7 +97,7 @@ pub fn null_step(
         screws.iter().zip(&robot.joints).map(|(screw, joint)| deviations(screw, joint, length_m)).collect();
     let now = deviations.iter().flatten().flat_map(|(deviation, _)| deviation.iter().copied());
     let now: Vec<f64> = now.collect();
-    // How motions of the screws change that.
+    // Change of the deviations by motions of the screws.
     let effect = |motions: &[Vector6<f64>]| -> Vec<f64> {
         let changes = deviations
             .iter()
@@ -162,7 +162,7 @@ pub fn screw_motions(estimate: &Estimate, layout: &Layout) -> Vec<Vec<Vector6<f6
 pub struct Deviation {
     /// Angle between the directions, radians.
     pub tilt_rad: f64,
-    /// Distance of the axis from the nominal joint's origin, metres; zero of a sliding joint.
+    /// Distance of the axis from the nominal joint's origin, metres; zero for a prismatic joint.
     pub shift_m: f64,
     /// Derivatives of the tilt (a vector, radians) by each scaled unknown: three rows.
     pub tilt_by_step: [Vec<f64>; 3],
@@ -170,7 +170,7 @@ pub struct Deviation {
     pub shift_by_step: [Vec<f64>; 3],
 }
 
-/// The deviation of each screw from nominal in the gauge of [`base_motion`] (if `base_free`), to first order (docs/theory.md §8 (38)).
+/// Deviation of each screw from nominal in the gauge of [`base_motion`] (if `base_free`), to first order (docs/theory.md §8 (38)).
 #[must_use]
 pub fn screw_deviations(
     estimate: &Estimate,

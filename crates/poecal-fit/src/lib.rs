@@ -1,15 +1,15 @@
 //! Estimation: the state and the unknowns of a fit, the least-squares problem, its start, identifiability, uncertainty, diagnosis, hand-eye.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for its other crates, the program and the package. Its interface follows their needs and is not
+//! stable by itself.
 //!
-//! - [`state`] is all that may change in a fit, and its prediction of each row.
+//! - [`state`] has all quantities that may change in a fit, and its prediction of each row.
 //! - [`parameters`] are unknowns with columns; they see no measured functions, weights or solver.
 //! - [`problem`] is the only place where rows and columns meet, and has no algorithms.
 //! - [`forensics`] names mistakes, and changes nothing but its own copies; [`input_doubts`] judges rows as they are read.
-//! - [`hand_eye`] gets lists of poses, no robot.
+//! - [`hand_eye`] takes lists of poses, no robot.
 //!
-//! Not here: the order of a calibration's steps, files, tables.
+//! The order of a calibration's steps, files and tables are not here.
 
 #![forbid(unsafe_code)]
 

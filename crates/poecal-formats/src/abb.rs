@@ -1,6 +1,6 @@
-//! `MOC.cfg` of a controller of ABB with Absolute Accuracy: how far the maker found this arm's axes to be off, and what gives.
+//! `MOC.cfg` of a controller of ABB with Absolute Accuracy: errors of this arm's axes that the maker's calibration found, and its compliance.
 //!
-//! The frames, the order and the signs of its numbers are not public: they say sizes, from which a tolerance follows, and not a robot.
+//! The frames, the order and the signs of its numbers are not public. They state sizes, which determine a tolerance but no robot.
 
 use std::path::Path;
 
@@ -9,17 +9,17 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::source_text;
 
 const EXPECTED: &str = "MOC.cfg of a controller of ABB whose arm has Absolute Accuracy, with error_offset_x and others in ARM_CALIB";
-/// Errors of an axis's place, metres.
+/// Errors of the position of an axis, metres.
 const LENGTHS: [&str; 3] = ["error_offset_x", "error_offset_y", "error_offset_z"];
-/// Errors of its direction, radians. `jaw` is the file's own word.
+/// Errors of the direction of an axis, radians. `jaw` is the file's own word.
 const ANGLES: [&str; 3] = ["error_roll", "error_pitch", "error_jaw"];
 
-/// What a maker's calibration found.
+/// Results of a maker's calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AbbCalibration {
     /// Errors of each axis, as far as the file states them: its pattern.
     pub arms: Vec<ArmErrors>,
-    /// Names of joints that give, with how much they do, rad/Nm.
+    /// Names of compliant joints, with their compliance, rad/Nm.
     pub joints: Vec<(String, f64)>,
 }
 
@@ -28,7 +28,7 @@ pub struct AbbCalibration {
 pub struct ArmErrors {
     /// The axis, such as `rob1_2`.
     pub name: String,
-    /// Errors of its place, metres.
+    /// Errors of its position, metres.
     pub lengths_m: Vec<f64>,
     /// Errors of its direction, radians.
     pub angles_rad: Vec<f64>,
@@ -38,7 +38,7 @@ impl AbbCalibration {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if it cannot be read, and as [`AbbCalibration::parse`].
+    /// [`ErrorKind::File`] if it cannot be read, and those of [`AbbCalibration::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         Self::parse(&source_text::read(path, EXPECTED)?, path)
@@ -47,7 +47,7 @@ impl AbbCalibration {
     /// Reads a text; `path` is for messages.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] if a number is none.
+    /// [`ErrorKind::Model`] if a number is invalid.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self> {
         Self::parse_at(text, path.as_ref())
     }
@@ -74,7 +74,7 @@ impl AbbCalibration {
         Ok(AbbCalibration { arms, joints })
     }
 
-    /// Standard deviations of the axes from nominal, if those of other arms are as large as the maker found them here: root mean squares.
+    /// Standard deviations of the axes from nominal, if other arms have errors of the size that the maker found here: root mean squares.
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if the file states no error of an axis.
@@ -111,12 +111,12 @@ impl Entry<'_> {
         Some(self.value(key)?.0.trim_matches('"'))
     }
 
-    /// Numbers of those keys that are there.
+    /// Numbers of those keys that exist.
     fn numbers(&self, keys: &[&str], path: &Path) -> Result<Vec<f64>> {
         let mut numbers = Vec::new();
         for key in keys {
             let Some((word, line)) = self.value(key) else { continue };
-            // Larger errors are those of another unit.
+            // Larger errors belong to another unit.
             match word.parse::<f64>() {
                 Ok(number) if number.abs() < 1.0 => numbers.push(number),
                 _ => {

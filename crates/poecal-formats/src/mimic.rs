@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use poecal_model::robot::Reading;
 use poecal_numerics::error::{Error, Result};
 
-/// The reading of a joint, through any number of leaders; `follows` gives the relation of a joint to its leader. If the leaders
-/// run in a circle, `circle` makes the error of the sentence that says so.
+/// The reading of a joint, through any number of leaders; `follows` returns the relation of a joint to its leader. If the leaders form a loop,
+/// `circle` makes the error from the sentence on it.
 pub(crate) fn reading(
     joint: &str,
     follows: impl Fn(&str) -> Result<Option<Reading>>,

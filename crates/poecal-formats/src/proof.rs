@@ -12,9 +12,9 @@ use poecal_model::simulate::Configurations;
 /// Largest difference of two robots' poses: of the tip, and of instruments and targets with a body of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Of the position, metres.
+    /// Difference of the position, metres.
     pub position_m: f64,
-    /// Of the orientation, radians.
+    /// Difference of the orientation, radians.
     pub rotation_rad: f64,
 }
 
@@ -25,7 +25,7 @@ impl Difference {
         Reference::new(robot, count).difference(other)
     }
 
-    /// Whether neither exceeds its bound; NaN does.
+    /// True if neither exceeds its bound; NaN does.
     #[must_use]
     pub fn is_within(&self, position_m: f64, rotation_rad: f64) -> bool {
         self.position_m <= position_m && self.rotation_rad <= rotation_rad
@@ -37,12 +37,12 @@ pub struct Reference<'a> {
     robot: &'a Robot,
     /// Readings of all configurations.
     readings: Vec<f64>,
-    /// Of the tip, then of instruments and targets.
+    /// Poses of the tip, then of instruments and targets.
     poses: Vec<Vec<Pose>>,
 }
 
 impl<'a> Reference<'a> {
-    /// On `count` random configurations within the robot's limits.
+    /// The poses on `count` random configurations within the robot's limits.
     pub fn new(robot: &'a Robot, count: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let random = Configurations::new(robot);
@@ -55,7 +55,7 @@ impl<'a> Reference<'a> {
         Reference { robot, readings, poses }
     }
 
-    /// Whether they are of this very robot.
+    /// True if they are of this very robot.
     pub fn is_of(&self, robot: &Robot) -> bool {
         std::ptr::eq(self.robot, robot)
     }
@@ -89,7 +89,7 @@ impl<'a> Reference<'a> {
         largest
     }
 
-    /// The readings in the other robot's order, by their names; none if it has others.
+    /// The readings in the other robot's order, by their names; `None` if it has others.
     fn readings_of(&self, other: &Robot) -> Option<Cow<'_, [f64]>> {
         let (ours, theirs) = (self.robot.reading_names(), other.reading_names());
         if ours == theirs || self.robot.is_serial() && ours.len() == theirs.len() {
@@ -97,7 +97,7 @@ impl<'a> Reference<'a> {
         }
         let at = |name: &String| ours.iter().position(|own| own == name);
         let places = theirs.iter().map(at).collect::<Option<Vec<usize>>>()?;
-        // What a robot without factors lacks is 0 here.
+        // Readings that a robot without factors lacks are 0 here.
         if places.len() < self.robot.joint_reading_names().len() {
             return None;
         }

@@ -1,6 +1,6 @@
-//! Attributes and elements of models that are not read: those that scale or shift are refused, others are named unless they are known to be harmless.
+//! Unread attributes and elements of models: those that scale or shift are refused, others are listed unless they are known to be harmless.
 //!
-//! Only elements that place links and joints are looked at; what shapes, sensors and plugins have in them changes no chain.
+//! Only elements that define the poses of links and joints are examined; the contents of shapes, sensors and plugins change no chain.
 
 use roxmltree::Node;
 
@@ -9,14 +9,14 @@ use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::xml::XmlSource;
 use poecal_storage::yaml::Leaf;
 
-/// An element that is read, with attributes and elements within it that are read or change no place of a link: words with blanks between.
+/// A known element, with attributes and inner elements that are read or change no pose of a link: words with blanks between.
 pub(crate) type Known = (&'static str, &'static str, &'static str);
 
 fn has(words: &str, name: &str) -> bool {
     words.split_whitespace().any(|it| it == name)
 }
 
-/// What elements of URDF have.
+/// Known elements of URDF.
 pub(crate) const URDF: &[Known] = &[
     ("link", "name type", "inertial visual collision contact sensor self_collision_checking gazebo inertia"),
     (
@@ -33,7 +33,7 @@ pub(crate) const URDF: &[Known] = &[
     ("child", "link", ""),
 ];
 
-/// What elements of MuJoCo's models have.
+/// Known elements of MuJoCo's models.
 pub(crate) const MJCF: &[Known] = &[
     (
         "compiler",
@@ -61,7 +61,7 @@ pub(crate) const MJCF: &[Known] = &[
     ),
 ];
 
-/// What elements of Gazebo's models have.
+/// Known elements of Gazebo's models.
 pub(crate) const SDF: &[Known] = &[
     (
         "model",
@@ -82,13 +82,13 @@ pub(crate) const SDF: &[Known] = &[
     ("limit", "", "lower upper effort velocity stiffness dissipation"),
 ];
 
-/// Elements in which links and joints are sought: of URDF and Gazebo's models the root, of MuJoCo's what has joints.
+/// Elements in which links and joints are sought in MuJoCo's models; in URDF and Gazebo's models it is the root.
 const SOUGHT_IN: [&str; 4] = ["compiler", "worldbody", "default", "equality"];
 
-/// The sentence that names what the elements below these have beyond what is known; what is in others is not looked at.
+/// The sentence that lists unknown contents of the known elements below the root; the contents of other elements are not examined.
 ///
 /// # Errors
-/// Of what scales or shifts, with its place.
+/// The model has an unknown value that scales or shifts; the error states its position.
 pub(crate) fn sentence<'a>(
     source: &XmlSource<'a>,
     root: Node<'a, 'a>,

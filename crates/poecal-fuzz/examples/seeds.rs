@@ -1,5 +1,5 @@
-//! Writes `fuzz/seeds` anew from the project's own examples and from small simulated sessions; what was found stays. Run by hand, when a
-//! form of file changes: `cargo run -p poecal-fuzz --example seeds`.
+//! Rewrites `fuzz/seeds` from the project's own examples and from small simulated sessions; found inputs stay. Run by hand, when a form of file
+//! changes: `cargo run -p poecal-fuzz --example seeds`.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
@@ -22,7 +22,7 @@ const DOCUMENT: &str = include_str!("../../../docs/file-formats.md");
 const URDF: &str = include_str!("../../../examples/elbow/robot.urdf");
 const TOML: &str = include_str!("../../../examples/elbow/robot.toml");
 const POINTS: &str = include_str!("../../../examples/elbow/points.csv");
-/// Of an earlier schema: poses and points, suspected and repeated rows.
+/// A calibration of an earlier schema: poses and points, suspected and repeated rows.
 const CALIBRATED: &str = include_str!("../../poecal-testing/data/calibration.json");
 const CALIBRATED_ROWS: &str = include_str!("../../poecal-testing/data/calibration_rows.csv");
 const UR10_MAP: &str = include_str!("../../../validation/ur10_raw_columns.toml");
@@ -111,7 +111,7 @@ fn main() {
     }
     let all = messages();
     put("messages", "lines", &all.join("\n"));
-    // Blocks, and without the lens.
+    // Blocks, also without the lens.
     put(
         "messages",
         "blocks",
@@ -334,11 +334,11 @@ fn lists() -> Vec<(&'static str, &'static str, Vec<u8>)> {
     ]
 }
 
-/// A line of a file by its number, the readings and the place.
+/// A line of a file by its number, the readings and the position.
 type Line<'a> = &'a dyn Fn(usize, &[f64], [f64; 3]) -> String;
 
-/// Four configurations of an elbow (degrees), and points of its tip (mm), in the forms of instruments, controllers and recorders: each time
-/// with a file of the other kind.
+/// Four configurations of an elbow (degrees), and points of its tip (mm), in the forms of instruments, controllers and recorders: each with a file of
+/// the other kind.
 fn recorded() -> Vec<(String, Vec<u8>)> {
     let robot = elbow();
     let made = Simulation { count: 4, ..Simulation::default() }.run(&robot, Kind::POINT).unwrap().data;
@@ -467,7 +467,7 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
         "bag".to_owned(),
         both(&bag("sensor_msgs/msg/JointState", &joint_state), own_points.as_bytes()),
     ));
-    // Compressed by message, as one block of zstd that is not packed.
+    // Compressed by message, as one uncompressed block of zstd.
     let packed = |at: usize| {
         let content = [vec![0, 1, 0, 0], joint_state(at).0].concat();
         let size = content.len() as u32;
@@ -485,7 +485,7 @@ fn recorded() -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// A message of ROS 2: values aligned from behind the head.
+/// A message of ROS 2: values aligned relative to the end of the header.
 struct Cdr(Vec<u8>);
 
 impl Cdr {
@@ -527,7 +527,7 @@ fn bag(kind: &str, message: &dyn Fn(usize) -> Cdr) -> Vec<u8> {
     bag_of(kind, &|at| [vec![0, 1, 0, 0], message(at).0].concat())
 }
 
-/// The same of messages as they are in a file.
+/// A bag of messages in their stored form.
 fn bag_of(kind: &str, message: &dyn Fn(usize) -> Vec<u8>) -> Vec<u8> {
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
     let record =
@@ -598,7 +598,7 @@ const OTHER_MAP: &str = "separator = \";\"\ndecimal = \",\"\npose = \"target_fro
      set = { column = \"phase\", fit = [\"train\"] }\nsigma_position = { column = \"s\", unit = \"mm\" }\n\n[units]\nlength = \"mm\"\nangle = \"deg\"\n\n\
      [joints]\njoint1 = \"A1\"\njoint2 = { column = \"A2\", unit = \"deg\" }\njoint3 = { value = 20, unit = \"mm\" }\njoint4 = \"A4\"\n\n\
      [position]\ncolumns = [\"px\", \"py\", \"pz\"]\n\n[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"a\", \"b\", \"c\"]\n";
-/// What it reads; `joint4` says whose joints they are.
+/// A file that it reads; `joint4` identifies the robot's joints.
 const MAPPED: &str = "run;phase;A1;A2;joint4;A4;px;py;pz;a;b;c;s\n1;train;12,5;-40;100;10;512,31;-40,02;130,9;1;2;3;0,1\n\
      2;test;-3;15,25;50;20;540,77;102,4;112,18;4;5;6;0,1\n";
 
@@ -700,7 +700,7 @@ const BOARDS: [(&str, &str); 8] = [
     ("corners", "csv\ncorner;x_mm;y_mm;z_mm\n0;0;0;0\n1;27,5;0;0\n2;0;27,5;0\n"),
 ];
 
-/// Messages of robot_calibration in JSON: pictures of a board before a camera, and where an arm has its corners.
+/// Messages of robot_calibration in JSON: pictures of a board before a camera, and positions of its corners by an arm.
 fn messages() -> Vec<String> {
     let session = Simulation { count: 6, seed: 5, ..Simulation::default() };
     let usual = PictureSimulation::usual(session, true);

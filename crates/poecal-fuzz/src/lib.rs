@@ -1,12 +1,12 @@
-//! What must hold of any input, as plain functions of bytes.
+//! Properties that hold for any input, as plain functions of bytes.
 //!
-//! Each of [`TARGETS`] takes bytes for the text of a file that poecal reads, and fails by panicking: if the library does, or if something
-//! does not hold that should, such as that what is written reads back the same. The programs in `fuzz/` call them with what libFuzzer
-//! makes up, the test of this crate with the seeds in `fuzz/seeds` and [`Mutator`]'s variations of them.
+//! Each of [`TARGETS`] treats bytes as the text of a file that poecal reads, and fails by panicking: if the library does, or if a property does not
+//! hold, such as that written text reads back the same. The programs in `fuzz/` call them with inputs of libFuzzer, the test of this crate with the
+//! seeds in `fuzz/seeds` and [`Mutator`]'s variations of them.
 //!
 //! For tests alone; not published.
 
-// Whatever does not hold is told by a panic.
+// A violated property is reported by a panic.
 #![allow(clippy::panic, clippy::expect_used, clippy::unwrap_used)]
 
 mod mutator;
@@ -16,24 +16,24 @@ pub mod targets;
 
 pub use mutator::Mutator;
 
-/// Longest input that is looked at, bytes: nothing that is found by chance needs more, and time and memory stay bounded.
+/// Longest examined input, bytes: random findings need no more, and time and memory stay bounded.
 pub const LONGEST: usize = 1 << 16;
 
-/// What stands on a line of its own between the texts of an input that has several.
+/// Separator line between the texts of an input that has several.
 pub const BETWEEN: &str = "=====";
 
-/// One of the things that are fuzzed.
+/// A fuzzed function.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name, that of its program in `fuzz/fuzz_targets` and of its folder in `fuzz/seeds`.
+    /// Name, that of its program in `fuzz/fuzz_targets` and of its folder in `fuzz/seeds`.
     pub name: &'static str,
-    /// Takes an input; tells whether it was understood, and not refused with an error.
+    /// Processes an input; returns true if it was understood, and not refused with an error.
     pub run: fn(&[u8]) -> bool,
-    /// How many inputs are tried of it weekly, about as many as take two seconds; `./test` tries a quarter.
+    /// Number of inputs that the weekly test tries, about as many as take two seconds; `./test` tries a quarter.
     pub trials: usize,
 }
 
-/// All of them.
+/// All targets.
 pub const TARGETS: [Target; 23] = [
     Target { name: "urdf", run: targets::urdf, trials: 1500 },
     Target { name: "robot_toml", run: targets::robot_toml, trials: 1500 },

@@ -36,7 +36,7 @@ const NUMBERS: [&str; 28] = [
     "18446744073709551616",
     "0x10",
 ];
-/// What may be put in anywhere.
+/// Pieces that may be inserted anywhere.
 const PIECES: [&str; 22] = [
     "\n",
     "\r",
@@ -62,7 +62,7 @@ const PIECES: [&str; 22] = [
     "µé\u{2028}",
 ];
 
-/// Makes variations of seeds: bytes changed, put in, left out, doubled; words and numbers replaced; parts of other seeds put in.
+/// Makes variations of seeds: bytes changed, inserted, removed, doubled; words and numbers replaced; parts of other seeds inserted.
 #[derive(Debug)]
 pub struct Mutator<'a> {
     generator: ChaCha8Rng,
@@ -71,7 +71,7 @@ pub struct Mutator<'a> {
 }
 
 impl<'a> Mutator<'a> {
-    /// Of these seeds, with words that inputs are made of; the same number gives the same variations.
+    /// Mutator of these seeds, with words that inputs contain; the same number leads to the same variations.
     #[must_use]
     pub fn new(number: u64, seeds: &'a [Vec<u8>], words: &'a [&'a str]) -> Self {
         Mutator { generator: ChaCha8Rng::seed_from_u64(number), seeds, words }
@@ -80,7 +80,7 @@ impl<'a> Mutator<'a> {
     /// The next variation of some seed.
     pub fn variation(&mut self) -> Vec<u8> {
         let mut data = self.seed().to_vec();
-        // One change as a rule, seldom many: most inputs are then read to their end.
+        // Usually one change, seldom many: most inputs are then read to their end.
         for _ in 0..=self.generator.next_u64().trailing_zeros() {
             self.change(&mut data);
         }
@@ -157,7 +157,7 @@ impl<'a> Mutator<'a> {
         }
     }
 
-    /// The first run of such bytes from here on, or nothing at the end.
+    /// The first run of bytes that belong together from here on, or an empty range at the end.
     fn token_at(&mut self, data: &[u8], at: usize, belongs: impl Fn(u8) -> bool) -> std::ops::Range<usize> {
         let rest = data.get(at..).unwrap_or_default();
         let start = at + rest.iter().position(|&byte| belongs(byte)).unwrap_or(rest.len());
@@ -165,7 +165,7 @@ impl<'a> Mutator<'a> {
         start..start + token.iter().position(|&byte| !belongs(byte)).unwrap_or(token.len())
     }
 
-    /// Leaves out or doubles the line at hand, or ends the text there.
+    /// Removes or doubles the current line, or ends the text there.
     fn change_line(&mut self, data: &mut Vec<u8>, at: usize) {
         let start = data.iter().take(at).rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
         let rest = data.get(start..).unwrap_or_default();

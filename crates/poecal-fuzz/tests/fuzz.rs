@@ -1,5 +1,5 @@
-//! Tries every target on its seeds and on variations of them, the same in every run. Names of targets, and of files to try as they are,
-//! may follow: `cargo test -p poecal-fuzz --test fuzz -- urdf broken.urdf`. `POECAL_TRIALS` says how many variations, as everywhere.
+//! Tries every target on its seeds and on variations of them, the same in every run. Names of targets, and of files to try as they are, may follow:
+//! `cargo test -p poecal-fuzz --test fuzz -- urdf broken.urdf`. `POECAL_TRIALS` sets the number of variations, as in all tests.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use poecal_fuzz::{Mutator, TARGETS, Target};
 use poecal_testing::trials::trials;
 
-/// Longest that one input may take: what takes a second on an idle machine may take many on a busy one.
+/// Longest time of one input: one second on an idle machine may be many on a busy one.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn main() {
@@ -53,7 +53,7 @@ fn try_target(target: &Target, files: &[String]) -> bool {
         if !tried.input(target, seed) {
             return false;
         }
-        // A good example that nothing reads any more varies nothing but errors.
+        // Variations of a refused example only lead to errors.
         assert!(name.starts_with("found") || tried.understood > before, "{}: {name} is refused", target.name);
     }
     let seeds: Vec<Vec<u8>> = seeds.into_iter().map(|(_, seed)| seed).collect();
@@ -103,7 +103,7 @@ struct Tried {
 }
 
 impl Tried {
-    /// False if something does not hold; the input is then kept.
+    /// False if a property does not hold; the input is then kept.
     fn input(&mut self, target: &Target, data: &[u8]) -> bool {
         let start = Instant::now();
         let outcome = catch_unwind(|| (target.run)(data));

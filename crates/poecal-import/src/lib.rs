@@ -1,15 +1,15 @@
 //! Measurement files of instruments, recorders and cameras as rows of a session (docs/file-formats.md, "Measurements").
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! This crate is a part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package. Its interface follows their needs
+//! and promises nothing by itself.
 //!
-//! Text becomes lines and cells with their places (`table`), columns with a meaning and a unit (`table/layout.rs` and `table/builder.rs`, from
-//! header, mapping and robot), numbers in SI (`table/cursor.rs`) without those of lost beams (`table/lost.rs`), and at last measurements
-//! (`table/row.rs`, [`read()`]), which rules of `poecal_fit::input_doubts` judge. Files of instruments and messages are made tables
-//! first (`instruments`, `messages`); two files are joined (`join`); `poses` and `pictures` read lists of poses and corners, `guess` names foreign
+//! Text becomes lines and cells with their positions (`table`), then columns with a meaning and a unit (`table/layout.rs` and `table/builder.rs`,
+//! from header, mapping and robot). These become numbers in SI (`table/cursor.rs`) without beam breaks (`table/lost.rs`), and at last measurements
+//! (`table/row.rs`, [`read()`]), which rules of `poecal_fit::input_doubts` judge. Files of instruments and messages are first converted to tables
+//! (`instruments`, `messages`); two files are joined (`join`); `poses` and `pictures` read lists of poses and corners, `guess` names foreign
 //! columns, `write` makes templates and lists. Workbooks and bags are features.
 //!
-//! Not here: fits (the nominal robot is registered where files or units are in doubt), results, sentences on results.
+//! Other crates have the fits (the nominal robot is registered if files or units are in doubt), results, and sentences on results.
 
 #![forbid(unsafe_code)]
 
@@ -79,33 +79,32 @@ use poecal_numerics::error::Result;
 pub struct ReadOptions {
     /// Mapping of columns with other names than ours; applies to every file.
     pub mapping: Option<ColumnMap>,
-    /// How the joint readings are made of columns, as the calibration of this robot kept it, for files that have these columns; a mapping with
+    /// Conversion of columns into joint readings, as the calibration of this robot kept it, for files that have these columns; a mapping with
     /// joints precedes it.
     pub controller: Option<Controller>,
     /// Training rows; precedes the `set` column and the mapping's `set`.
     pub train_where: Option<FitWhere>,
-    /// Whether sets are ignored ([`ReadOptions::train_where`], the mapping's `set`, the `set` column), as for files that only judge a
-    /// calibration.
+    /// True if sets are ignored ([`ReadOptions::train_where`], the mapping's `set`, the `set` column), as for files that only judge a calibration.
     pub ignore_sets: bool,
-    /// Whether a lost beam, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.
+    /// True if a beam break, an empty or zero position, is an error; otherwise it is omitted and counted in a warning.
     pub strict: bool,
     /// Rows with a common device frame.
     pub frames: Frames,
-    /// How joint readings and measurements in two files find each other; found if it is not stated.
+    /// Method by which joint readings and measurements in two files are matched; determined from the files if not stated.
     pub join: Option<Join>,
     /// The lag of the clocks of two streams, if it is known.
     pub lag: Option<Lag>,
-    /// The sheet of workbooks; that which holds a table if it is not stated.
+    /// The sheet of workbooks; the one with a table if not stated.
     pub sheet: Option<String>,
-    /// The body, marker or tool of recordings; that which moves if it is not stated.
+    /// The body, marker or tool of recordings; the one that moves if not stated.
     pub body: Option<String>,
-    /// Topics of bags, with or without the stroke that their names begin with; the only ones that can be meant if they are not stated.
+    /// Topics of bags, with or without the leading slash; the only possible ones if not stated.
     pub topics: Vec<String>,
-    /// Bags whose messages were read from elsewhere: a file of these is not opened.
+    /// Bags whose messages were read elsewhere: their files are not opened.
     pub bags: Vec<GivenBag>,
-    /// Known distances between the sockets of a place.
+    /// Known distances between the sockets of one `place`.
     pub socket_distances: Option<SocketDistances>,
-    /// What rows with a `plane` are that do not say it in `contact`.
+    /// Contact of rows with a `plane` that do not state it in `contact`.
     pub contact: PlaneContact,
     /// Cameras that saw corners in pixels.
     pub cameras: Vec<Camera>,
@@ -115,14 +114,14 @@ pub struct ReadOptions {
     pub instrument_noise: Vec<InstrumentNoise>,
     /// Joints that the model has beyond the robot's tip link, each with an end link that it moves: their columns are named.
     pub beyond_tip: Vec<(String, String)>,
-    /// What was understood of files of cameras and boards, a sentence each, for the warnings.
+    /// Interpretation of files of cameras and boards, a sentence each, for the warnings.
     pub said: Vec<String>,
 }
 
 /// A bag that was read from a file in another form, as the Python package reads `.db3`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GivenBag {
-    /// The file, as it is named among those that are read.
+    /// The file, by its name among those that are read.
     pub path: PathBuf,
     /// Its messages as MCAP.
     pub mcap: Arc<[u8]>,
@@ -134,15 +133,15 @@ impl ReadOptions {
     /// States the units of columns that state none, in words like `mm`, `deg` or `mm,deg`; those of the mapping precede.
     ///
     /// # Errors
-    /// [`ErrorKind::Unit`](poecal_numerics::error::ErrorKind::Unit) of an unknown unit, or of two of one kind.
+    /// [`ErrorKind::Unit`](poecal_numerics::error::ErrorKind::Unit) for an unknown unit, or for two of one kind.
     pub fn state_units(&mut self, words: &str) -> Result<()> {
         self.mapping.get_or_insert_default().state_units(words)
     }
 
-    /// Adds the cameras of a file ([`read_cameras`]), with what was understood of them.
+    /// Adds the cameras of a file ([`read_cameras`]), with the sentences on their interpretation.
     ///
     /// # Errors
-    /// As [`read_cameras`].
+    /// Those of [`read_cameras`].
     pub fn add_cameras(&mut self, typed: &str) -> Result<()> {
         let CameraFile { cameras, said } = read_cameras(typed)?;
         self.cameras.extend(cameras);
@@ -150,10 +149,10 @@ impl ReadOptions {
         Ok(())
     }
 
-    /// Adds the boards of a file or of words ([`read_boards`]), with what was understood of them.
+    /// Adds the boards of a file or of words ([`read_boards`]), with the sentences on their interpretation.
     ///
     /// # Errors
-    /// As [`read_boards`].
+    /// Those of [`read_boards`].
     pub fn add_boards(&mut self, typed: &str) -> Result<()> {
         self.boards.extend(read_boards(typed)?);
         self.said.extend(board_of_file(typed)?.map(|board| board.said));
@@ -161,13 +160,13 @@ impl ReadOptions {
     }
 }
 
-/// How a target touches a plane.
+/// Contact of a target with a plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PlaneContact {
-    /// By a point: a height.
+    /// Contact at a point: a height.
     #[default]
     Point,
-    /// By a face: a height and two tilts.
+    /// Contact of a face: a height and two tilts.
     Flush,
 }
 
@@ -182,17 +181,17 @@ impl PlaneContact {
     }
 }
 
-/// How the rows of a file of joint readings and of one of measurements find each other.
+/// Method by which the rows of a file of joint readings and of one of measurements are matched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Join {
-    /// By the names of their rows.
+    /// Match by the names of the rows.
     Name,
-    /// By their order.
+    /// Match by the order of the rows.
     Rows,
-    /// By their times, each file with a clock of its own: at the stands of the robot.
+    /// Match by times, each file with a clock of its own: at the robot's static intervals.
     Time,
-    /// By their times, each file with a clock of its own, while the robot moves: lag and drift of the clocks are unknowns of the fit.
+    /// Match by times, each file with a clock of its own, while the robot moves: lag and drift of the clocks are unknowns of the fit.
     Motion,
 }
 
@@ -201,17 +200,17 @@ pub enum Join {
 pub struct Lag {
     /// The lag, seconds.
     pub lag_s: f64,
-    /// How far it may be off, seconds.
+    /// Largest error of the lag, seconds.
     pub off_s: f64,
 }
 
-/// How far a lag may be off that does not say it, seconds.
+/// Largest error of a lag that does not state it, seconds.
 const LAG_OFF_S: f64 = 0.5;
 
 impl std::str::FromStr for Lag {
     type Err = poecal_numerics::error::Error;
 
-    /// From `12s`, or `12s+-2s`.
+    /// Parses `12s`, or `12s+-2s`.
     fn from_str(text: &str) -> Result<Self> {
         let seconds =
             |word: &str| word.trim().strip_suffix('s')?.trim().parse().ok().filter(|it: &f64| it.is_finite());
@@ -228,14 +227,14 @@ impl std::str::FromStr for Lag {
 /// Rows with a common device frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Frames {
-    /// All rows, or those of one name in the column `instrument`.
+    /// All rows, or those of one name in the column `instrument`, have a common frame.
     #[default]
     Common,
-    /// Those of a file.
+    /// The rows of a file have a common frame.
     PerFile,
 }
 
-/// Contents of measurement files, and how they were read.
+/// Contents of measurement files, and the interpretation of each.
 ///
 /// ```
 /// # mod poecal {
@@ -261,18 +260,18 @@ pub enum Frames {
 pub struct MeasurementFile {
     /// The rows of all files, in order.
     pub data: Dataset,
-    /// How each file was read.
+    /// Interpretation of each file.
     pub understood: Vec<FileUnderstanding>,
-    /// SHA-256 of each file by its name, of the bytes that were read.
+    /// SHA-256 of each file by its name, over the bytes that were read.
     pub sha256: BTreeMap<String, String>,
-    /// What was found in the rows and is nothing to be looked after, a sentence each.
+    /// Findings in the rows that need no attention, a sentence each.
     pub notes: Vec<String>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
-    /// How files of joint readings and of measurements were joined, if some were.
+    /// Method by which files of joint readings and of measurements were joined, if any were.
     pub join: Option<Join>,
-    /// Each join of two files, as `calibration.json` has it.
+    /// Each join of two files, in the form of `calibration.json`.
     pub joins: Vec<JoinEntry>,
-    /// Whether angles of joints that state no unit were taken for degrees.
+    /// True if angles of joints that state no unit were taken for degrees.
     pub is_in_degrees: bool,
 }

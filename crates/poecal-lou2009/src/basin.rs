@@ -1,4 +1,4 @@
-//! From how far each formulation finds the truth.
+//! Basin of convergence of each formulation.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -18,7 +18,7 @@ use poecal_numerics::solve::Options;
 
 /// Configurations of a session.
 const ROWS: usize = 60;
-/// Angles by which every axis and the tip are off, degrees, and millimetres for each degree.
+/// Angles by which every axis and the tip are displaced, degrees, and millimetres for each degree.
 const ERRORS_DEG: [f64; 4] = [1.0, 5.0, 10.0, 20.0];
 const MM_PER_DEG: f64 = 5.0;
 /// Held-out error below which the truth is reached, metres.
@@ -67,7 +67,7 @@ pub(super) fn basin(trials: usize, seed: u64) -> Result<Vec<Basin>> {
     Ok(found)
 }
 
-/// The paper's residual of poses belongs to the paper's method. Points have one residual only.
+/// The paper's residual of poses belongs to the paper's method. Points have only one residual.
 fn residual(seen: MeasurementKind, method: Method) -> Residual {
     match (seen, method) {
         (MeasurementKind::Poses, Method::GaussNewton) => Residual::Spatial,
@@ -75,7 +75,7 @@ fn residual(seen: MeasurementKind, method: Method) -> Residual {
     }
 }
 
-/// Which ways reach a random truth from the nominal elbow.
+/// Marks the formulations and methods that reach a random truth from the nominal elbow.
 fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Result<[bool; WAYS.len()]> {
     let nominal = tables::nominal();
     let simulation = Simulation {
@@ -87,7 +87,7 @@ fn reached(seen: MeasurementKind, error_deg: f64, seed: u64, trial: u64) -> Resu
     let actual = simulation.perturbed(&nominal, &mut generator);
     let truth = Estimate::new(&actual, vec![actual.home], Pose::identity());
     let session = PaperSession::new(&nominal, truth, seen, ROWS, derived(seed, Purpose::TruthRows, trial));
-    // Radians count as the length of the arm that they move, so that neither outweighs the other.
+    // A radian counts as the length of the arm that it moves, so that neither outweighs the other.
     let noise = Noise::new(LENGTH_M, 1.0);
     let exact = session.exact();
     let mut reached = [false; WAYS.len()];

@@ -1,4 +1,4 @@
-//! What a growing share of gross errors does to a calibration, by loss.
+//! Effect of a growing share of gross errors on a calibration, by loss.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,23 +11,23 @@ use poecal_model::robot::Robot;
 use poecal_model::simulate::{Gross, Kind, Simulation, elbow, gantry, scara, seven_axis};
 use poecal_numerics::error::Result;
 
-/// Shares of the rows that are wrong, percent.
+/// Shares of wrong rows, percent.
 const SHARES: [u32; 11] = [0, 5, 10, 15, 20, 25, 30, 35, 40, 45, 50];
 /// Rows of a session.
 const ROWS: usize = 150;
-/// Rows, free of noise, that a calibration is judged by.
+/// Number of noise-free rows that judge a calibration.
 const JUDGING: usize = 200;
 
-/// What gross errors did to many simulated sessions.
+/// Effect of gross errors on many simulated sessions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Breakdown {
-    /// Sessions for each loss and share: the robots in turn, by poses and by points.
+    /// Number of sessions for each loss and share: the robots in turn, by poses and by points.
     pub sessions: usize,
     /// Rows of a session.
     pub rows: usize,
     /// Seed.
     pub seed: u64,
-    /// By loss, then by share.
+    /// Entries by loss, then by share.
     pub entries: Vec<BreakdownEntry>,
 }
 
@@ -36,23 +36,23 @@ pub struct Breakdown {
 pub struct BreakdownEntry {
     /// `off` (least squares), `huber`, `cauchy` or `tukey`.
     pub robust: String,
-    /// Share of the rows that are wrong, percent.
+    /// Share of wrong rows, percent.
     pub share_percent: u32,
-    /// Held-out error over that of least squares on the same session without gross errors: median over the sessions.
+    /// Ratio of the held-out error to that of least squares on the same session without gross errors: median over the sessions.
     pub error_ratio_median: f64,
-    /// The same, 95th percentile.
+    /// The same ratio, 95th percentile.
     pub error_ratio_p95: f64,
-    /// Share of the gross rows that are suspected; null if there are none.
+    /// Share of suspected gross rows; null if there are none.
     pub gross_rows_suspected: Option<f64>,
-    /// Share of the other rows that are suspected.
+    /// Share of suspected rows among the others.
     pub other_rows_suspected: f64,
 }
 
-/// Spoils simulated sessions of an elbow, a SCARA, a 7-axis arm and a gantry, by poses and by points, and calibrates from them with
-/// every loss. [`ReproductionOptions::trials`] is the number of sessions.
+/// Spoils simulated sessions of an elbow, a SCARA, a 7-axis arm and a gantry, by poses and by points, and calibrates with every loss.
+/// [`ReproductionOptions::trials`] is the number of sessions.
 ///
 /// # Errors
-/// As [`calibrate`].
+/// Those of [`calibrate`].
 pub fn breakdown(options: &ReproductionOptions) -> Result<Breakdown> {
     let robots = [elbow(), scara(), seven_axis(), gantry()];
     let outcomes: Vec<Vec<Outcome>> = (0..options.trials)

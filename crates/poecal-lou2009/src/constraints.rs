@@ -1,4 +1,4 @@
-//! How far screws miss their constraints `v·ω = 0` and `|ω| = 1` while a fit goes on, before anything puts them right.
+//! Violation of the constraints `v·ω = 0` and `|ω| = 1` of screws during a fit, before any correction.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Twist};
@@ -8,7 +8,7 @@ use poecal_fit::state::Estimate;
 use poecal_model::robot::JointKind;
 use poecal_numerics::solve::{LeastSquares, Normal};
 
-/// A miss of the constraints of a revolute screw.
+/// A violation of the constraints of a revolute screw.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Miss {
     /// `|v·ω|`, metres.
@@ -27,16 +27,16 @@ impl Miss {
     }
 }
 
-/// A problem that watches the constraints of the screws that its steps make.
+/// A problem that records the constraints of the screws in its steps.
 pub(super) struct Watched<'a>(pub(super) &'a Problem<'a>);
 
-/// An estimate, and the constraints until then.
+/// An estimate, and the constraints up to it.
 #[derive(Clone)]
 pub(super) struct WatchedState {
     pub(super) estimate: Estimate,
-    /// Screws that only ever were moved by `ξ ← Ad(e^η) ξ`, without any projection.
+    /// Screws that were moved only by `ξ ← Ad(e^η) ξ`, without any projection.
     screws: Vec<Twist>,
-    /// Largest miss by `ξ + dξ` before it is normalised, or by a screw that was moved as a body.
+    /// Largest violation by `ξ + dξ` before it is normalised, or by a screw that was moved as a body.
     pub(super) miss: Miss,
 }
 
@@ -124,7 +124,7 @@ mod tests {
         );
         let moved = stepped(Formulation::Adjoint);
         assert!(moved.miss.pitch_m < 1e-15 && moved.miss.length < 1e-15);
-        // The screws that are watched are those of the estimate, but for rounding.
+        // The recorded screws are those of the estimate, except for rounding.
         for (watched, screw) in moved.screws.iter().zip(moved.estimate.screws()) {
             assert!((watched.to_vector() - screw.twist().to_vector()).amax() < 1e-14);
         }

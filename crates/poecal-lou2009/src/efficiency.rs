@@ -1,4 +1,4 @@
-//! Many noisy sessions: how near each formulation comes to the least error that the data allow.
+//! Many noisy sessions: ratio of each formulation's error to the least error that the data allow.
 
 use rayon::prelude::*;
 
@@ -18,7 +18,7 @@ const ROWS: usize = 40;
 /// Iterations after which a fit has failed.
 const LIMIT: usize = 60;
 
-/// What is compared: formulation, residual of poses, method.
+/// Compared items: formulation, residual of poses, method.
 type Way = (Formulation, Residual, Method);
 
 const WAYS: [Way; 9] = [
@@ -33,12 +33,11 @@ const WAYS: [Way; 9] = [
     (Formulation::Adjoint, Residual::Tool, Method::LevenbergMarquardt),
 ];
 
-/// All comparisons: one session of configurations for each kind of measurement, its noise drawn anew in every trial, the same for
-/// every way.
+/// All comparisons: one session of configurations for each kind of measurement, with new noise in every trial, the same for every combination.
 pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     let mut found = Vec::new();
     for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
-        // Points have one residual only.
+        // Points have only one residual.
         let is_own = |way: &Way| seen == MeasurementKind::Poses || way.1 == Residual::Tool;
         let ways: Vec<Way> = WAYS.into_iter().filter(is_own).collect();
         let rows_seed = derived(seed, Purpose::Fits, 0);
@@ -56,7 +55,7 @@ pub(super) fn efficiency(trials: usize, seed: u64) -> Result<Vec<Efficiency>> {
     Ok(found)
 }
 
-/// Squared held-out errors of one noisy session fitted in every way; nothing for a fit that did not end.
+/// Squared held-out errors of one noisy session fitted by every combination; `None` for a fit that did not end.
 fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f64>>> {
     let measured = session.noisy(NOISE, seed);
     let tool = session.data(Residual::Tool, &measured)?;
@@ -72,7 +71,7 @@ fn fits(session: &PaperSession, ways: &[Way], seed: u64) -> Result<Vec<Option<f6
     Ok(ways.iter().map(fit).collect())
 }
 
-/// What the fits of one way have in common.
+/// Summary of the fits of one combination.
 fn summary(
     seen: MeasurementKind,
     way: Way,
@@ -82,7 +81,7 @@ fn summary(
 ) -> Efficiency {
     let squares: Vec<f64> = ends.iter().flatten().copied().collect();
     let count = squares.len() as f64;
-    // Not a number without any fit.
+    // NaN without any fit.
     let mean = squares.iter().sum::<f64>() / count;
     let variance = squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let least = 1.0 / (2.0 * unknowns as f64 * count).sqrt();
@@ -103,8 +102,8 @@ fn summary(
     }
 }
 
-/// The least RMS error of predicted positions that an unbiased estimator can have, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the
-/// information of the minimal basis about what a device with this noise sees. With the number of unknowns.
+/// The least RMS error of predicted positions for any unbiased estimator, metres: `tr(J N⁻¹ Jᵀ)` at the truth, N being the information of the minimal
+/// basis from measurements with this noise. It is returned with the number of unknowns.
 fn bound(session: &PaperSession) -> Result<(f64, usize)> {
     let data = session.data(Residual::Tool, &session.exact())?;
     let free = session.free(Formulation::Adjoint);
@@ -116,7 +115,7 @@ fn bound(session: &PaperSession) -> Result<(f64, usize)> {
     let linkage = Linkage::new(&session.truth);
     let mut chain = Chain::default();
     let mut twists: Vec<TargetTwist> = vec![(Vector3::zeros(), Vector3::zeros()); n];
-    // Over unseen configurations and coordinates, the variance of the predicted position.
+    // Variance of the predicted position, summed over unseen configurations and coordinates.
     let mut sum = 0.0;
     for row in 0..session.unseen.rows() {
         chain.evaluate(&linkage, &session.unseen, row, 0);

@@ -27,55 +27,56 @@ impl MeasurementKind {
 /// One calibration of the elbow from its nominal screws by plain Gauss-Newton, as in the paper.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Run {
-    /// How errors are written.
+    /// Parameterisation of errors.
     pub formulation: Formulation,
-    /// What was seen.
+    /// Kind of the measurements.
     pub measurement: MeasurementKind,
-    /// Whether the true robot has joint offsets beside its screw errors.
+    /// True if the true robot has joint offsets beside its screw errors.
     pub offsets_in_truth: bool,
-    /// Whether the measurements are noisy.
+    /// True if the measurements are noisy.
     pub noise: bool,
     /// Number of measurements fitted.
     pub measurements: usize,
-    /// Iterations until the step or the residual was nothing but rounding (noise-free), or the step promised nothing beyond the
-    /// noise. The paper gives no rule.
+    /// Iterations until the step or the residual was only rounding (noise-free), or the step promised no gain beyond the noise. The paper states no
+    /// rule.
     pub iterations: usize,
-    /// Whether it ended there, at the truth (noise-free: held-out error below 1 nm).
+    /// True if it ended there, at the truth (noise-free: held-out error below 1 nm).
     pub converged: bool,
     /// Columns of the paper's own matrix for this formulation.
     pub parameters: usize,
     /// Its rank at the identified robot.
     pub rank: usize,
-    /// Unknowns that were really solved for: the minimal basis, for the adjoint formulations.
+    /// Unknowns of the solver: the minimal basis, for the adjoint formulations.
     pub unknowns: usize,
     /// RMS distance from prediction to truth on configurations that were not measured, metres.
     pub held_out_rms_m: f64,
-    /// Largest difference of a screw's coordinate from the prescribed one (metres for v, 1 for ω); not a number of the
-    /// prediction, and large where the formulation cannot tell screws from offsets.
+    /// Largest difference of a screw's coordinate from the prescribed one (metres for v, 1 for ω). It is no error of prediction, and is large if the
+    /// formulation does not separate screws from offsets.
     pub screw_error_max: f64,
     /// Its part of v, metres.
     pub screw_error_max_v_m: f64,
     /// Its part of ω, no unit.
     pub screw_error_max_omega: f64,
-    /// As [`screw_error_max`](Self::screw_error_max), with all offsets moved into the screws (lou2009 14 and 15), in the truth and in what was identified: what data can tell.
+    /// As [`screw_error_max`](Self::screw_error_max), with all offsets moved into the screws (lou2009 14 and 15), in the truth and in the identified
+    /// robot: the determined part.
     pub equivalent_screw_error_max: f64,
     /// Its part of v, metres.
     pub equivalent_screw_error_max_v_m: f64,
     /// Its part of ω, no unit.
     pub equivalent_screw_error_max_omega: f64,
-    /// Largest `|v·ω|` over the iterations, metres: of `ξ + dξ` before it is normalised (free screws), or of the screws that
-    /// `ξ ← Ad(e^η) ξ` makes from the nominal ones without any normalisation (adjoint).
+    /// Largest `|v·ω|` over the iterations, metres: of `ξ + dξ` before it is normalised (free screws), or of the screws that `ξ ← Ad(e^η) ξ` makes
+    /// from the nominal ones without any normalisation (adjoint).
     pub constraint_miss_pitch_m: f64,
     /// Largest `||ω| - 1|` of the same.
     pub constraint_miss_length: f64,
     /// Largest difference of an identified joint offset from the prescribed one, degrees; null without offsets in the formulation.
     pub offset_error_max_deg: Option<f64>,
-    /// By iteration, the start first.
+    /// States by iteration, the start first.
     pub trace: Vec<Iteration>,
 }
 
 impl Run {
-    /// Whether it is the run without noise of a formulation.
+    /// True if it is the run without noise of a formulation.
     pub(crate) fn is_exact(&self, formulation: Formulation, seen: MeasurementKind, offsets: bool) -> bool {
         (self.formulation, self.measurement, self.offsets_in_truth, self.noise)
             == (formulation, seen, offsets, false)
@@ -91,7 +92,7 @@ pub struct Iteration {
     pub screw_error_max: f64,
 }
 
-/// A joint's screw beside Table II: `(v; ω)` in metres.
+/// A joint's screw compared with Table II: `(v; ω)` in metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScrewRow {
     /// Joint name.
@@ -108,7 +109,7 @@ pub struct ScrewRow {
     pub from_points: [f64; 6],
 }
 
-/// The point `P_c0` beside Table II, metres.
+/// The point `P_c0` compared with Table II, metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointRow {
     /// Table II, left.
@@ -135,11 +136,11 @@ pub struct OffsetRow {
 /// Singular values of one of the paper's matrices, radians counted by [`Reproduction::length_m`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MatrixSpectrum {
-    /// Which matrix.
+    /// Name of the matrix.
     pub matrix: String,
-    /// Where it was evaluated: `nominal` or `identified`.
+    /// Robot of its evaluation: `nominal` or `identified`.
     pub at: String,
-    /// Its columns.
+    /// Number of its columns.
     pub columns: usize,
     /// Singular values above 1e-9 of the largest.
     pub rank: usize,
@@ -150,9 +151,9 @@ pub struct MatrixSpectrum {
 /// Many noisy fits of one formulation against the Cramér-Rao bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Efficiency {
-    /// How errors are written.
+    /// Parameterisation of errors.
     pub formulation: Formulation,
-    /// What was seen.
+    /// Kind of the measurements.
     pub measurement: MeasurementKind,
     /// `tool` (at the tool, whitened) or `spatial` (the paper's logarithm, whitened alike); points have `tool` only.
     pub residual: String,
@@ -162,13 +163,13 @@ pub struct Efficiency {
     pub trials: usize,
     /// Fits that ended at an optimum.
     pub converged: usize,
-    /// RMS held-out position error of those, metres; not a number if there are none.
+    /// RMS held-out position error of those, metres; NaN if there are none.
     pub held_out_rms_m: f64,
     /// RMS that the Cramér-Rao bound allows, metres.
     pub bound_rms_m: f64,
     /// Ratio of the two: 1 is the best that any unbiased estimator can do.
     pub ratio: f64,
-    /// Standard deviation that chance gives the ratio, from the scatter of the fits, but at least `ratio / √(2 · unknowns · fits)`.
+    /// Random standard deviation of the ratio, from the scatter of the fits, but at least `ratio / √(2 · unknowns · fits)`.
     pub ratio_sigma: f64,
 }
 
@@ -176,13 +177,13 @@ pub struct Efficiency {
 const BEYOND_CHANCE: f64 = 3.0;
 
 impl Efficiency {
-    /// Whether this ratio is larger than another by more than chance explains: three standard deviations.
+    /// True if this ratio is larger than another by more than chance explains: three standard deviations.
     #[must_use]
     pub fn exceeds(&self, other: &Efficiency) -> bool {
         self.ratio - other.ratio > BEYOND_CHANCE * self.ratio_sigma.hypot(other.ratio_sigma)
     }
 
-    /// The ratio with its chance.
+    /// The ratio with its standard deviation, in words.
     pub(crate) fn ratio_words(&self) -> String {
         format!("{:.3} ± {:.3}", self.ratio, self.ratio_sigma)
     }
@@ -191,17 +192,17 @@ impl Efficiency {
 /// The share of random starts from which a formulation reaches the truth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Basin {
-    /// How errors are written.
+    /// Parameterisation of errors.
     pub formulation: Formulation,
-    /// What was seen.
+    /// Kind of the measurements.
     pub measurement: MeasurementKind,
     /// `tool` or `spatial`, as in [`Efficiency`].
     pub residual: String,
     /// `gauss-newton` or `levenberg-marquardt`.
     pub method: String,
-    /// Angle by which each axis and the tip of the truth is off the nominal start, degrees.
+    /// Angle between the nominal start and the truth for each axis and the tip, degrees.
     pub error_deg: f64,
-    /// Distance by which each is off, millimetres.
+    /// Distance between them, millimetres.
     pub error_mm: f64,
     /// Number of starts.
     pub trials: usize,
@@ -210,10 +211,10 @@ pub struct Basin {
 }
 
 impl Basin {
-    /// Whether this share is larger than another by more than chance explains: three standard deviations.
+    /// True if this share is larger than another by more than chance explains: three standard deviations.
     #[must_use]
     pub fn exceeds(&self, other: &Basin) -> bool {
-        // A share of 0 or 1 is known to about one start.
+        // The uncertainty of a share of 0 or 1 is about one start.
         let sigma = |it: &Basin| {
             let starts = it.trials as f64;
             (it.share * (1.0 - it.share) / starts).sqrt().max(1.0 / starts)
@@ -222,45 +223,45 @@ impl Basin {
     }
 }
 
-/// A statement of the paper, or a finding that it leaves out, against what was measured.
+/// A statement of the paper, or a finding that it leaves out, compared with measurements.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Claim {
     /// The statement.
     pub claim: String,
-    /// What the paper says, with the place; of a finding, what it says near by.
+    /// Text of the paper, with its location; for a finding, the nearest text.
     pub paper: String,
-    /// What the runs show, with the numbers.
+    /// Evidence of the runs, with the numbers.
     pub measured: String,
-    /// What has to be so for the statement to hold.
+    /// Condition under which the statement holds.
     pub criterion: String,
-    /// Whether it is so.
+    /// True if the condition is met.
     pub holds: bool,
-    /// Whether the paper makes the statement; else it is a finding that the paper leaves out.
+    /// True if the paper makes the statement; otherwise it is a finding that the paper leaves out.
     pub said_by_paper: bool,
 }
 
-/// All that was found.
+/// All findings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reproduction {
     /// Version of the program.
     pub version: String,
-    /// Command that makes the same files.
+    /// Command that writes the same files.
     pub command: String,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Standard deviation of each position component where there is noise, metres.
+    /// Standard deviation of each position component in runs with noise, metres.
     pub noise_position_m: f64,
-    /// Standard deviation of each rotation component where there is noise, radians.
+    /// Standard deviation of each rotation component in runs with noise, radians.
     pub noise_rotation_rad: f64,
-    /// Metres that a radian counts in ranks.
+    /// Metres per radian in ranks.
     pub length_m: f64,
     /// The calibrations.
     pub runs: Vec<Run>,
     /// Claim by claim.
     pub claims: Vec<Claim>,
-    /// The screws beside Table II.
+    /// The screws compared with Table II.
     pub screws: Vec<ScrewRow>,
-    /// The point beside Table II.
+    /// The point compared with Table II.
     pub point: PointRow,
     /// Offsets, prescribed and identified.
     pub offsets: Vec<OffsetRow>,
@@ -268,7 +269,7 @@ pub struct Reproduction {
     pub spectra: Vec<MatrixSpectrum>,
     /// Accuracy with noise.
     pub efficiency: Vec<Efficiency>,
-    /// Convergence from afar.
+    /// Convergence from distant starts.
     pub basin: Vec<Basin>,
 }
 
@@ -283,7 +284,7 @@ impl Reproduction {
         self.runs.iter().find(|run| run.is_exact(formulation, seen, offsets))
     }
 
-    /// How many statements hold, and how many there are: of the paper's, or of the findings that it leaves out.
+    /// Number of statements that hold, and their total number: of the paper's, or of the findings that it leaves out.
     #[must_use]
     pub fn holding(&self, said_by_paper: bool) -> (usize, usize) {
         let claims = || self.claims.iter().filter(|claim| claim.said_by_paper == said_by_paper);
@@ -303,7 +304,7 @@ impl Reproduction {
         })
     }
 
-    /// The starts of a formulation from afar, the nearest first.
+    /// The distant starts of a formulation, the nearest first.
     pub(crate) fn basins(
         &self,
         formulation: Formulation,

@@ -1,4 +1,4 @@
-//! The ways to write and to solve a calibration that lou2009 discusses: unknowns of the joints, errors of measured frames, steps.
+//! Formulations and methods of a calibration that lou2009 discusses: unknowns of the joints, errors of measured frames, steps.
 
 use poecal_calibrate as calibration;
 use poecal_fit::parameters::{Parameter, ScrewAxis, ValueTerm};
@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use crate::{FreeScrew, Spatial, gauss_newton};
 
-/// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ
-/// in the number of unknowns, in what becomes of constraints, and in what can be identified.
+/// Parameterisation of joint errors (lou2009, sections II and III). All describe the same robots; they differ in the number of unknowns, in the
+/// treatment of constraints, and in the identifiable parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Formulation {
@@ -21,7 +21,7 @@ pub enum Formulation {
     Screw,
     /// Free screws and joint offsets, 7n + 6 unknowns (okamura1996, lou2009 3 to 10).
     ScrewOffsets,
-    /// Adjoint errors and joint offsets, to show what offsets add: unknowns, and no rank (lou2009 Proposition 1).
+    /// Adjoint errors and joint offsets, to show the effect of offsets: they add unknowns, and no rank (lou2009 Proposition 1).
     AdjointOffsets,
 }
 
@@ -58,30 +58,30 @@ impl Formulation {
         parameters
     }
 
-    /// The method that belongs to it: plain Gauss-Newton where screws are free numbers, since steps that are judged by the cost after
-    /// normalisation are cut short again and again (docs/theory.md §3).
+    /// Usual method of the formulation: plain Gauss-Newton if screws are free numbers, since steps that are judged by the cost after normalisation
+    /// are shortened repeatedly (docs/theory.md §3).
     #[must_use]
     pub fn usual_method(self) -> Method {
         if self.has_free_screws() { Method::GaussNewton } else { Method::LevenbergMarquardt }
     }
 
-    /// Whether joint offsets are unknowns.
+    /// True if joint offsets are unknowns.
     #[must_use]
     pub fn has_offsets(self) -> bool {
         matches!(self, Formulation::ScrewOffsets | Formulation::AdjointOffsets)
     }
 
-    /// Whether screws are six free numbers, brought back to screws after every step.
+    /// True if screws are six free numbers, projected to screws after every step.
     #[must_use]
     pub fn has_free_screws(self) -> bool {
         matches!(self, Formulation::Screw | Formulation::ScrewOffsets)
     }
 }
 
-/// How the errors of measured frames are written.
+/// Form of the errors of measured frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Residual {
-    /// Position and rotation at the target, as a device's data sheet states its noise.
+    /// Position and rotation at the target, in which a device's data sheet states its noise.
     #[default]
     Tool,
     /// The twist about the device's origin ([`Spatial`]).
@@ -89,7 +89,7 @@ pub enum Residual {
 }
 
 impl Residual {
-    /// All ways.
+    /// All forms.
     pub const ALL: [Residual; 2] = [Residual::Tool, Residual::Spatial];
 
     /// The stable word used in files and on the command line.
@@ -101,7 +101,7 @@ impl Residual {
         }
     }
 
-    /// What the library is told.
+    /// Residual in the form of the library.
     #[must_use]
     pub fn model(self) -> Option<&'static dyn PoseResidual> {
         match self {
@@ -114,10 +114,10 @@ impl Residual {
 /// Method of the solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Damped steps, taken only if they lower the cost.
+    /// Damped steps, accepted only if they lower the cost.
     #[default]
     LevenbergMarquardt,
-    /// Full steps, taken as they are: the iterated least squares of lou2009. It may diverge.
+    /// Full steps, accepted unconditionally: the iterated least squares of lou2009. It may diverge.
     GaussNewton,
 }
 
@@ -144,7 +144,7 @@ impl Method {
     }
 }
 
-/// A formulation with its residual and method, as [`CalibrationOptions`](calibration::CalibrationOptions) take it.
+/// A formulation with its residual and method, for [`CalibrationOptions`](calibration::CalibrationOptions).
 #[must_use]
 pub fn formulated(formulation: Formulation, residual: Residual, method: Method) -> calibration::Formulation {
     let joint_parameters: fn(&[JointKind]) -> Vec<Parameter> = match formulation {
@@ -166,7 +166,7 @@ pub fn formulated(formulation: Formulation, residual: Residual, method: Method) 
     }
 }
 
-/// What the way does to the result.
+/// Effect of the formulation and method on the result.
 fn note(formulation: Formulation, method: Method) -> Option<&'static str> {
     match (formulation, method) {
         (Formulation::Adjoint, _) | (Formulation::Screw, Method::LevenbergMarquardt) => None,

@@ -1,4 +1,4 @@
-//! A joint's screw as free numbers, the original way (docs/theory.md §5 (22a) to (22c)).
+//! A joint's screw as free numbers, the original formulation (docs/theory.md §5 (22a) to (22c)).
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, Screw, TargetTwist, Twist, rotation};
@@ -17,7 +17,7 @@ use poecal_model::robot::JointKind;
 pub struct FreeScrew;
 
 impl FreeScrew {
-    /// That of a joint as a parameter.
+    /// The free screw of a joint as a parameter.
     #[must_use]
     pub fn parameter(joint: usize, kind: JointKind) -> Parameter {
         Parameter::OtherScrew(OtherScrew { joint, kind, model: &FreeScrew })

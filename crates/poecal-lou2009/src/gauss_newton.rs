@@ -1,10 +1,10 @@
-//! Plain Gauss-Newton: the iterated least squares of okamura1996 and lou2009. Every step is taken as it is.
+//! Plain Gauss-Newton: the iterated least squares of okamura1996 and lou2009. Every step is accepted as it is.
 
 use poecal_numerics::solve::{LeastSquares, Normal, Options, Summary, Termination};
 
-/// Minimises from `start` by full steps; gives the state reached, its normal information and a summary. It ends where the part of the
-/// step that the retraction keeps is nothing, which with constraints put right after each step need not be a minimum (docs/theory.md §5
-/// (22d)). It may diverge. Of the options it follows `iterations`, `decrement` and `step`.
+/// Minimises from `start` by full steps; returns the final state, its normal information and a summary. It ends if the part of the step that the
+/// retraction keeps vanishes, which with constraints restored after each step need not be a minimum (docs/theory.md §5 (22d)). It may diverge. It
+/// uses the options `iterations`, `decrement` and `step`.
 pub fn gauss_newton<P: LeastSquares>(
     problem: &P,
     start: P::State,

@@ -1,8 +1,8 @@
-//! What only lou2009 needs, beside the library: its formulations ([`formulated`]), its experiment with each of them and what became of its
-//! claims ([`lou2009`]), and an experiment on what gross errors do to a calibration ([`breakdown()`]). It uses public items of the library;
-//! nothing in there knows of it.
+//! Additions to the library for lou2009: its formulations ([`formulated`]), its experiment with each of them and the outcome of its claims
+//! ([`lou2009`]), and an experiment on the effect of gross errors on a calibration ([`breakdown()`]). It uses public items of the library; the
+//! library does not depend on it.
 //!
-//! For the program's `reproduce`, the package and readers of the paper; its interface promises nothing. Not here: a solver other than plain
+//! For the program's `reproduce`, the package and readers of the paper; its interface is not stable. Not here: a solver other than plain
 //! Gauss-Newton, and Jacobians that the solver of the library uses.
 
 mod basin;
@@ -41,20 +41,20 @@ use poecal_model::measurement::{Noise, Quantity};
 use poecal_model::robot::Term;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Metres that a radian counts in ranks and steps: some third of the elbow's reach.
+/// Metres per radian in ranks and steps: some third of the elbow's reach.
 const LENGTH_M: f64 = 0.5;
 
 /// Noise of a good laser tracker with a six-degree-of-freedom probe.
 const NOISE: Noise = Noise::new(5e-5, 1.745_329_251_994_329_6e-4);
 
-/// How much to try.
+/// Extent of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReproductionOptions {
     /// Noisy sessions for each formulation.
     pub trials: usize,
     /// Random starts for each formulation and size of error.
     pub starts: usize,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
@@ -64,11 +64,11 @@ impl Default for ReproductionOptions {
     }
 }
 
-/// Repeats the experiment of lou2009: the elbow of its Tables I and II identified from poses and from points with every formulation, with
-/// and without joint offsets and noise; its claims; and the comparison of the formulations over many trials.
+/// Repeats the experiment of lou2009: the elbow of its Tables I and II identified from poses and from points with every formulation, with and without
+/// joint offsets and noise; its claims; and the comparison of the formulations over many trials.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks what it is judged by.
+/// [`ErrorKind::Option`] without a trial or a start; [`ErrorKind::Problem`] if a claim lacks its evidence.
 pub fn lou2009(options: &ReproductionOptions) -> Result<Reproduction> {
     if options.trials == 0 || options.starts == 0 {
         return ErrorKind::Option

@@ -1,6 +1,6 @@
-//! The Jacobians of lou2009 as printed, with the errata of docs/theory.md §10 applied and no shortcut taken: every exponential, left
-//! Jacobian and bracket stands where the paper has it. The solver uses the telescoping form, theory.md §3 (12), instead; this module
-//! checks it, and tells the ranks of the paper's own matrices.
+//! The Jacobians of lou2009 as printed, with the errata of docs/theory.md §10 applied and no shortcut: every exponential, left Jacobian and bracket
+//! is as in the paper. The solver uses the telescoping form, theory.md §3 (12), instead; this module verifies it, and determines the ranks of the
+//! paper's own matrices.
 
 use nalgebra::{DMatrix, Matrix3x6, Matrix6, Vector3, Vector6};
 
@@ -41,9 +41,9 @@ impl AdjointErrors {
 /// The parts of the paper's matrix `A` at one configuration, in the base frame (theory.md §3 (8)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Literal {
-    /// `r_k`, lou2009 (8d): the screws where the joints before have carried them.
+    /// `r_k`, lou2009 (8d): the screws as moved by the joints before.
     pub offset_columns: Vec<Vector6<f64>>,
-    /// `Q_k`, lou2009 (8e): what a change of the six numbers of screw k does.
+    /// `Q_k`, lou2009 (8e): effect of a change of the six numbers of screw k.
     pub screw_blocks: Vec<Matrix6<f64>>,
     /// `Q_M`, lou2009 (8f), of `Υ = log M`.
     pub home_block: Matrix6<f64>,
@@ -76,7 +76,7 @@ pub fn screw_by_adjoint_error(nominal: &Screw, eta: &Twist) -> Matrix6<f64> {
     -nominal.transformed(&Pose::exp(eta)).twist().ad() * eta.left_jacobian()
 }
 
-/// `[I  -P̂]` of lou2009 (23): how a twist of the base frame moves the point `P` (metres; theory.md §3 (12a)).
+/// `[I  -P̂]` of lou2009 (23): motion of the point `P` by a twist of the base frame (metres; theory.md §3 (12a)).
 #[must_use]
 pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
     let mut rows = Matrix3x6::identity();
@@ -84,9 +84,8 @@ pub fn point_rows(point: &Vector3<f64>) -> Matrix3x6<f64> {
     rows
 }
 
-/// The paper's matrix for one configuration of joint values (radians, metres), in the base frame and right-trivialised (theory.md §3 (8), (10b) and (12a)).
-/// Columns in
-/// the order of lou2009 (7): joint offsets (if any), joints from base to tip, then `Υ` or the point `P_c0`, which is the origin of
+/// The paper's matrix for one configuration of joint values (radians, metres), in the base frame and right-trivialised (theory.md §3 (8), (10b) and
+/// (12a)). Columns in the order of lou2009 (7): joint offsets (if any), joints from base to tip, then `Υ` or the point `P_c0`, which is the origin of
 /// the home pose.
 ///
 /// | formulation | poses, 6 rows | points, 3 rows |
@@ -116,8 +115,7 @@ pub fn jacobian(
     assemble(robot, &literal, &literal.home_block, &columns, formulation.has_offsets(), seen)
 }
 
-/// The matrix of the adjoint formulation about errors that are not zero: (9) with (18), and (26) for points, by `dη_i` and `dΥ` of
-/// `M = exp(Υ) M^n`.
+/// The matrix of the adjoint formulation about non-zero errors: (9) with (18), and (26) for points, by `dη_i` and `dΥ` of `M = exp(Υ) M^n`.
 #[must_use]
 pub fn adjoint_jacobian(
     nominal: &Robot,
@@ -137,7 +135,7 @@ pub fn adjoint_jacobian(
     assemble(&robot, &literal, &by_upsilon, &columns, offsets, seen)
 }
 
-/// Puts the columns side by side: offsets, joints, and what the tool adds.
+/// Assembles the columns side by side: offsets, joints, and those of the tool.
 fn assemble(
     robot: &Robot,
     literal: &Literal,
@@ -164,8 +162,8 @@ fn assemble(
     }
 }
 
-/// The matrices of several configurations one below the other, lou2009 (10), with radians counted as `length_m` metres in rows and
-/// columns, so that singular values compare. A length of 1 leaves the numbers as they are.
+/// The matrices of several configurations one below the other, lou2009 (10), with radians counted as `length_m` metres in rows and columns, so that
+/// singular values compare. A length of 1 leaves the numbers unchanged.
 #[must_use]
 pub fn stacked(
     robot: &Robot,
@@ -189,7 +187,7 @@ pub fn stacked(
     all
 }
 
-/// Metres per unit of each column's unknown, inverted: 1 for a length, `1 / length_m` for an angle or a direction.
+/// Inverse metres per unit of each column's unknown: 1 for a length, `1 / length_m` for an angle or a direction.
 fn column_scales(robot: &Robot, formulation: Formulation, seen: MeasurementKind, length_m: f64) -> Vec<f64> {
     let turn = 1.0 / length_m;
     let twist = [1.0, 1.0, 1.0, turn, turn, turn];
@@ -211,8 +209,8 @@ fn column_scales(robot: &Robot, formulation: Formulation, seen: MeasurementKind,
 /// Share of the largest singular value above which a direction counts to the rank of a noise-free matrix.
 pub const RANK_SHARE: f64 = 1e-9;
 
-/// Singular values of a matrix of finite numbers, the largest first, and how many are above [`RANK_SHARE`] of the largest.
-/// What ranks to expect: theory.md §7 (35) and (35a).
+/// Singular values of a matrix of finite numbers, the largest first, and the number of those above [`RANK_SHARE`] of the largest. Expected ranks:
+/// theory.md §7 (35) and (35a).
 #[must_use]
 pub fn singular_values(matrix: &DMatrix<f64>) -> (Vec<f64>, usize) {
     if matrix.is_empty() {

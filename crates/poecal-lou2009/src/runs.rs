@@ -24,7 +24,7 @@ const REACHED_M: f64 = 1e-9;
 /// Multiple of the position noise within which a noisy run must predict.
 const NOISY_FACTOR: f64 = 10.0;
 
-/// What a run is to do.
+/// Specification of a run.
 #[derive(Clone, Copy)]
 struct Plan {
     formulation: Formulation,
@@ -33,7 +33,7 @@ struct Plan {
     noise: bool,
 }
 
-/// A run, and where it ended.
+/// A run, and its final estimate.
 pub(super) struct Ended {
     pub(super) run: Run,
     pub(super) estimate: Estimate,
@@ -64,7 +64,7 @@ pub(super) fn runs(seed: u64) -> Result<Vec<Ended>> {
     Ok(runs)
 }
 
-/// The configurations of the runs of a kind, and the robot that is there.
+/// The configurations of the runs of a kind, and the actual robot.
 pub(super) fn session(offsets_in_truth: bool, seen: MeasurementKind, seed: u64) -> PaperSession {
     let count = match seen {
         MeasurementKind::Poses => POSES,
@@ -102,7 +102,7 @@ fn run(plan: Plan, seed: u64) -> Result<Ended> {
     Ok(Ended { run, estimate: state.estimate })
 }
 
-/// What is told of a run that ended.
+/// Report of a run that ended.
 fn measures(
     session: &PaperSession,
     plan: Plan,
@@ -175,7 +175,7 @@ impl ScrewError {
     }
 }
 
-/// Largest difference of a joint offset, degrees, whole turns left out.
+/// Largest difference of a joint offset, degrees, modulo whole turns.
 fn offset_error_deg(found: &Estimate, truth: &Estimate) -> f64 {
     let offsets = [found.offsets(), truth.offsets()];
     let pairs = offsets[0].iter().zip(&offsets[1]);

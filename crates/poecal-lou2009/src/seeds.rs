@@ -1,6 +1,6 @@
-//! Seeds of everything random, all derived from one.
+//! Seeds of all random numbers, derived from one.
 
-/// What a stream of random numbers is for.
+/// Purpose of a stream of random numbers.
 #[derive(Clone, Copy)]
 pub(super) enum Purpose {
     /// Configurations of the runs.
@@ -13,11 +13,11 @@ pub(super) enum Purpose {
     FitNoise,
     /// A random truth.
     Truth,
-    /// Configurations at which it is seen.
+    /// Configurations of its measurements.
     TruthRows,
 }
 
-/// The seed of a stream: other purposes, indices and roots give unrelated ones.
+/// The seed of a stream: other purposes, indices and roots lead to unrelated ones.
 pub(super) fn derived(root: u64, purpose: Purpose, index: u64) -> u64 {
     mix(mix(mix(root) ^ purpose as u64) ^ index)
 }

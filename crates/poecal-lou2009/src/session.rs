@@ -1,4 +1,4 @@
-//! What a device sees of the elbow: the measurements that a run fits, and the configurations that judge it.
+//! Measurements of the elbow by a device: those that a run fits, and the configurations that judge it.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -17,7 +17,7 @@ use poecal_numerics::error::Result;
 /// Configurations that a fit never saw.
 const UNSEEN: usize = 60;
 
-/// Random configurations of a robot within its limits, and the robot that is really there.
+/// Random configurations of a robot within its limits, and the actual robot.
 pub(super) struct PaperSession {
     pub(super) nominal: Robot,
     pub(super) truth: Estimate,
@@ -25,7 +25,7 @@ pub(super) struct PaperSession {
     pub(super) readings: Vec<f64>,
     pub(super) packed: Packed,
     pub(super) unseen: Packed,
-    /// Where the tip truly is in the unseen configurations.
+    /// True positions of the tip in the unseen configurations.
     unseen_positions: Vec<Vector3<f64>>,
 }
 
@@ -59,7 +59,7 @@ impl PaperSession {
         poses(&self.truth, &self.packed).collect()
     }
 
-    /// The same with noise drawn from a seed.
+    /// Poses with noise drawn from a seed.
     pub(super) fn noisy(&self, sigma: Noise, seed: u64) -> Vec<Pose> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let measured = |pose: Pose| {
@@ -71,7 +71,7 @@ impl PaperSession {
         poses(&self.truth, &self.packed).map(measured).collect()
     }
 
-    /// What the device says of these poses.
+    /// Measurements of these poses by the device.
     pub(super) fn data(&self, residual: Residual, measured: &[Pose]) -> Result<Dataset> {
         let mut data = Dataset::new(self.nominal.reading_names());
         for (readings, &pose) in self.readings.chunks_exact(self.nominal.joints.len()).zip(measured) {
@@ -85,12 +85,12 @@ impl PaperSession {
         Ok(data)
     }
 
-    /// The session of such data, with a length that a radian counts, metres.
+    /// The session of such data, with the metres per radian.
     pub(super) fn session_with_data<'a>(&'a self, data: &'a Dataset, length_m: f64) -> Session<'a> {
         Session::new(&self.nominal, data, &self.packed, false).with_length(length_m)
     }
 
-    /// The estimate that every run starts from: nominal screws and home pose, no offsets, device at the base.
+    /// The start of every run: nominal screws and home pose, no offsets, device at the base.
     pub(super) fn start(&self) -> Estimate {
         Estimate::new(&self.nominal, vec![self.nominal.home], Pose::identity())
     }

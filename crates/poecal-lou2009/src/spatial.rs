@@ -4,12 +4,12 @@ use nalgebra::{Matrix6, Vector3};
 use poecal_arm::lie::{Pose, Twist};
 use poecal_model::measurement::{PoseResidual, Sensitivity};
 
-/// The paper's residual of a measured frame, `e = log(Y P⁻¹)^∨` (lou2009 after equation 7): the twist about the *device's* origin that
-/// takes the predicted frame to the measured one, linear part first.
+/// The paper's residual of a measured frame, `e = log(Y P⁻¹)^∨` (lou2009 after equation 7): the twist about the *device's* origin that moves the
+/// predicted frame to the measured one, linear part first.
 ///
 /// Its sensitivity is `J_r(e)⁻¹ = J_l(-e)⁻¹` on the spatial twist, exact also for large residuals. To first order the linear part is
-/// `(y - p) + p × r`, so rotation noise counts as position noise times the distance: [`poecal_model::measurement::Measurement`] is what a device's
-/// data sheet describes, this is for comparison (docs/theory.md §4 (16a)).
+/// `(y - p) + p × r`, so rotation noise counts as position noise times the distance. [`poecal_model::measurement::Measurement`] has the form of a
+/// device's data sheet; this form serves comparison (docs/theory.md §4 (16a)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spatial;
 

@@ -19,11 +19,11 @@ pub const PRINTED_SCREWS_MM: [[f64; 6]; 6] = [
 /// Table II: the identified point `P_c0`, millimetres.
 pub const PRESCRIBED_POINT_MM: [f64; 3] = [839.01, -5.03, 724.974];
 
-/// Joint offsets of the experiment with offsets in the truth, degrees. The paper prescribes some and does not print them; these are
-/// this project's own, of a size that mounting an encoder leaves.
+/// Joint offsets of the experiment with offsets in the truth, degrees. The paper prescribes some and does not print them; these are this project's
+/// own, of a size typical for mounting an encoder.
 pub const PRESCRIBED_OFFSETS_DEG: [f64; 6] = [4.0, -3.0, 2.0, 6.0, -4.0, 5.0];
 
-/// The identified screws of Table II as printed, as twists in metres. Rounding has made them no screws: see [`rounding`].
+/// The identified screws of Table II as printed, as twists in metres. Because of rounding they are no screws: see [`rounding`].
 #[must_use]
 pub fn printed_screws() -> [Twist; 6] {
     PRINTED_SCREWS_MM.map(|row| {
@@ -39,8 +39,8 @@ pub fn nominal() -> Robot {
     simulate::elbow()
 }
 
-/// The robot that is to be identified: the printed screws, each made a screw as by [`Screw::project`] (theory.md §5 (22c)), and the printed point
-/// as home pose without rotation.
+/// The robot to be identified: the printed screws, each made a screw as by [`Screw::project`] (theory.md §5 (22c)), and the printed point as home
+/// pose without rotation.
 #[must_use]
 pub fn prescribed() -> Robot {
     // The axis along ω through its point nearest to the origin.
@@ -51,7 +51,7 @@ pub fn prescribed() -> Robot {
     robot
 }
 
-/// By how much the printed screws miss the constraints of a revolute screw.
+/// Violation of the constraints of a revolute screw by the printed screws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// Largest `|v·ω|`, millimetres.
@@ -60,7 +60,7 @@ pub struct Rounding {
     pub length: f64,
 }
 
-/// What four decimals leave of the screw constraints in Table II.
+/// Violation of the screw constraints in Table II due to four decimals.
 #[must_use]
 pub fn rounding() -> Rounding {
     let largest = |miss: fn(&Twist) -> f64| printed_screws().iter().map(miss).fold(0.0, f64::max);
@@ -74,7 +74,7 @@ pub fn rounding() -> Rounding {
 mod tests {
     use super::*;
 
-    /// Table I: reach of each joint, degrees.
+    /// Table I: range of each joint, degrees.
     const RANGES_DEG: [[f64; 2]; 6] =
         [[-180.0, 180.0], [-105.0, 175.0], [-235.0, 85.0], [-180.0, 180.0], [-40.0, 220.0], [-360.0, 360.0]];
 

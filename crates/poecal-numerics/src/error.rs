@@ -1,4 +1,4 @@
-//! The one error type: a sentence that says where, what was found, what was expected and what to do.
+//! The one error type: a sentence with place, found, expected and remedy.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::text::visible;
 
-/// What went wrong, as a word that does not change between versions.
+/// Kind of an error, as a word that does not change between versions.
 ///
 /// ```
 /// # mod poecal {
@@ -21,17 +21,17 @@ use crate::text::visible;
 pub enum ErrorKind {
     /// A file could not be read or written.
     File,
-    /// The text is not of the form it should be (XML, TOML, JSON, CSV).
+    /// The text is not of the expected form (XML, TOML, JSON, CSV).
     Syntax,
     /// A robot model that is well formed but cannot be used.
     Model,
     /// A measurement file that is well formed but cannot be used.
     Measurement,
-    /// A unit that is not known, or does not fit its quantity.
+    /// A unit that is unknown, or does not fit its quantity.
     Unit,
     /// An option that is out of range or contradicts another.
     Option,
-    /// Too few or unsuitable measurements for what is asked.
+    /// Too few or unsuitable measurements for the request.
     Problem,
     /// Written files did not reproduce the fitted model.
     Export,
@@ -45,7 +45,7 @@ impl ErrorKind {
         Error::new(self, message)
     }
 
-    /// The same as a result.
+    /// The same error as a result.
     ///
     /// # Errors
     /// Always.
@@ -54,7 +54,7 @@ impl ErrorKind {
     }
 }
 
-/// Where in a file: line and column count from 1, a column in characters.
+/// Place in a file: line and column count from 1, a column in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The file, as the user named it.
@@ -101,18 +101,18 @@ struct Inner {
     missing: Option<MissingColumn>,
 }
 
-/// What a column that a file lacks would have.
+/// Content of a column that a file lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissingColumn {
-    /// The readings of a joint.
+    /// Readings of a joint.
     Joint,
     /// A coordinate of a position.
     Position,
-    /// Something else.
+    /// Other content.
     Other,
 }
 
-/// What an option could be, where nothing else decides.
+/// Possible values of an option, if nothing else decides.
 ///
 /// ```
 /// # mod poecal {
@@ -126,15 +126,15 @@ pub enum MissingColumn {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Choices {
-    /// The option, as it is typed.
+    /// Option, as it is typed.
     pub option: &'static str,
-    /// Its possible values.
+    /// Possible values.
     pub of: Vec<String>,
 }
 
 impl Error {
-    /// An error without a place; `message` says what was found, what was expected and what to do. Control characters of a text that it
-    /// quotes are written out, so that it is one line and moves no terminal's cursor.
+    /// An error without a place; `message` has found, expected and remedy. Control characters of a text that it quotes are written
+    /// out, so that it is one line and moves no terminal's cursor.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         let message = with_names_shown(message.into());
         Error(Box::new(Inner {
@@ -192,55 +192,55 @@ impl Error {
         self
     }
 
-    /// The same error, with more to say.
+    /// The same error, with an addition.
     pub fn with_more(mut self, more: &str) -> Self {
         self.0.message.push_str("; ");
         self.0.message.push_str(&visible(more));
         self
     }
 
-    /// The same error, with what could be chosen.
+    /// The same error, with possible values of an option.
     pub fn with_choices(mut self, option: &'static str, of: Vec<String>) -> Self {
         self.0.choices = Some(Choices { option, of });
         self
     }
 
-    /// The same error, with what a missing column would have.
+    /// The same error, with the content of a missing column.
     pub fn of_missing(mut self, column: MissingColumn) -> Self {
         self.0.missing = Some(column);
         self
     }
 
-    /// The same error, with what its column would have, if one is missing.
+    /// The same error, with the content of its column, if one is missing.
     pub fn if_missing(self, column: MissingColumn) -> Self {
         if self.missing().is_some() { self.of_missing(column) } else { self }
     }
 
-    /// What a missing column would have, if one is missing.
+    /// Content of a missing column, if one is missing.
     #[must_use]
     pub fn missing(&self) -> Option<MissingColumn> {
         self.0.missing
     }
 
-    /// What could be chosen, where one of several things is missing.
+    /// Possible values, if a choice is missing.
     #[must_use]
     pub fn choices(&self) -> Option<&Choices> {
         self.0.choices.as_ref()
     }
 
-    /// The kind of error.
+    /// Kind of error.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
-    /// Where it happened, when it happened in a file.
+    /// Place of the error, if it is in a file.
     #[must_use]
     pub fn place(&self) -> Option<&Place> {
         self.0.place.as_ref()
     }
 
-    /// The sentence without the place.
+    /// Sentence without the place.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.0.message
@@ -266,13 +266,13 @@ pub fn position(text: &str, offset: usize) -> (usize, usize) {
     (line, before.get(line_start..).unwrap_or("").trim_start_matches('\u{feff}').chars().count() + 1)
 }
 
-/// Names that a message lists at most.
+/// Largest number of names in a message.
 const NAMES_LISTED: usize = 12;
-/// Letters of a name that are shown, if it has more than [`LONG_NAME`].
+/// Number of letters of a name that are shown, if it has more than [`LONG_NAME`].
 const NAME_SHOWN: usize = 60;
-/// Letters up to which a name is shown whole.
+/// Largest number of letters of a name that is shown whole.
 const LONG_NAME: usize = 120;
-/// Letters up to which names are compared: nobody mistypes longer ones, and the work grows with the square.
+/// Largest number of letters of names that are compared: nobody mistypes longer ones, and the work grows with the square.
 const LONGEST_COMPARED: usize = 64;
 
 /// Result of the library's fallible functions.
@@ -283,7 +283,7 @@ const LONGEST_COMPARED: usize = 64;
 /// ```
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The candidate nearest to `word` by edit distance, for "did you mean"; none if each differs by more than half of the word.
+/// Candidate nearest to `word` by edit distance, for "did you mean"; `None` if each differs by more than half of the word.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let letters = letters(word)?;
     let furthest = (letters / 2).max(1);
@@ -294,7 +294,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     Some(distances.min_by_key(|(distance, _)| *distance)?.1)
 }
 
-/// What a message says of the names that `word` could have been: the nearest, or else the first few.
+/// Words of a message about the names that `word` could have been: the nearest, or else the first few.
 pub fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
     match nearest(word, candidates.iter().copied()) {
         Some(near) => format!("the nearest is `{near}`"),
@@ -303,13 +303,13 @@ pub fn nearest_or_all(word: &str, candidates: &[&str]) -> String {
     }
 }
 
-/// The names, or the first of many, each as it is shown.
+/// The names, or the first of many, each as [`shown`].
 pub fn first_few<T: AsRef<str>>(names: &[T]) -> String {
     let first: Vec<Cow<'_, str>> = names.iter().take(NAMES_LISTED).map(|name| shown(name.as_ref())).collect();
     format!("{}{}", first.join(", "), if names.len() > NAMES_LISTED { ", …" } else { "" })
 }
 
-/// A name as messages and tables show it: of one that is very long, the beginning.
+/// A name as in messages and tables: only the beginning if it is very long.
 pub fn shown(name: &str) -> Cow<'_, str> {
     match (name.char_indices().nth(NAME_SHOWN), name.char_indices().nth(LONG_NAME)) {
         (Some((end, _)), Some(_)) => Cow::Owned(format!("{}…", name.get(..end).unwrap_or_default())),
@@ -317,7 +317,7 @@ pub fn shown(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// A message with each name that stands in backticks [`shown`]: a file may call things what it likes.
+/// A message with each name in backticks as [`shown`]: a file may choose any names.
 fn with_names_shown(message: String) -> String {
     if message.len() <= LONG_NAME {
         return message;
@@ -326,20 +326,20 @@ fn with_names_shown(message: String) -> String {
     parts.join("`")
 }
 
-/// Words between two names stay as they are; they have spaces, and are not as long as a file may make a name.
+/// Words between two names stay unchanged; they have spaces, and are not as long as a name in a file may be.
 fn shown_unless_a_sentence(part: &str) -> Cow<'_, str> {
     const LONGEST_SENTENCE: usize = 4000;
     if part.contains(' ') && part.len() <= LONGEST_SENTENCE { Cow::Borrowed(part) } else { shown(part) }
 }
 
-/// How many letters a word has that is short enough to be compared.
+/// Number of letters of a word that is short enough to be compared.
 fn letters(word: &str) -> Option<usize> {
-    // A letter has four bytes at most: of a longer word not even the letters are counted.
+    // A letter has four bytes at most: for a longer word not even the letters are counted.
     let count = (word.len() <= 4 * LONGEST_COMPARED).then(|| word.chars().count());
     count.filter(|count| *count <= LONGEST_COMPARED)
 }
 
-/// Damerau's edit distance (insertions, deletions, substitutions and swaps of neighbours, case ignored) if it is at most so much.
+/// Damerau's edit distance (insertions, deletions, substitutions and swaps of neighbours, case ignored) if it is at most `furthest`.
 pub fn distance_within(a: &str, b: &str, furthest: usize) -> Option<usize> {
     let (a_letters, b_letters) = (letters(a)?, letters(b)?);
     // Small letters may be more than large ones, by one in three at most.

@@ -1,15 +1,15 @@
 //! Numerics without robots: vector kernels, least squares on a manifold, matrices, distributions, threads, units and the one error type.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! A part of [poecal](https://docs.rs/poecal), for its other crates, the program and the package. Its interface follows their needs and is not
+//! stable by itself.
 //!
-//! - [`kernels`] gets frames, columns and numbers, and is the only place that uses vectors of the processor.
+//! - [`kernels`] takes frames, columns and numbers, and is the only place that uses vectors of the processor.
 //! - [`solve`] minimises over any manifold; neither poses nor units occur in it.
 //! - [`linalg`] handles matrices without meaning, and is the only file that names nalgebra's factorisations.
 //! - [`distributions`] handles squares and degrees of freedom, no residuals.
 //! - [`text`] decides which characters are visible, whatever the text means.
 //!
-//! Not here: robots, measurements, parameters, files.
+//! Robots, measurements, parameters and files are not here.
 
 #![forbid(unsafe_code)]
 

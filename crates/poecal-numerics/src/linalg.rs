@@ -1,6 +1,6 @@
-//! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. The only file that names nalgebra's
-//! decompositions: `symmetric_eigen`, singular values and the Cholesky factor of six rows alone, since its SVD with vectors errs on
-//! repeated columns.
+//! Dense linear algebra of the normal equations: accumulation, Cholesky, symmetric eigenvalues. It is the only file that names
+//! nalgebra's decompositions: only `symmetric_eigen`, singular values and the Cholesky factor of six rows, since its SVD with
+//! vectors errs on repeated columns.
 
 pub use crate::kernels::Factor;
 use crate::kernels::{self as lanes, SimdLevel};
@@ -49,7 +49,7 @@ pub fn add_gradient(gradient: &mut [f64], rows: &[f64], residuals: &[f64]) {
     }
 }
 
-/// Cholesky factor of the symmetric matrix given by its upper triangle plus `damping` on the diagonal; `None` if that is not positive
+/// Cholesky factor of the symmetric matrix with this upper triangle plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 pub fn cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor> {
     lanes::cholesky(SimdLevel::best(), upper, n, damping)
@@ -63,7 +63,7 @@ pub fn cholesky_6(matrix: Matrix6<f64>) -> Option<Factor6> {
     Cholesky::new(matrix)
 }
 
-/// The inverse of six rows; `None` if there is none.
+/// Inverse of six rows; `None` if there is none.
 pub fn inverse_6(matrix: Matrix6<f64>) -> Option<Matrix6<f64>> {
     matrix.try_inverse()
 }
@@ -118,7 +118,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The coefficients of the combination of columns that is nearest to `-target` (all zero beyond their length), by damped normal equations.
+/// Coefficients of the combination of columns that is nearest to `-target` (all zero beyond their length), by damped normal equations.
 pub fn combination(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
     let count = columns.len();
     let upper: Vec<f64> = (0..count * count).map(|k| dot(&columns[k / count], &columns[k % count])).collect();
@@ -126,7 +126,7 @@ pub fn combination(columns: &[Vec<f64>], target: &[f64]) -> Option<Vec<f64>> {
     Some(cholesky_solve(&cholesky(&upper, count, 1e-9)?, &gradient))
 }
 
-/// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix given by its upper triangle.
+/// Eigenvalues (ascending) and eigenvectors (columns) of the symmetric matrix with this upper triangle.
 pub fn symmetric_eigen(upper: &[f64], n: usize) -> (Vec<f64>, DMatrix<f64>) {
     if n == 0 {
         return (Vec::new(), DMatrix::zeros(0, 0));
@@ -180,7 +180,7 @@ mod tests {
         assert!(solution.iter().zip(&truth).all(|(a, b)| (a - b).abs() < 1e-12), "{solution:?}");
     }
 
-    /// At every level and for every filling of the lanes the inverse has the columns that solving gives.
+    /// At every level and for every filling of the lanes the inverse has the columns of the solutions.
     #[test]
     fn the_inverse_is_that_of_solutions() {
         for level in lanes::simd_levels() {
@@ -203,7 +203,7 @@ mod tests {
         }
     }
 
-    /// The reason for `symmetric_eigen`: an SVD with vectors that is wrong on repeated columns would name wrong directions.
+    /// Reason for `symmetric_eigen`: an SVD with vectors that is wrong on repeated columns would name wrong directions.
     #[test]
     fn eigenvectors_are_right_for_repeated_and_negated_columns() {
         let mut worst: f64 = 0.0;

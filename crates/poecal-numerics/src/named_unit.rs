@@ -17,9 +17,9 @@ pub enum UnitSource {
     UnitsLine,
     /// The mapping file.
     Mapping,
-    /// None stated: as the maker of these columns has them.
+    /// Not stated: the unit of the maker of these columns.
     Maker,
-    /// None stated: SI.
+    /// Not stated: SI.
     Si,
 }
 
@@ -31,7 +31,7 @@ pub struct NamedUnit {
     // Lengths are divided by a power of ten, which is exact; 0.001 is not.
     factor: f64,
     divisor: f64,
-    /// What else it is called, large letters or small.
+    /// Other names, case ignored.
     names: &'static str,
 }
 
@@ -89,10 +89,10 @@ pub fn units_of(of: Unit) -> impl Iterator<Item = &'static NamedUnit> {
 }
 
 impl NamedUnit {
-    /// The unit of this symbol for the quantity of an SI unit; also `µm`, `°` and words such as `degrees` and `inch`.
+    /// Unit of this symbol for the quantity of an SI unit; also `µm`, `°` and words such as `degrees` and `inch`.
     ///
     /// # Errors
-    /// [`ErrorKind::Unit`] if it is unknown or measures something else.
+    /// [`ErrorKind::Unit`] if it is unknown or is of another quantity.
     pub fn parse(symbol: &str, of: Unit) -> Result<NamedUnit> {
         NamedUnit::parse_for(symbol, of, "")
     }
@@ -154,7 +154,7 @@ impl NamedUnit {
     }
 }
 
-/// The symbol for any name of a unit.
+/// Symbol for any name of a unit.
 fn plain(name: &str) -> &str {
     let is_named =
         |unit: &&NamedUnit| unit.names.split_whitespace().any(|word| word.eq_ignore_ascii_case(name));
@@ -166,7 +166,7 @@ fn plain(name: &str) -> &str {
     }
 }
 
-/// A length above 0 as it is typed with its unit, metres; `None` of another number, or without a unit.
+/// A length above 0 as it is typed with its unit, metres; `None` for another number, or without a unit.
 pub fn positive_length_m(text: &str) -> Result<Option<f64>> {
     let text = text.trim();
     let at = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());

@@ -1,4 +1,4 @@
-//! Text from files and from outside as people may see it: nothing in it can act on a terminal, reorder a line, or hide.
+//! Text from files and other external sources, made safe for display: nothing in it can act on a terminal, reorder a line, or hide.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -8,13 +8,13 @@ use serde::Serialize;
 /// Lines of a file that are counted, of which messages name the first ones.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NamedLines {
-    /// Their number.
+    /// Number of lines.
     pub count: usize,
     /// The first ones.
     pub first_lines: Vec<usize>,
 }
 
-/// Most lines that are named.
+/// Largest number of lines that are named.
 const NAMED_LINES: usize = 5;
 
 impl NamedLines {
@@ -26,7 +26,7 @@ impl NamedLines {
         }
     }
 
-    /// The first ones in words.
+    /// First lines in words.
     #[must_use]
     pub fn words(&self) -> String {
         let lines: Vec<String> = self.first_lines.iter().map(usize::to_string).collect();
@@ -44,20 +44,20 @@ impl FromIterator<usize> for NamedLines {
     }
 }
 
-/// The text with every character that would act instead of being seen (control characters, line breaks among them, marks of writing
-/// direction, characters without width) written as its number.
+/// The text with every character that would act instead of being visible written as its number. These are control characters, line
+/// breaks among them, marks of writing direction, and characters without width.
 #[must_use]
 pub fn visible(text: &str) -> Cow<'_, str> {
     made_visible(text, acts)
 }
 
-/// The same of a text that has lines of its own, which stay.
+/// The same for a text that has lines of its own, which stay.
 #[must_use]
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     made_visible(text, |c| c != '\n' && acts(c))
 }
 
-/// The same of HTML or SVG, where breaks of lines and tabs are blanks: done to the whole, it cannot be forgotten of a part.
+/// The same for HTML or SVG, where breaks of lines and tabs are blanks. It is applied to the whole, so that no part can be forgotten.
 #[must_use]
 pub fn visible_markup(text: impl Into<String>) -> String {
     let text = text.into();
@@ -68,11 +68,11 @@ pub fn visible_markup(text: impl Into<String>) -> String {
     shown.unwrap_or(text)
 }
 
-/// Bytes of a text that are looked through together.
+/// Number of bytes of a text that are searched together.
 const PIECE: usize = 256;
 
 fn made_visible(text: &str, hides: impl Fn(char) -> bool) -> Cow<'_, str> {
-    // Most pieces are plain, which many bytes at a time show.
+    // Most pieces are plain, which a test of many bytes at a time proves.
     let hides_breaks = hides('\n');
     let is_plain = |byte: u8| (b' '..=b'~').contains(&byte) || byte == b'\n' && !hides_breaks;
     let has_hidden = |start: usize| {
@@ -95,7 +95,7 @@ fn made_visible(text: &str, hides: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// Whether a character does something instead of being seen.
+/// True if a character acts instead of being visible.
 pub fn acts(c: char) -> bool {
     // Most text is plain.
     if (' '..='~').contains(&c) {
@@ -109,7 +109,7 @@ pub fn acts(c: char) -> bool {
             | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{206f}'
             // Characters without width, and breaks of lines and paragraphs.
             | '\u{200b}'..='\u{200d}' | '\u{2028}' | '\u{2029}' | '\u{2060}'..='\u{2065}' | '\u{feff}'
-            // Annotations, what is no character, and tags.
+            // Annotations, non-characters, and tags.
             | '\u{fff0}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}' | '\u{e0000}'..='\u{e0fff}')
 }
 

@@ -1,41 +1,41 @@
-//! Work in parts, side by side where there are several threads.
+//! Work in parts, in parallel if there are several threads.
 
 use std::cmp::Ordering;
 
 use rayon::prelude::*;
 
-/// Threads that may be asked for: more than any machine has use for, and each has a stack of its own.
+/// Largest number of threads that may be requested: more than any machine can use, and each has a stack of its own.
 pub const MOST_THREADS: usize = 256;
-/// Threads that work is shared by.
+/// Number of threads that share the work.
 #[must_use]
 pub fn threads_now() -> usize {
     rayon::current_num_threads()
 }
 
-/// Items that one thread sorts or looks at as fast as several.
+/// Number of items that one thread sorts or reads as fast as several.
 const FEW: usize = 8192;
 
-/// Whether running in parallel pays for this many items.
+/// True if parallel work pays for this many items.
 fn are_worth_it(items: usize) -> bool {
     items > FEW && rayon::current_num_threads() > 1
 }
 
-/// Maps the numbers of `count` parts, results in their order whatever the number of threads. Runs serially with one part or one thread.
+/// Maps the numbers of `count` parts, results in their order for any number of threads. Runs serially with one part or one thread.
 pub fn map_parts<T: Send>(count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if count > 1 && rayon::current_num_threads() > 1 {
-        // Whoever is done first takes the next part, one at a time: rayon would give out a quarter of them together.
+        // A thread that is done takes the next part, one at a time: rayon would distribute a quarter of them together.
         (0..count).into_par_iter().with_max_len(1).map(part).collect()
     } else {
         (0..count).map(part).collect()
     }
 }
 
-/// [`map_parts`], where each part looks at so many items. Runs serially for up to `FEW` items.
+/// [`map_parts`] for parts that read `items` items together. Runs serially for up to `FEW` items.
 pub fn map_parts_of<T: Send>(items: usize, count: usize, part: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     if items > FEW { map_parts(count, part) } else { (0..count).map(part).collect() }
 }
 
-/// Results of two pieces of work, done in parallel where there are several threads.
+/// Results of two pieces of work, done in parallel if there are several threads.
 pub fn both<A: Send, B: Send>(first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B + Send) -> (A, B) {
     if rayon::current_num_threads() > 1 { rayon::join(first, second) } else { (first(), second()) }
 }
@@ -45,7 +45,7 @@ pub fn in_pool<T: Send>(items: usize, work: impl FnOnce() -> T + Send) -> T {
     if are_worth_it(items) { rayon::scope(|_| work()) } else { work() }
 }
 
-/// Sorts items of which no two are equal, or equal ones cannot be told apart.
+/// Sorts items of which no two are equal, or equal ones are indistinguishable.
 pub fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + Sync) {
     if are_worth_it(items.len()) {
         items.par_sort_unstable_by(compare);
@@ -54,7 +54,7 @@ pub fn sort_by<T: Send>(items: &mut [T], compare: impl Fn(&T, &T) -> Ordering + 
     }
 }
 
-/// Maps runs of so many items, results in their order; `part` gets the index of the run.
+/// Maps runs of `size` items, results in their order; `part` takes the index of the run.
 pub fn map_chunks<S: Sync, T: Send>(
     items: &[S],
     size: usize,
@@ -65,7 +65,7 @@ pub fn map_chunks<S: Sync, T: Send>(
     })
 }
 
-/// What each run of so many items comes to, one after the other.
+/// Concatenated results of each run of `size` items.
 pub fn concat_chunks<S: Sync, T: Send>(
     items: &[S],
     size: usize,
@@ -78,7 +78,7 @@ pub fn concat_chunks<S: Sync, T: Send>(
     all
 }
 
-/// Fills runs of so many items; `part` gets the index of the run.
+/// Fills runs of `size` items; `part` takes the index of the run.
 pub fn fill_chunks<T: Send>(items: &mut [T], size: usize, part: impl Fn(usize, &mut [T]) + Sync + Send) {
     if items.len() > size && rayon::current_num_threads() > 1 {
         items.par_chunks_mut(size).with_max_len(1).enumerate().for_each(|(index, some)| part(index, some));

@@ -1,6 +1,6 @@
 //! Units of unknowns and of measured numbers.
 
-/// SI unit of a number, with the one in which people read it.
+/// SI unit of a number, with the one used in messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Metres; shown in millimetres.
@@ -14,7 +14,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// A number in the unit in which people read it.
+    /// A number in the unit of messages.
     #[must_use]
     pub fn shown(self, si: f64) -> f64 {
         match self {
@@ -24,7 +24,7 @@ impl Unit {
         }
     }
 
-    /// The SI number of one in the unit in which people read it.
+    /// SI number of one in the unit of messages.
     #[must_use]
     pub fn from_shown(self, shown: f64) -> f64 {
         match self {
@@ -34,7 +34,7 @@ impl Unit {
         }
     }
 
-    /// Symbol of the unit in which people read it: `mm`, `deg`, `ms`, or nothing.
+    /// Symbol of the unit of messages: `mm`, `deg`, `ms`, or nothing.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -45,8 +45,8 @@ impl Unit {
         }
     }
 
-    /// Metres of a number, where a radian counts `length_m` metres, and so does a number without unit, which is by radians, and a second:
-    /// a joint turns by a radian in it.
+    /// Metres of a number, if a radian counts `length_m` metres. So does a number without unit, which is by radians, and a second: a
+    /// joint turns by a radian in it.
     #[must_use]
     pub fn metres(self, length_m: f64) -> f64 {
         match self {

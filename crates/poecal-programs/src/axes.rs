@@ -1,25 +1,26 @@
-//! The readings of a robot as languages count axes.
+//! The readings of a robot in the order in which languages count axes.
 
 use poecal_model::robot::{JointKind, Robot};
 
-/// Why a target stays as it is.
+/// Reason why a target stays unchanged.
 pub(crate) const NO_EXTERNAL: &str = "it states no value of an external axis that the model has";
 pub(crate) const OTHER_EXTERNAL: &str =
     "external axes are used that the model does not have: make it a joint target";
 
-/// The readings of the robot, as languages count axes.
+/// The readings of the robot, in the order in which languages count axes.
 #[derive(Clone, Debug, Default)]
 pub struct Axes {
     /// Names of the readings.
     pub names: Vec<String>,
-    /// Of each, whether it slides.
+    /// True for each reading of a prismatic joint.
     pub(crate) slides: Vec<bool>,
-    /// Slides of a robot with six turning joints beside: external axes, E1, E2 and so on, in the order of the chain. None of other robots.
+    /// Indices of prismatic joints of a robot with six revolute joints: external axes, E1, E2 and so on, in the order of the chain. Empty for other
+    /// robots.
     pub external: Vec<usize>,
 }
 
 impl Axes {
-    /// Those of a robot; factors are none.
+    /// The readings of a robot, without factors.
     pub fn from_robot(robot: &Robot) -> Self {
         let slides = |name: &String| {
             let joint = robot.joints.iter().find(|it| it.reading.name == *name);
@@ -37,8 +38,8 @@ impl Axes {
         self.names.len()
     }
 
-    /// The six readings of the arm, and those of external axes, in the order of the robot's readings; `None` if there are too few. Of a robot
-    /// without external axes those of the arm as they are.
+    /// The six readings of the arm, and those of external axes, in the order of the robot's readings; `None` if there are too few. A robot without
+    /// external axes has only the arm's readings.
     pub(crate) fn joined<T: Clone>(&self, arm: &[T], external: &[T]) -> Option<Vec<T>> {
         if self.external.is_empty() {
             return Some(arm.to_vec());
@@ -51,7 +52,7 @@ impl Axes {
         (0..self.count()).map(number).collect()
     }
 
-    /// What a number of a reading is multiplied with to be in rad or m, where it is written in these units for joints that turn and slide.
+    /// Factor that converts a written reading to rad or m, by its factors for revolute and prismatic joints.
     pub(crate) fn scale(&self, index: usize, turning: f64, sliding: f64) -> f64 {
         if self.slides.get(index) == Some(&true) { sliding } else { turning }
     }

@@ -6,13 +6,13 @@ use super::flow::Node;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::limits::Limit;
 
-/// A program in its blocks, while it is read and then.
+/// A program in its blocks, during and after reading.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks<S> {
-    /// Open blocks, and the nodes of what is around each.
+    /// Open blocks, each with the nodes of its parent.
     open: Vec<(Block<S>, Vec<Node<S>>)>,
     nodes: Vec<Node<S>>,
-    /// Its routines by their names.
+    /// Routines of the program by name.
     pub(crate) routines: BTreeMap<String, Vec<Node<S>>>,
     /// Names that are called.
     pub(crate) called: BTreeSet<String>,
@@ -24,7 +24,7 @@ pub(crate) struct Blocks<S> {
 enum Block<S> {
     Routine(String),
     Loop,
-    /// Arms that are complete, and whether there is one for all other cases.
+    /// Complete arms, and true if there is one for all other cases.
     Branch(Vec<Vec<Node<S>>>, bool),
 }
 
@@ -44,7 +44,7 @@ impl<S> Blocks<S> {
         self.open.len()
     }
 
-    /// Adds nodes where the text is.
+    /// Adds nodes at the present position.
     pub(crate) fn push(&mut self, nodes: impl IntoIterator<Item = Node<S>>) {
         for node in nodes {
             if let Node::Call(name) = &node
@@ -67,22 +67,22 @@ impl<S> Blocks<S> {
         Ok(())
     }
 
-    /// A routine begins.
+    /// Begins a routine.
     pub(crate) fn begin_routine(&mut self, name: &str, line: usize) -> Result<()> {
         self.begin(Block::Routine(name.to_owned()), line)
     }
 
-    /// A loop begins.
+    /// Begins a loop.
     pub(crate) fn begin_loop(&mut self, line: usize) -> Result<()> {
         self.begin(Block::Loop, line)
     }
 
-    /// A branch begins with its first arm.
+    /// Begins a branch with its first arm.
     pub(crate) fn begin_branch(&mut self, line: usize) -> Result<()> {
         self.begin(Block::Branch(Vec::new(), false), line)
     }
 
-    /// Another arm of the branch begins, maybe that for all other cases.
+    /// Begins another arm of the branch, possibly the one for all other cases.
     pub(crate) fn arm(&mut self, is_else: bool) {
         if let Some((Block::Branch(arms, has_else), _)) = self.open.last_mut() {
             arms.push(std::mem::take(&mut self.nodes));
@@ -90,7 +90,7 @@ impl<S> Blocks<S> {
         }
     }
 
-    /// A block ends.
+    /// Ends a block.
     pub(crate) fn end(&mut self) {
         let Some((block, around)) = self.open.pop() else { return };
         let inside = std::mem::replace(&mut self.nodes, around);
@@ -109,7 +109,7 @@ impl<S> Blocks<S> {
         }
     }
 
-    /// The end of the text: closes what is open, and gives what stands outside of routines.
+    /// Ends the text: closes open blocks, and returns the nodes outside of routines.
     pub(crate) fn finish(&mut self) -> Vec<Node<S>> {
         while !self.open.is_empty() {
             self.end();

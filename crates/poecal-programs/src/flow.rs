@@ -1,4 +1,4 @@
-//! The order of statements: calls, branches and loops of a program, followed as it would run.
+//! The order of statements: calls, branches and loops of a program, followed in the order of execution.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,13 +15,13 @@ pub(crate) enum Node<S> {
     Loop(Vec<Node<S>>),
     /// A call of a routine by its name.
     Call(String),
-    /// The rest of the loop or routine may be left out here.
+    /// The rest of the loop or routine may be skipped here.
     Leave,
-    /// Something may lead here from elsewhere.
+    /// A jump may lead here from elsewhere.
     Label,
 }
 
-/// What is known at a place of the program.
+/// State at a point of the program, as far as it is known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct State {
     /// The last motion, if it is always this one.
@@ -33,7 +33,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// What is known after one of two ways.
+    /// The state after one of two paths.
     fn joined(self, other: State) -> State {
         let same = |one: Setting, other: Setting| if one == other { one } else { Setting::Unknown };
         State {
@@ -43,28 +43,28 @@ impl State {
         }
     }
 
-    /// What is known after a routine of which nothing is known.
+    /// The state after an unknown routine.
     pub(crate) fn lost(self) -> State {
         let any = |it: Setting| if it == Setting::Unset { it } else { Setting::Unknown };
         State { last: None, tool: any(self.tool), frame: any(self.frame) }
     }
 }
 
-/// Calls within calls that are followed.
+/// Largest depth of calls that are followed.
 const DEEPEST: usize = 24;
-/// Loops within loops that are followed twice.
+/// Largest depth of loops that are followed twice.
 const MOST_LOOPS: usize = 5;
 
-/// Follows a program. `step` is called with each statement where it runs, and changes the state.
+/// Follows a program. `step` is called with each statement in the order of execution, and changes the state.
 pub(crate) struct Walk<'w, S> {
     routines: &'w BTreeMap<String, Vec<Node<S>>>,
-    /// Whether routines that are not in the file may move the robot and set tools.
+    /// True if routines outside the file may move the robot and set tools.
     others_act: bool,
     step: &'w mut dyn FnMut(&S, &mut State),
     called: BTreeSet<String>,
     depth: usize,
     loops: usize,
-    /// Statements that may still be visited.
+    /// Number of statements that may still be visited.
     left: usize,
     /// Number of changes of tool or frame so far.
     changes: usize,
@@ -72,14 +72,14 @@ pub(crate) struct Walk<'w, S> {
 }
 
 impl<'w, S> Walk<'w, S> {
-    /// Of a program with these routines, of `size` statements.
+    /// A walk over a program with these routines, of `size` statements.
     pub(crate) fn new(
         routines: &'w BTreeMap<String, Vec<Node<S>>>,
         size: usize,
         others_act: bool,
         step: &'w mut dyn FnMut(&S, &mut State),
     ) -> Self {
-        // Every statement a few times: twice in a loop, and once in each call.
+        // Every statement is visited a few times: twice in a loop, and once in each call.
         let left = 8 * size + 10_000;
         Walk {
             routines,
@@ -94,7 +94,7 @@ impl<'w, S> Walk<'w, S> {
         }
     }
 
-    /// Follows `main`, then the routines that nothing in the file calls or that others may call, then what is left.
+    /// Follows `main`, then the routines that nothing in the file calls or that others may call, then the rest.
     pub(crate) fn run(&mut self, main: &[Node<S>], called: &BTreeSet<String>, open: &dyn Fn(&str) -> bool) {
         self.part(main, State::default());
         for (name, body) in self.routines {
@@ -140,7 +140,7 @@ impl<'w, S> Walk<'w, S> {
         }
     }
 
-    /// What is known where a part may have been left early.
+    /// The state after a part that may have been left early.
     fn unsure(&self, changes: usize, state: State) -> State {
         if self.changes > changes { state.lost() } else { State { last: None, ..state } }
     }
@@ -153,7 +153,7 @@ impl<'w, S> Walk<'w, S> {
         let (changes, leaves) = (self.changes, self.leaves);
         self.loops += 1;
         let once = self.part(body, state);
-        // The second time it begins where the first has ended; a third is as the second.
+        // The second pass begins with the state at the end of the first; a third would equal the second.
         let start = if self.leaves > leaves { self.unsure(changes, once) } else { once };
         let again = if start == state { once } else { self.part(body, start) };
         self.loops -= 1;

@@ -1,4 +1,4 @@
-//! Poses as the languages write them.
+//! Forms of poses in the languages.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,9 +14,9 @@ pub enum PoseForm {
     RotationVector,
     /// x, y, z in millimetres, quaternion with its real part first (RAPID).
     Quaternion,
-    /// X, Y, Z in millimetres, angles A about z, B about the new y, C about the newest x in degrees (KRL).
+    /// X, Y, Z in millimetres, intrinsic zyx angles A, B, C in degrees (KRL).
     Abc,
-    /// X, Y, Z in millimetres, angles W, P, R about the fixed x, y, z in degrees (FANUC).
+    /// X, Y, Z in millimetres, extrinsic xyz angles W, P, R in degrees (FANUC).
     Wpr,
 }
 
@@ -43,7 +43,7 @@ impl PoseForm {
         }
     }
 
-    /// Digits behind the point that a number gets at least.
+    /// Smallest number of decimals of a number.
     pub fn decimals(self, index: usize) -> usize {
         match (self, index) {
             (PoseForm::RotationVector, _) | (PoseForm::Quaternion, 3..) => 9,
@@ -52,12 +52,12 @@ impl PoseForm {
         }
     }
 
-    /// The pose that the first of these numbers mean, the others being words of a configuration; `None` as of `PoseForm::pose`.
+    /// The pose of the first of these numbers, the others being words of a configuration; `None` as for `PoseForm::pose`.
     pub fn of_first(self, numbers: &[f64]) -> Option<Pose> {
         self.pose(numbers.get(..self.names().len())?)
     }
 
-    /// The pose that these numbers mean; `None` if they are too few, or a quaternion is none.
+    /// The pose of these numbers; `None` if there are too few, or a quaternion is invalid.
     pub(crate) fn pose(self, numbers: &[f64]) -> Option<Pose> {
         let &[x, y, z, a, b, c, ..] = numbers else { return None };
         let angles = [a, b, c].map(f64::to_radians);
@@ -75,7 +75,7 @@ impl PoseForm {
         }
     }
 
-    /// The numbers of a pose, nearest to those that stood there.
+    /// The numbers of a pose, nearest to the earlier numbers.
     pub fn numbers(self, pose: &Pose, near: &[f64]) -> Vec<f64> {
         let at = pose.translation;
         let mm = at / MM;
@@ -106,13 +106,13 @@ impl PoseForm {
     }
 }
 
-/// The rotation vector of the same turn that is nearest to the numbers behind the position.
+/// The rotation vector of the same rotation that is nearest to the numbers behind the position.
 fn nearest_vector(vector: Vector3<f64>, near: &[f64]) -> Vector3<f64> {
     let &[_, _, _, x, y, z] = near else { return vector };
     let before = Vector3::new(x, y, z);
     let angle = vector.norm();
     if angle < 1e-9 {
-        // A whole turn about any axis is none.
+        // A whole turn about any axis is no rotation.
         let turns = (before.norm() / TAU).round();
         return if turns == 0.0 { vector } else { before.normalize() * turns * TAU + vector };
     }

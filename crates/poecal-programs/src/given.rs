@@ -5,7 +5,7 @@ use super::forms::PoseForm;
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Tools and frames that the user states, as the controller has them.
+/// Tools and frames of the controller, stated by the user.
 #[derive(Clone, Debug)]
 pub struct Given {
     /// Tools by number or name, `flange_from_tcp`; without one, the tool of programs that set none.
@@ -16,7 +16,7 @@ pub struct Given {
     pub base: Pose,
     /// `tip_from_flange`: the controller's flange in the tip of the model.
     pub flange: Pose,
-    /// Readings (rad, m) where the robot is before the program's first motion.
+    /// Readings (rad, m) of the robot before the program's first motion.
     pub start: Option<Vec<f64>>,
 }
 
@@ -28,19 +28,19 @@ impl Default for Given {
 }
 
 impl Given {
-    /// The same in base and tip of a taught robot, which takes the nominal one's place: its base in that of the model, and its tool.
+    /// The tools and frames for a taught robot in place of the nominal one, with its base in that of the model, and its tool.
     #[must_use]
     pub fn taught(self, base: &Pose, tool: &Pose) -> Self {
         Given { base: *base * self.base, flange: tool.inverse() * self.flange, ..self }
     }
 
-    /// A tool by its number or name (letters of either case), or the one without.
+    /// A tool by its number or name (case does not matter), or the one without.
     #[must_use]
     pub fn tool(&self, name: Option<&str>) -> Option<Pose> {
         named(&self.tools, name)
     }
 
-    /// A frame by its number or name (letters of either case), or the one without.
+    /// A frame by its number or name (case does not matter), or the one without.
     #[must_use]
     pub fn frame(&self, name: Option<&str>) -> Option<Pose> {
         named(&self.frames, name)
@@ -53,7 +53,7 @@ fn named(poses: &[(Option<String>, Pose)], name: Option<&str>) -> Option<Pose> {
 }
 
 impl Given {
-    /// Adds a tool as words say it: `[NAME=]NUMBERS`, the numbers as the language writes poses.
+    /// Adds a tool in words: `[NAME=]NUMBERS`, the numbers in the language's form of poses.
     ///
     /// # Errors
     /// [`ErrorKind::Option`].
@@ -62,7 +62,7 @@ impl Given {
         add(&mut self.tools, found, words, "--tool-data")
     }
 
-    /// Adds a frame as words say it: `[NAME=]NUMBERS`, the numbers as the language writes poses.
+    /// Adds a frame in words: `[NAME=]NUMBERS`, the numbers in the language's form of poses.
     ///
     /// # Errors
     /// [`ErrorKind::Option`].
@@ -71,7 +71,7 @@ impl Given {
         add(&mut self.frames, found, words, "--work-object")
     }
 
-    /// Sets the controller's base in the model's, by numbers as the language writes poses.
+    /// Sets the controller's base in the model's, by numbers in the language's form of poses.
     ///
     /// # Errors
     /// [`ErrorKind::Option`].
@@ -80,7 +80,7 @@ impl Given {
         Ok(())
     }
 
-    /// Sets the controller's flange in the model's tip, by numbers as the language writes poses.
+    /// Sets the controller's flange in the model's tip, by numbers in the language's form of poses.
     ///
     /// # Errors
     /// [`ErrorKind::Option`].
@@ -93,7 +93,7 @@ impl Given {
 type Named = (Option<String>, Pose);
 
 impl Given {
-    /// Sets where the robot is before the first motion, by numbers as the language writes joints.
+    /// Sets the configuration before the first motion, by numbers in the language's form of joints.
     ///
     /// # Errors
     /// [`ErrorKind::Option`].

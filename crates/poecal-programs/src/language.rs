@@ -20,7 +20,7 @@ pub enum Language {
     Fanuc,
 }
 
-/// Ends of the names of other languages' programs, and whose they are.
+/// Endings of the names of other languages' programs, and their makers.
 const OTHERS: [(&[&str], &str); 7] = [
     (&["jbi"], "Yaskawa (JBI)"),
     (&["as", "pg"], "Kawasaki (AS)"),
@@ -32,7 +32,7 @@ const OTHERS: [(&[&str], &str); 7] = [
 ];
 
 impl Language {
-    /// The language of a file by the end of its name, in letters of either case.
+    /// The language of a file by the ending of its name; case does not matter.
     #[must_use]
     pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
         let end = path.as_ref().extension()?.to_str()?.to_ascii_lowercase();
@@ -45,10 +45,10 @@ impl Language {
         }
     }
 
-    /// The same; `None` of a table.
+    /// The language of a file; `None` for a table.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] of the end of a language that is not read.
+    /// [`ErrorKind::Option`] for the ending of a language that is not read.
     pub fn of_name(path: impl AsRef<Path>) -> Result<Option<Self>> {
         let path = path.as_ref();
         let end = path.extension().and_then(|it| it.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -63,7 +63,7 @@ impl Language {
         }
     }
 
-    /// The name as people write it.
+    /// The name of the language for people.
     #[must_use]
     pub fn title(self) -> &'static str {
         match self {

@@ -1,12 +1,12 @@
 //! Robot programs in the languages of their controllers: targets and the motions to them.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! This crate is a part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package. Its interface follows their needs
+//! and promises nothing by itself.
 //!
-//! A folder is a language. `scan.rs` has the tokens of all languages, `flow.rs` follows calls, branches and loops, [`parsed`] is the common result,
-//! for files of joint readings (`poecal-import`) and for corrections (`poecal-compensate`).
+//! Each language has a folder. `scan.rs` has the tokens of all languages, `flow.rs` follows calls, branches and loops, [`parsed`] is the common
+//! result, for files of joint readings (`poecal-import`) and for corrections (`poecal-compensate`).
 //!
-//! Not here: files, corrections, and kinematics beyond a language's words for configurations.
+//! Other crates have files, corrections, and kinematics beyond a language's words for configurations.
 
 #![forbid(unsafe_code)]
 
@@ -41,7 +41,7 @@ pub use listed::Listed;
 /// The targets of a program and its motions.
 ///
 /// # Errors
-/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks in more others than
+/// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if it is none, or has brackets or blocks nested more deeply than
 /// [`Limit::Nesting`]; [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if it is larger than [`Limit::Program`].
 pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Result<Parsed> {
     Limit::Program.refuse(text.len() as u64, format_args!("a program of {} bytes", text.len()))?;
@@ -54,7 +54,7 @@ pub fn parse(language: Language, text: &[u8], given: &Given, axes: &Axes) -> Res
     }
 }
 
-/// How a language is written.
+/// Syntax of a language.
 fn rules(language: Language) -> &'static scan::Rules {
     match language {
         Language::UrScript => &urscript::RULES,
@@ -64,21 +64,21 @@ fn rules(language: Language) -> &'static scan::Rules {
     }
 }
 
-/// Joint readings of a program, in the order of its motions, or of its text where it has none.
+/// Joint readings of a program, in the order of its motions, or of its text if it has none.
 #[derive(Clone, Debug, Default)]
 pub struct JointTargets {
     /// Line, name and readings (rad, m) of each.
     pub targets: Vec<(usize, String, Vec<f64>)>,
     /// Lines of targets that are poses.
     pub poses: Vec<usize>,
-    /// What is not known.
+    /// Targets that are not known, with reasons.
     pub listed: Vec<Listed>,
 }
 
 /// The joint targets of a program of a robot.
 ///
 /// # Errors
-/// As [`parse`].
+/// Those of [`parse`].
 pub fn joint_targets(language: Language, text: &[u8], robot: &Robot) -> Result<JointTargets> {
     let parsed = parse(language, text, &Given::default(), &Axes::from_robot(robot))?;
     let is_joints = |at: &usize| parsed.targets.get(*at).is_some_and(|it| it.meant == Meant::Joints);

@@ -1,14 +1,14 @@
-//! Places of programs that are left as they are.
+//! Parts of programs that stay unchanged.
 
 use serde::Serialize;
 
-/// A place of a program that stays as it is, and why.
+/// A part of a program that stays unchanged, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Listed {
     /// Line of the program, from 1.
     pub line: usize,
     /// The target's name or text.
     pub name: String,
-    /// Why it stays as it is.
+    /// Reason why it stays unchanged.
     pub reason: String,
 }

@@ -1,17 +1,17 @@
-//! Numbers of a program, and where they stand.
+//! Numbers of a program, and their positions in the text.
 
 use std::ops::Range;
 
-/// A number as it is written.
+/// A number in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
     /// Its bytes, sign included.
     pub range: Range<usize>,
     /// Its value.
     pub value: f64,
-    /// Digits behind the point.
+    /// Number of decimals.
     pub decimals: usize,
-    /// What it is multiplied with to be in the unit of its target.
+    /// Factor that converts it to the unit of its target.
     pub scale: f64,
 }
 

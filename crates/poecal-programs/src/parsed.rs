@@ -1,4 +1,4 @@
-//! What the languages make of a program: its targets, its motions, and what cannot be corrected.
+//! Common result of the languages: targets of a program, its motions, and parts that cannot be corrected.
 
 use std::collections::BTreeMap;
 
@@ -8,33 +8,33 @@ pub use super::number::Number;
 use super::stated::Stated;
 use poecal_arm::lie::Pose;
 
-/// A program as its language understands it.
+/// A program as interpreted by its language.
 #[derive(Clone, Debug, Default)]
 pub struct Parsed {
     /// Targets that are stated by numbers, in the order of the text.
     pub targets: Vec<Target>,
     /// Motions to these targets, in the order of motion as far as it is known; each comes after [`Motion::after`].
     pub motions: Vec<Motion>,
-    /// What cannot be corrected, as the language alone says.
+    /// Parts that cannot be corrected for reasons of the language.
     pub listed: Vec<Listed>,
-    /// Targets by the byte where their numbers begin.
+    /// Targets by the first byte of their numbers.
     known: BTreeMap<usize, usize>,
 }
 
 impl Parsed {
-    /// Lists a target that stays as it is.
+    /// Lists a target that stays unchanged.
     pub(crate) fn list(&mut self, line: usize, name: impl Into<String>, reason: impl Into<String>) {
         self.listed.push(Listed { line, name: name.into(), reason: reason.into() });
     }
 
-    /// The same with what is listed in the order of the text, each once.
+    /// Sorts the list in the order of the text, without repetitions.
     pub(crate) fn sorted(mut self) -> Self {
         self.listed.sort();
         self.listed.dedup();
         self
     }
 
-    /// The index of a target, made if its numbers are new.
+    /// The index of a target, which is added if its numbers are new.
     pub(crate) fn target(&mut self, target: Target) -> usize {
         let new = self.targets.len();
         let index = *self.known.entry(target.start()).or_insert(new);
@@ -44,42 +44,42 @@ impl Parsed {
         index
     }
 
-    /// Whether a target with these numbers is there.
+    /// True if there is a target with these numbers.
     pub(crate) fn knows(&self, numbers: &[Number]) -> bool {
         numbers.first().is_some_and(|it| self.known.contains_key(&it.range.start))
     }
 }
 
-/// A target that is stated by numbers. It is corrected if all motions to it mean the same.
+/// A target that is stated by numbers. It is corrected if all motions to it have the same meaning.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// Line of the program where the numbers stand, from 1.
+    /// Line of the program with the numbers, from 1.
     pub line: usize,
     /// Its name, or its text.
     pub name: String,
-    /// Its numbers: of each reading; or as its form has a pose, then the words of its configuration, if there are some
+    /// Its numbers: one for each reading; or those of a pose in its form, then the words of its configuration, if there are any
     /// ([`Stated::words`]).
     pub numbers: Vec<Number>,
-    /// What it means.
+    /// Meaning of its numbers.
     pub meant: Meant,
 }
 
 impl Target {
-    /// The byte where its numbers begin.
+    /// The first byte of its numbers.
     fn start(&self) -> usize {
         self.numbers.first().map_or(0, |it| it.range.start)
     }
 
-    /// Its numbers in the unit of what it means.
+    /// Its numbers in the unit of their meaning.
     pub fn scaled(&self) -> Vec<f64> {
         self.numbers.iter().map(Number::scaled).collect()
     }
 }
 
-/// What the numbers of a target mean.
+/// Meaning of the numbers of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meant {
-    /// Readings in the order of the robot's; a number times its [`Number::scale`] is in rad, or m of a joint that slides.
+    /// Readings in the robot's order; a number times its [`Number::scale`] is in rad, or in m for a prismatic joint.
     Joints,
     /// A pose of the tool in its frame; a number times its [`Number::scale`] is in the unit of the form.
     Pose(PoseForm),
@@ -94,20 +94,20 @@ pub struct Motion {
     pub line: usize,
     /// Index of the motion before it, if the program has one that is always the one before.
     pub after: Option<usize>,
-    /// Whether the way to it is straight in space, or an arc.
+    /// True if the path to it is straight in space, or an arc.
     pub is_straight: bool,
-    /// `flange_from_tcp`, the tool in the controller's flange; `None` if it is not known. Of poses only.
+    /// `flange_from_tcp`, the tool in the controller's flange; `None` if it is not known, and for joints.
     pub tool: Option<Pose>,
-    /// `base_from_frame`, the frame of the pose in the controller's base; `None` if it is not known. Of poses only.
+    /// `base_from_frame`, the frame of the pose in the controller's base; `None` if it is not known, and for joints.
     pub frame: Option<Pose>,
-    /// What the program says of the configuration.
+    /// Configuration that the program states.
     pub stated: Stated,
-    /// Why the target cannot be corrected, if the language says so already.
+    /// Reason why the target cannot be corrected, if the language already determines it.
     pub refused: Option<String>,
 }
 
 impl Motion {
-    /// A motion to a target of which nothing else is known.
+    /// A motion to a target without further information.
     pub(crate) fn to(target: usize, line: usize) -> Self {
         let (tool, frame, stated, refused) = (None, None, Stated::Nothing, None);
         Motion { target, line, after: None, is_straight: false, tool, frame, stated, refused }
@@ -115,7 +115,7 @@ impl Motion {
 }
 
 impl PoseForm {
-    /// The pose of numbers of a program; `None` as of [`PoseForm::pose`].
+    /// The pose of numbers of a program; `None` as for [`PoseForm::pose`].
     pub(crate) fn of_numbers(self, numbers: &[Number]) -> Option<Pose> {
         self.pose(&numbers.iter().map(Number::scaled).collect::<Vec<f64>>())
     }
@@ -124,17 +124,17 @@ impl PoseForm {
 /// A tool or a frame while a program runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Setting {
-    /// The program has not set it: it is what the user says.
+    /// The program has not set it: the user's value applies.
     #[default]
     Unset,
     /// The program has set it to this pose.
     Is(Pose),
-    /// The program has set it to something that is not known.
+    /// The program has set it to an unknown value.
     Unknown,
 }
 
 impl Setting {
-    /// The pose, or what the user says of programs that set none.
+    /// The pose, or the user's pose for programs that set none.
     pub(crate) fn or(&self, given: Option<Pose>) -> Option<Pose> {
         match self {
             Setting::Unset => given,

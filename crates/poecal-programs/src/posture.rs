@@ -1,4 +1,4 @@
-//! How an arm of six axes is bent, in the words by which makers tell its configurations apart.
+//! Posture of an arm of six axes, by the makers' terms for its configurations.
 
 use nalgebra::Vector3;
 use poecal_arm::Arm;
@@ -7,39 +7,39 @@ use super::shape::{axes, wrist_centre};
 
 /// Angle (rad) within which a joint may be on either side of a border.
 pub(crate) const MARGIN: f64 = 0.01;
-/// Share of the reach below which a place is on neither side of an axis.
+/// Share of the reach below which a point is on neither side of an axis.
 const ASIDE: f64 = 0.005;
-/// Share of the reach within which axes of a wrist meet.
+/// Share of the reach within which the axes of a wrist intersect.
 const MEET: f64 = 1e-3;
 
 /// An axis: a point on it, and its direction.
 type Axis = (Vector3<f64>, Vector3<f64>);
 
-/// An arm whose readings are 0 where makers have them so: lower arm upright, forearm level and to the front, wrist straight. Only of such an
-/// arm it is plain what front, elbow and wrist are.
+/// An arm in the makers' zero configuration at readings 0: lower arm upright, forearm horizontal and to the front, wrist straight. Front, elbow and
+/// wrist are only defined for such an arm.
 ///
-/// Its sides are told by places of axes, not by signs of readings: the wrist's centre W before or behind the first axis,
-/// `(W - o₁)·f` with the front f turned by the first joint; the same before or behind the line of the lower arm from o₂ to o₃,
-/// `((o₃ - o₂) × (W - o₂))·z₂`. Of the fifth joint, the sign of its angle.
+/// The positions of axes determine its sides, not the signs of readings. The wrist centre W is before or behind the first axis by `(W - o₁)·f`,
+/// with the front f rotated by the first joint. It is before or behind the line of the lower arm from o₂ to o₃ by `((o₃ - o₂) × (W - o₂))·z₂`. The
+/// fifth joint counts by the sign of its angle.
 #[derive(Clone, Debug)]
 pub(crate) struct Posture<'a> {
     arm: &'a Arm,
-    /// Front at zero, level, of length 1.
+    /// Front at zero, horizontal, of length 1.
     front: Vector3<f64>,
     /// Sign of the lower arm's side on which the wrist is at zero.
     side: f64,
     /// Direction of the lower arm at zero.
     up: Vector3<f64>,
-    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    /// True if negative angles of the fifth joint bend the hand down with the other joints at zero.
     is_down_negative: bool,
 }
 
-/// How an arm is bent; `None` of what is too near to its border.
+/// Posture of an arm; `None` for a criterion too near to its border.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Bent {
-    /// The wrist's centre is before the first axis.
+    /// The wrist centre is before the first axis.
     pub(crate) is_front: Option<bool>,
-    /// The wrist's centre is before the lower arm, on the side where it is at zero.
+    /// The wrist centre is before the lower arm, on the same side as at zero.
     pub(crate) is_before_arm: Option<bool>,
     /// The lower arm points up.
     pub(crate) is_arm_up: Option<bool>,
@@ -48,7 +48,7 @@ pub(crate) struct Bent {
 }
 
 impl<'a> Posture<'a> {
-    /// Of an arm; `None` if it is not built and zeroed so.
+    /// The posture of an arm; `None` if its structure or zero differs.
     pub(crate) fn new(arm: &'a Arm) -> Option<Self> {
         let (axes, wrist) = placed(arm, &[0.0; 6])?;
         let reach = arm.reach_m();
@@ -74,23 +74,23 @@ impl<'a> Posture<'a> {
             return None;
         }
         let front = across(front).normalize();
-        // Turning by the fifth joint moves the hand, which points to the front, by z₅ × f.
+        // Rotation by the fifth joint moves the hand, which points to the front, by z₅ × f.
         let down = -axes[4].1.cross(&front).dot(&up);
         let side = lower.cross(&(wrist - axes[1].0)).dot(&axes[1].1).signum();
         Some(Posture { arm, front, side, up, is_down_negative: down < 0.0 })
     }
 
-    /// Whether negative angles of the fifth joint bend the hand down where the other joints are at zero.
+    /// True if negative angles of the fifth joint bend the hand down with the other joints at zero.
     pub(crate) fn is_down_negative(&self) -> bool {
         self.is_down_negative
     }
 
-    /// How it is bent at readings (rad).
+    /// The posture at readings (rad).
     pub(crate) fn at(&self, q: &[f64; 6]) -> Bent {
         let Some((axes, wrist)) = placed(self.arm, q) else { return Bent::default() };
         let reach = self.arm.reach_m();
         let first = axes[0].1;
-        // The front turns with the second axis, which at zero is across it.
+        // The front rotates with the second axis, which is perpendicular to it at zero.
         let front = self.turned(&axes, self.front);
         let ahead = front.dot(&(wrist - axes[0].0));
         let across = |it: Vector3<f64>| it - axes[1].1 * axes[1].1.dot(&it);
@@ -106,7 +106,7 @@ impl<'a> Posture<'a> {
         }
     }
 
-    /// A level direction that is fixed to the link between the first two joints, at zero, where that link is now.
+    /// Present direction of a horizontal direction at zero that is fixed to the link between the first two joints.
     fn turned(&self, axes: &[Axis; 6], direction: Vector3<f64>) -> Vector3<f64> {
         let Some(second) = self.arm.screws().get(1).map(poecal_arm::lie::Screw::direction) else {
             return direction;
@@ -118,7 +118,7 @@ impl<'a> Posture<'a> {
     }
 }
 
-/// The axes of six joints at readings, directions of length 1, and the centre of the wrist.
+/// The axes of six joints at readings, directions of length 1, and the wrist centre.
 fn placed(arm: &Arm, q: &[f64; 6]) -> Option<([Axis; 6], Vector3<f64>)> {
     if arm.joints() != 6 {
         return None;
@@ -147,7 +147,7 @@ mod tests {
         Arm::new(&screws, &Pose::from_translation(Vector3::from(tip))).unwrap()
     }
 
-    /// The sides change where the arm passes the border, and nowhere else.
+    /// The sides change when the arm passes the border, and nowhere else.
     #[test]
     fn sides_are_those_of_the_drawing() {
         let arm = arm(
@@ -168,13 +168,13 @@ mod tests {
         assert_eq!(level.is_before_arm, Some(true));
         assert_eq!(level.is_arm_up, Some(true));
         assert_eq!(level.is_wrist_positive, Some(true));
-        // Its third axis turns the forearm up: over the top of the lower arm to the other side.
+        // Its third axis rotates the forearm up: over the top of the lower arm to the other side.
         let over = at([70.0, 0.0, 120.0, 0.0, -30.0, 0.0]);
         assert_eq!(
             (over.is_front, over.is_before_arm, over.is_wrist_positive),
             (Some(false), Some(false), Some(false))
         );
-        // Leaning back, the elbow is bent as before.
+        // With the arm leaning back, the elbow is bent as before.
         let back = at([-50.0, -80.0, 40.0, 10.0, 30.0, 0.0]);
         assert_eq!(
             (back.is_front, back.is_before_arm, back.is_arm_up),

@@ -1,4 +1,4 @@
-//! Words, numbers and signs of a program, by the bytes that they have.
+//! Words, numbers and signs of a program, with their bytes.
 
 use std::ops::Range;
 
@@ -6,25 +6,25 @@ use super::number::Number;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::limits::Limit;
 
-/// How a language is written.
+/// Syntax of a language.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rules {
-    /// What begins a comment, which ends with the line.
+    /// Beginnings of a comment, which ends with the line.
     pub(crate) comments: &'static [&'static str],
     /// Signs around texts, which end with the line at the latest.
     pub(crate) quotes: &'static [u8],
-    /// Signs that words have beside letters, digits and `_`; they may begin with them.
+    /// Signs that words may contain beside letters, digits and `_`; they may also begin with them.
     pub(crate) letters: &'static [u8],
-    /// Whether a sign between brackets takes the line end away.
+    /// True if an open bracket continues the statement in the next line.
     pub(crate) is_open_in_brackets: bool,
 }
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     /// A name or a keyword.
     Word,
-    /// A number without its sign: value and digits behind the point.
+    /// A number without its sign: value and number of decimals.
     Number(f64, usize),
     /// A text in quotes.
     Text,
@@ -37,7 +37,7 @@ pub(crate) enum Kind {
 /// A piece of a program.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Token {
-    /// What it is.
+    /// Kind of the token.
     pub(crate) kind: Kind,
     /// Its bytes.
     pub(crate) range: Range<usize>,
@@ -46,17 +46,17 @@ pub(crate) struct Token {
 }
 
 impl Token {
-    /// Whether it is this sign.
+    /// True if it is this sign.
     pub(crate) fn is(&self, sign: u8) -> bool {
         self.kind == Kind::Sign(sign)
     }
 
-    /// Whether it is a bracket that opens.
+    /// True if it is an opening bracket.
     fn opens(&self) -> bool {
         matches!(self.kind, Kind::Sign(b'(' | b'[' | b'{'))
     }
 
-    /// Whether it is a bracket that closes.
+    /// True if it is a closing bracket.
     fn closes(&self) -> bool {
         matches!(self.kind, Kind::Sign(b')' | b']' | b'}'))
     }
@@ -66,7 +66,7 @@ impl Token {
         text.get(self.range.clone()).and_then(|it| std::str::from_utf8(it).ok()).unwrap_or("")
     }
 
-    /// Whether it is this word; letters of either case.
+    /// True if it is this word; case does not matter.
     pub(crate) fn is_word(&self, text: &[u8], word: &str) -> bool {
         self.kind == Kind::Word && self.text(text).eq_ignore_ascii_case(word)
     }
@@ -163,7 +163,7 @@ impl Iterator for Scanner<'_> {
     }
 }
 
-/// Refuses brackets of a kind in more others than there may be: each is looked into, and what it holds once more.
+/// Refuses brackets nested beyond the limit: each level is read, and its contents once more.
 ///
 /// # Errors
 /// [`ErrorKind::Syntax`], with the line.
@@ -187,7 +187,7 @@ pub(crate) fn refuse_nested(text: &[u8], rules: &Rules) -> Result<()> {
     Ok(())
 }
 
-/// The number at the beginning of a text: its length, value and digits behind the point.
+/// The number at the beginning of a text: its length, value and number of decimals.
 fn number(text: &[u8]) -> Option<(usize, f64, usize)> {
     let digits = |from: usize| {
         text.get(from..).unwrap_or_default().iter().take_while(|it| it.is_ascii_digit()).count()
@@ -225,7 +225,7 @@ pub(crate) fn signed(tokens: &[Token]) -> Option<Number> {
     Some(Number { range: start..range.end, value: sign * value, decimals: *decimals, scale: 1.0 })
 }
 
-/// The tokens that are in no bracket, each with its place among all; brackets are none of them.
+/// The tokens outside of brackets, each with its index among all; brackets are not among them.
 pub(crate) fn outside(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)> {
     let mut depth = 0_usize;
     tokens.iter().enumerate().filter(move |(_, token)| {
@@ -235,7 +235,7 @@ pub(crate) fn outside(tokens: &[Token]) -> impl Iterator<Item = (usize, &Token)>
     })
 }
 
-/// Tokens cut at the separators that are in no bracket.
+/// Tokens cut at the separators outside of brackets.
 fn pieces(tokens: &[Token], separator: u8) -> Vec<&[Token]> {
     let (mut out, mut start) = (Vec::new(), 0);
     for (at, _) in outside(tokens).filter(|(_, it)| it.is(separator)) {
@@ -246,7 +246,7 @@ fn pieces(tokens: &[Token], separator: u8) -> Vec<&[Token]> {
     out
 }
 
-/// Tokens between brackets, cut at the commas that are in no further bracket.
+/// Tokens between brackets, cut at the commas outside of further brackets.
 pub(crate) fn parts(tokens: &[Token]) -> Vec<&[Token]> {
     if tokens.is_empty() { Vec::new() } else { pieces(tokens, b',') }
 }
@@ -258,12 +258,12 @@ pub(crate) fn cut(tokens: &[Token], separator: u8) -> Option<Vec<&[Token]>> {
     (tokens.iter().try_fold(0, deeper) == Some(0)).then(|| pieces(tokens, separator))
 }
 
-/// Whether a word is one of a list, which has blanks between its words.
+/// True if a word is one of a list, whose words are separated by blanks.
 pub(crate) fn is_one_of(words: &str, word: &str) -> bool {
     words.split(' ').any(|it| it == word)
 }
 
-/// What stands in a bracket at the beginning of tokens, and what follows it.
+/// The tokens in a bracket at the beginning, and those behind it.
 pub(crate) fn bracket(tokens: &[Token], open: u8, close: u8) -> Option<(&[Token], &[Token])> {
     if !tokens.first()?.is(open) {
         return None;
@@ -282,7 +282,7 @@ pub(crate) fn bracket(tokens: &[Token], open: u8, close: u8) -> Option<(&[Token]
     None
 }
 
-/// The text of tokens as it stands, at most some letters of it.
+/// The text of tokens, cut after some letters.
 pub(crate) fn shown(text: &[u8], tokens: &[Token]) -> String {
     let (Some(first), Some(last)) = (tokens.first(), tokens.last()) else { return String::new() };
     let bytes = text.get(first.range.start..last.range.end).unwrap_or_default();
@@ -296,5 +296,5 @@ pub(crate) fn shown(text: &[u8], tokens: &[Token]) -> String {
     format!("{cut}…")
 }
 
-/// Letters of a target's text that are told.
+/// Largest number of letters of a target's text in messages.
 const MOST_SHOWN: usize = 60;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use poecal_arm::Arm;
 
-/// The axes of an arm where it stands: the point of each that is nearest to the tip, and its direction; model's base frame.
+/// The axes of an arm at a configuration: the point of each axis that is nearest to the tip, and its direction; model's base frame.
 pub(crate) fn axes(arm: &Arm, q: &[f64]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let tip = arm.forward_kinematics(q).translation;
     let columns = arm.jacobian(q);
@@ -14,10 +14,10 @@ pub(crate) fn axes(arm: &Arm, q: &[f64]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         .collect()
 }
 
-/// The point nearest to the last three of six axes: where the wrist's axes meet.
+/// The point nearest to the last three of six axes: the intersection of the wrist's axes.
 pub(crate) fn wrist_centre(axes: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<f64>> {
     let [_, _, _, a4, a5, a6] = axes else { return None };
-    // The sum of squared distances from the axes is least there.
+    // The point minimises the sum of squared distances from the axes.
     let mut matrix = nalgebra::Matrix3::zeros();
     let mut right = Vector3::zeros();
     for (point, direction) in [a4, a5, a6] {

@@ -1,4 +1,4 @@
-//! What programs say of the configuration at a pose.
+//! Configuration at a pose, as programs state it.
 
 use poecal_arm::Arm;
 
@@ -6,10 +6,10 @@ use super::fanuc::configuration::Configuration as Letters;
 use super::krl::status::Status;
 use super::rapid::configuration::Configuration as Quarters;
 
-/// What a motion's text says of the configuration in which a pose is reached.
+/// Configuration in which a pose is reached, as the text of a motion states it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stated {
-    /// Nothing: it is that to which a straight way leads from the motion before, or the nearest.
+    /// No statement: a straight path from the motion before determines it, else the nearest one applies.
     Nothing,
     /// The nearest to this configuration, in the order of the robot's readings (rad).
     Near(Vec<f64>),
@@ -28,7 +28,7 @@ impl From<Status> for Stated {
 }
 
 impl Stated {
-    /// Whether a configuration of the nominal arm (the model's readings, and the counted ones) fits the words, borders included.
+    /// True if a configuration of the nominal arm (the model's readings, and the counted ones) fits the words, borders included.
     pub fn fits(&self, nominal: &Arm, (q, counted): &(Vec<f64>, Vec<f64>)) -> bool {
         match self {
             Stated::Nothing | Stated::Near(_) => true,
@@ -38,7 +38,7 @@ impl Stated {
         }
     }
 
-    /// Of several configurations that fit, whether one also fits the words that count where the others do not tell them apart.
+    /// True if a configuration, among several that fit, also fits the words with the lowest precedence.
     pub fn fits_best(&self, nominal: &Arm, q: &[f64]) -> bool {
         match self {
             Stated::Rapid(configuration) => configuration.branch_fits(nominal, q),
@@ -46,8 +46,8 @@ impl Stated {
         }
     }
 
-    /// The words' numbers for a configuration of the nominal arm, in the order of the target's numbers behind its pose; `None` if words would
-    /// have to change that are no numbers.
+    /// The words' numbers for a configuration of the nominal arm, in the order of the target's numbers behind its pose. `None` if words other than
+    /// numbers would have to change.
     pub fn words(&self, nominal: &Arm, (q, counted): &(Vec<f64>, Vec<f64>)) -> Option<Vec<f64>> {
         match self {
             Stated::Nothing | Stated::Near(_) => Some(Vec::new()),

@@ -1,8 +1,8 @@
-"""What one calibration of many costs a process: ``RAYON_NUM_THREADS=1 python crates/poecal-py/benches/many.py``.
+"""Cost of one calibration of many for a process: ``RAYON_NUM_THREADS=1 python crates/poecal-py/benches/many.py``.
 
-CPU time of the calls that a loop over robots makes, the least and the median of 100 calls each, and the most memory that the process has
-taken. Each call is of another simulated session, so that nothing is found where the last one left it. Of files the time includes the
-system's, which the disk adds to.
+CPU time of the calls that a loop over robots makes, the least and the median of 100 calls each, and the most memory that the process has taken. Each
+call is of another simulated session, so that nothing is in the caches of the last one. For files the time includes the system's, to which the disk
+adds.
 """
 
 import resource
@@ -47,7 +47,7 @@ def measured(robot: poecal.Robot, kind: Literal["point", "pose"], count: int) ->
 
 
 def files(robot: poecal.Robot, sessions: list[poecal.Measurements], folder: Path) -> None:
-    """What files add to a robot."""
+    """Additional time of files for a robot."""
     header = ",".join([*robot.reading_names, "x[m]", "y[m]", "z[m]"])
     paths = [folder / f"{number}.csv" for number in range(CALLS)]
     for path, session in zip(paths, sessions, strict=True):

@@ -1,8 +1,7 @@
-"""What ``poecal.calibrate`` costs beyond the library's own call: ``python crates/poecal-py/benches/overhead.py [rows]``.
+"""Cost of ``poecal.calibrate`` beyond the library's own call: ``python crates/poecal-py/benches/overhead.py [rows]``.
 
-Each call is timed as a whole in Python, and inside it the library's call in Rust; their difference is what Python adds: arguments,
-conversions, locks, the object that is returned, and its release. Both times are of the same call, so that the load of the machine
-does not blur the difference.
+Each call is timed as a whole in Python, and inside it the library's call in Rust; their difference is the part of Python: arguments, conversions,
+locks, the object that is returned, and its release. Both times are of the same call, so that the load of the machine does not blur the difference.
 """
 
 import sys

@@ -1,4 +1,4 @@
-//! Arguments of Python functions: each is refused by one sentence that names it, says what was found and what was expected.
+//! Arguments of Python functions: each is refused by one sentence that names it, with what was found and what was expected.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -20,13 +20,13 @@ use crate::errors::argument;
 use crate::units;
 use crate::words::{from_mm, one_of, shortened};
 
-/// What an argument can be read as.
+/// Type of an argument.
 pub(crate) trait Argument<'a, 'py>: Sized {
     /// The argument `name`.
     fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self>;
 }
 
-/// A function for each name of an argument, for `#[pyo3(from_py_with = …)]`, which tells no names.
+/// A function for each name of an argument, for `#[pyo3(from_py_with = …)]`, which does not pass names.
 macro_rules! named {
     ($($name:ident)*) => { $(
         pub(crate) fn $name<'a, 'py, T: Argument<'a, 'py>>(value: &'a Bound<'py, PyAny>) -> PyResult<T> {
@@ -59,12 +59,12 @@ pub(crate) fn refuse_unknown<T: PyTypeInfo>(
     Err(PyErr::from_value(refused))
 }
 
-/// The error for an argument that is something else than expected.
+/// The error for an argument that differs from the expectation.
 pub(crate) fn unexpected(name: &str, value: &Bound<'_, PyAny>, expected: impl Display) -> PyErr {
     argument(name, format!("found {}, expected {expected}", found(value)))
 }
 
-/// What a value is, in words.
+/// Description of a value, in words.
 pub(crate) fn found(value: &Bound<'_, PyAny>) -> String {
     let type_name =
         || value.get_type().name().map_or_else(|_| "something".to_owned(), |name| name.to_string());
@@ -81,7 +81,7 @@ pub(crate) fn found(value: &Bound<'_, PyAny>) -> String {
     type_name()
 }
 
-/// Whether a text is that of a file, and not the path of one.
+/// True if a text is that of a file, and not the path of one.
 pub(crate) fn is_content(text: &str) -> bool {
     let text = text.trim_start_matches('\u{feff}').trim();
     text.contains('\n') || (text.starts_with('<') && text.contains('>')) || text.starts_with("{\"")
@@ -159,7 +159,7 @@ impl<'a, 'py, T: for<'b> Argument<'b, 'py>> Argument<'a, 'py> for Vec<T> {
     }
 }
 
-/// Some of a few words: a list, or a text with commas as the program has it.
+/// Some of a few words: a list, or a text with commas as in the program.
 pub(crate) struct Words(Vec<String>);
 
 impl Words {
@@ -294,7 +294,7 @@ impl<'a, 'py> Argument<'a, 'py> for BTreeMap<String, f64> {
     }
 }
 
-/// A value that is written as in the program; `expected` says how.
+/// A value in the program's notation; `expected` describes it.
 fn parsed<T: FromStr<Err = Error>>(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<T> {
     if !value.is_instance_of::<PyString>() {
         return Err(unexpected(name, value, expected));

@@ -18,7 +18,7 @@ const ROTATION_TOLERANCE: f64 = 1e-2;
 pub(crate) struct Numbers {
     pub(crate) values: Vec<f64>,
     pub(crate) shape: Vec<usize>,
-    /// Whether some of them were masked: these are NaN.
+    /// True if some of them were masked: these are NaN.
     masked: bool,
 }
 
@@ -40,7 +40,7 @@ impl Numbers {
         Numbers { values: vec![number; rows], shape: vec![rows], masked: false }
     }
 
-    /// The same, refused if a number is not finite.
+    /// The numbers of `value`, refused if a number is not finite.
     pub(crate) fn finite(value: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<Self> {
         let numbers = Numbers::from_argument(value, name, expected)?;
         let row_length: usize = numbers.shape.iter().skip(1).product::<usize>().max(1);
@@ -95,13 +95,13 @@ impl Numbers {
     }
 }
 
-/// A masked array, or a list of some, as an array with NaN for what is masked; `None` where nothing is masked.
+/// A masked array, or a list of some, as an array with NaN for masked values; `None` if nothing is masked.
 fn unmasked<'py>(
     value: &Bound<'py, PyAny>,
     name: &str,
     expected: &str,
 ) -> PyResult<Option<Bound<'py, PyAny>>> {
-    // Whatever is of exactly this type has no mask, and most arguments are.
+    // An object of exactly this type has no mask, and most arguments are.
     if value.is_exact_instance_of::<PyUntypedArray>() {
         return Ok(None);
     }
@@ -136,7 +136,7 @@ fn unmasked<'py>(
     array.call_method1("astype", ("float64",))?.call_method1("filled", (f64::NAN,)).map(Some)
 }
 
-/// `numpy.ascontiguousarray(value, dtype=float)`, refused where that would be lossy or ambiguous.
+/// `numpy.ascontiguousarray(value, dtype=float)`, refused if that would be lossy or ambiguous.
 fn converted<'py>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -216,12 +216,12 @@ pub(crate) fn table<'py>(
 pub(crate) struct Joints {
     /// All configurations, in the order of the robot's readings.
     pub(crate) readings: Vec<f64>,
-    /// Whether it was a single configuration.
+    /// True if it was a single configuration.
     pub(crate) single: bool,
 }
 
 impl Joints {
-    /// From the argument `joints`.
+    /// Configurations of the argument `joints`.
     pub(crate) fn from_argument(value: &Bound<'_, PyAny>, robot: &poecal_model::robot::Robot) -> PyResult<Self> {
         let names = robot.reading_names();
         let n = names.len();

@@ -1,4 +1,4 @@
-//! Robots from arrays, by way of a TOML model, whose reader makes all checks.
+//! Robots from arrays, through a TOML model, whose reader makes all checks.
 
 use std::fmt::Write as _;
 
@@ -54,7 +54,7 @@ impl Naming<'_, '_> {
             quoted(self.base_link),
             quoted(self.tip_link)
         );
-        // A place in a text that the user did not write would mislead.
+        // A position in a text that the user did not write would mislead.
         let without_place = |error: Error| raise(Error::new(error.kind(), error.message()));
         let robot = robot_toml::parse(&text, self.name).map_err(without_place)?;
         Ok(Model { robot, source: ModelSource::Toml, path: self.name.into() })

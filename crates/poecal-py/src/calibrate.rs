@@ -42,37 +42,37 @@ use crate::words::{frame as frame_word, from_mm, one_of, sigma, sigmas};
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component, default estimated from the data.
 /// tolerance_deg_mm
-///     Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-///     decides where the measurements determine nothing. "auto" takes the best of (0.05, 0.5), (0.2, 2), (0.5, 5), (1, 10) and (3, 10) by cross-validation. The
-///     path of a MOC.cfg of a controller of ABB stands for what the maker found.
+///     Prior: deviation of each axis from nominal, standard deviations of angle and position (default 0.5 deg and 5 mm), or None. It decides for
+///     unknowns that the measurements do not determine. "auto" takes the best of (0.05, 0.5), (0.2, 2), (0.5, 5), (1, 10) and (3, 10) by
+///     cross-validation. The path of a MOC.cfg of a controller of ABB uses the maker's calibration.
 /// corrections
-///     What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
-///     "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
-///     their sizes in radians or metres, or as texts with a unit.
+///     Joint effects beyond geometry. "auto" fits the terms with the best prediction of rows that were not fitted, "all" searches more of them, "off"
+///     fits none. Or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of their sizes in
+///     radians or metres, or as texts with a unit.
 /// harmonics
 ///     Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
 /// gravity
-///     Where gravity pulls, in the robot's base frame, default (0, 0, -1), or "find": where the terms leave the least noise.
+///     Direction of gravity in the robot's base frame, default (0, 0, -1), or "find": the direction for which the terms leave the least noise.
 /// fix
-///     Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
+///     Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * matches any letters.
 /// free
-///     Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
+///     Blocks to fit, also those that are held by default, like "joint2.offset", and after `fix`.
 /// move_tip
-///     Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
-///     as in the model, and the point is the target "measured".
+///     True to put the tip at the measured point, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in the
+///     model, and the point is the target "measured".
 /// held_out
-///     Share of the configurations held out, where nothing else says which rows are; 0 fits every row (default 0.3; 0 if fewer than 12 would be
-///     held out, but for pictures, rows in motion and `accept`).
+///     Share of the configurations held out, if nothing else determines the rows; 0 fits every row (default 0.3; 0 if fewer than 12 would be held
+///     out, except for pictures, rows in motion and `accept`).
 /// seed
 ///     Seed of that choice (default 1).
 /// robust
-///     How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+///     Treatment of outliers: "auto", "off", "huber", "cauchy" or "tukey".
 /// repair
 ///     "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
-///     other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
+///     that improves the prediction of other rows; "off" only reports it. `Calibration.to_dict()` has `repairs` and `suspicions`.
 /// repair_limit
-///     Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
-///     arcs at a third of the robot's reach. What is larger is named, not acted upon.
+///     Largest repair of a device (default 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
+///     arcs at a third of the robot's reach. A larger motion is named, not repaired.
 /// formulation
 ///     Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
 /// residual
@@ -80,14 +80,14 @@ use crate::words::{frame as frame_word, from_mm, one_of, sigma, sigmas};
 /// method
 ///     "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
 /// validate
-///     Measurements to judge by: all other rows are fitted.
+///     Measurements for validation: all other rows are fitted.
 /// accept
-///     Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
-///     max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
+///     Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or max of all
+///     errors in a unit. `Calibration.acceptance` reports whether each is shown to be kept.
 /// accept_model
-///     Which model must meet them: "corrected", if there is one, or "calibrated".
+///     Model that must meet them: "corrected", if there is one, or "calibrated".
 /// record
-///     What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
+///     Statements of the report about the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
 ///     "instrument", "operator", "date", "place", "temperature" and "note".
 /// progress
 ///     Called with the next stage, in words; True for a bar on standard error.
@@ -95,7 +95,7 @@ use crate::words::{frame as frame_word, from_mm, one_of, sigma, sigmas};
 /// Returns
 /// -------
 /// Calibration
-///     The calibrated robot, its errors, and how far to trust it.
+///     The calibrated robot, its errors, and the verdict on its trustworthiness.
 ///
 /// Raises
 /// ------
@@ -176,7 +176,7 @@ fn stated([position, rotation]: [Option<f64>; 2]) -> ByQuantity<Option<f64>> {
     ByQuantity::default().with(Quantity::Position, position).with(Quantity::Rotation, rotation)
 }
 
-/// The rows of a calibration: its measurements, or what became of them.
+/// The rows of a calibration: its measurements, or those that remained.
 fn kept_rows(
     measurements: &Measurements,
     repaired: Option<Dataset>,
@@ -210,7 +210,7 @@ pub(crate) fn accept_limits(
 ) -> PyResult<Option<AcceptanceLimits>> {
     let model = one_of("accept_model", model, words::MODEL)?;
     let limits = accept.map(|it| it.limits).unwrap_or_default();
-    // The default may have been written out, which asks for nothing.
+    // The default may have been written out, which requests nothing.
     let named = (model != AcceptedModel::default()).then_some(model);
     AcceptanceLimits::chosen(limits, named).map_err(|error| argument("accept_model", error.message()))
 }

@@ -53,7 +53,7 @@ impl Calibration {
     /// Returns
     /// -------
     /// Calibration
-    ///     The calibration, which does what it did before it was written.
+    ///     The calibration, with the same behaviour as before it was written.
     #[staticmethod]
     #[pyo3(signature = (path, *, residuals=None))]
     fn read(
@@ -80,13 +80,13 @@ impl Calibration {
         Ok(self.calibrated()?.clone())
     }
 
-    /// The corrected robot, with gives and terms beside its joints; None if no terms were asked for.
+    /// The corrected robot, with compliant joints and terms beside its joints; None if no terms were requested.
     #[getter]
     fn corrected_robot(&self) -> PyResult<Option<Robot>> {
         Ok(self.corrected()?.cloned())
     }
 
-    /// Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were asked for.
+    /// Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were requested.
     #[getter(corrected)]
     fn corrected_model<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().corrected)
@@ -104,25 +104,25 @@ impl Calibration {
         Accuracy::new(self.errors(), self.delivered())
     }
 
-    /// How far the calibration may be used, and why no farther; an error for a file that does not say so.
+    /// Permitted use of the calibration, and the reasons against a wider one; an error for a file that does not state it.
     #[getter]
     fn verdict(&self) -> PyResult<Verdict> {
         self.judged().cloned().map(Verdict)
     }
 
-    /// Whether the limits that were asked for are kept: `acceptance` of calibration.json; None if none were.
+    /// Result of the requested acceptance limits: `acceptance` of calibration.json; None if none were requested.
     #[getter]
     fn acceptance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().acceptance)
     }
 
-    /// What is stated of the session: a dict of texts.
+    /// Statements about the session: a dict of texts.
     #[getter]
     fn record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().record)
     }
 
-    /// Whether the fit reached an optimum.
+    /// True if the fit reached an optimum.
     #[getter]
     fn converged(&self) -> bool {
         self.file().solver.converged
@@ -154,7 +154,7 @@ impl Calibration {
         part(py, &self.file().corrections)
     }
 
-    /// How far programs for the nominal robot miss over the workspace, and which corrections mend it.
+    /// Errors of programs for the nominal robot over the workspace, and the corrections that remove them.
     ///
     /// `compensation` of calibration.json; None if the calibration is not to be used.
     #[getter]
@@ -168,7 +168,7 @@ impl Calibration {
         part(py, &self.file().uncertainty)
     }
 
-    /// Which unknowns the measurements determine: `identifiability` of calibration.json.
+    /// Unknowns that the measurements determine: `identifiability` of calibration.json.
     #[getter]
     fn identifiability<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part(py, &self.file().identifiability)
@@ -232,7 +232,7 @@ impl Calibration {
         Ok(self.rows()?.text())
     }
 
-    /// Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's.
+    /// Seconds that the library took for the fit; None if it was read. Further time of a call is Python's.
     #[getter]
     fn library_seconds(&self) -> Option<f64> {
         self.seconds()

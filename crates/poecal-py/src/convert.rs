@@ -26,14 +26,14 @@ use crate::robot::{Robot, form};
 /// robot
 ///     The robot.
 /// format
-///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
+///     "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), by default from the extension of `out`.
 /// offset
-///     Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
-///     offsets. Mimic joints that follow a joint stay.
+///     Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with
+///     these offsets. Mimic joints that follow a joint stay.
 /// out
 ///     The file.
 /// force
-///     Whether to write over a file that exists.
+///     True to overwrite a file that exists.
 ///
 /// Returns
 /// -------
@@ -105,7 +105,7 @@ pub(crate) fn schema() -> String {
     CalibrationFile::json_schema()
 }
 
-/// Reads the joint readings of a file, whatever other columns it has.
+/// Reads the joint readings of a file; other columns are ignored.
 ///
 /// Parameters
 /// ----------

@@ -17,7 +17,7 @@ use crate::errors::raise;
 pub(crate) struct Covariance {
     /// Name of each unknown, and its unit.
     unknowns: Vec<(String, Unit)>,
-    /// Row by row.
+    /// Elements row by row.
     matrix: Vec<f64>,
     axes: Vec<Pose>,
 }

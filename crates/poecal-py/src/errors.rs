@@ -26,7 +26,7 @@ pub(crate) fn raise(error: Error) -> PyErr {
     raise_at_row(error, None)
 }
 
-/// The same for an error in a table in memory, with its row (from 0) instead of a line.
+/// The exception for an error in a table in memory, with its row (from 0) instead of a line.
 pub(crate) fn raise_at_row(error: Error, row: Option<usize>) -> PyErr {
     Python::attach(|py| exception(py, &error, row).unwrap_or_else(|failure| failure))
 }
@@ -60,7 +60,7 @@ fn of_class(name: &str, message: &str) -> PyErr {
     Python::attach(|py| made(py).unwrap_or_else(|failure: PyErr| failure))
 }
 
-/// The exception for a row that is not there.
+/// The exception for a row that does not exist.
 pub(crate) fn no_row(row: isize, count: usize) -> PyErr {
     let expected = match count {
         0 => "none, since there are no rows".to_owned(),
@@ -77,7 +77,8 @@ pub(crate) fn no_package(name: &str) -> PyErr {
     )
 }
 
-/// Names of the program's options in Python: `--held-out` is `held_out`. Commands of others between backticks, as `rosbags-convert --src bag`, stay.
+/// Names of the program's options in Python: `--held-out` is `held_out`. Commands of other programs between backticks, as `rosbags-convert --src
+/// bag`, are unchanged.
 pub(crate) fn python_words(message: &str) -> String {
     let is_others =
         |(at, piece): (usize, &str)| at % 2 == 1 && !piece.starts_with("--") && !piece.starts_with("poecal");

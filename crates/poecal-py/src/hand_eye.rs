@@ -36,41 +36,41 @@ fn texts(value: Option<Vec<String>>, name: &str, count: usize) -> PyResult<Vec<S
     Ok(value)
 }
 
-/// What messages call a row of arrays.
+/// Names of the rows of arrays in messages.
 fn row_names(names: Vec<String>, count: usize) -> Vec<String> {
     if names.is_empty() { (0..count).map(|row| format!("row {row}")).collect() } else { names }
 }
 
-/// What an inversion is called.
+/// Meaning of a word for an inversion.
 fn inverted(name: &str, word: Option<&str>, words: Words<bool>) -> PyResult<Option<bool>> {
     word.map(|word| one_of(name, word, words)).transpose()
 }
 
-/// Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
+/// Pose of a camera on the flange or beside the robot, from poses of the flange and of a board that it saw.
 ///
-/// With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
+/// The result has bounds of 95 %. Mistakes in the poses are named, wrong poses left out.
 ///
 /// Parameters
 /// ----------
 /// base_from_flange
-///     Poses of the arm's flange, shape (m, 4, 4), metres; of joint readings `robot.forward_kinematics(joints)`.
+///     Poses of the arm's flange, shape (m, 4, 4), metres; for joint readings `robot.forward_kinematics(joints)`.
 /// camera_from_target
 ///     Poses of the board or marker as the camera saw it there, shape (m, 4, 4), metres.
 /// camera
-///     Where the camera is: "in-hand" or "beside".
+///     Position of the camera: "in-hand" or "beside".
 /// flange, target
-///     Which way round the poses are: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera"; by default it is found, and
-///     said under "findings".
+///     Sense of the poses: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera". By default it is recognised, and
+///     reported under "findings".
 /// names
-///     What messages call each row.
+///     Names of the rows in messages.
 /// frame_names
 ///     Names of base, flange, camera and target in the result.
 ///
 /// Returns
 /// -------
 /// HandEye
-///     The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
-///     was held out, and "findings": all that `hand_eye.json` has.
+///     The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict",
+///     the held-out errors, and "findings": all entries of `hand_eye.json`.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
 #[pyo3(signature = (base_from_flange, camera_from_target, *, camera, flange=None, target=None, names=None, frame_names=None))]
@@ -112,23 +112,23 @@ pub(crate) fn hand_eye(
 
 /// The tip of a tool from poses of the flange in which it touched a fixed point.
 ///
-/// With bounds of 95 %; wrong touches are named and left out.
+/// The result has bounds of 95 %. Wrong touches are named and left out.
 ///
 /// Parameters
 /// ----------
 /// base_from_flange
 ///     Poses of the arm's flange at the touches, shape (m, 4, 4), metres.
 /// points
-///     Which point each touch is of, if there are several.
+///     The touched point of each touch, if there are several.
 /// tips
-///     With which of two tips along the tool it was, for the tool's direction.
+///     The touching tip of each touch, of two tips along the tool, for the tool's direction.
 /// names
-///     What messages call each row.
+///     Names of the rows in messages.
 ///
 /// Returns
 /// -------
 /// ToolTip
-///     The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
+///     The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all entries of `tcp.json`.
 #[pyfunction]
 #[pyo3(signature = (base_from_flange, *, points=None, tips=None, names=None))]
 pub(crate) fn tcp(

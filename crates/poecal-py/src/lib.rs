@@ -1,8 +1,8 @@
 //! The compiled half of the Python package `poecal`: conversions between Python and the library, and nothing else.
 //!
-//! For the Python package, whose interface follows semantic versioning. `calibrate.rs` turns words and units to options, asks the library as the
-//! program does, without the interpreter's lock, and keeps the result; file, residuals, arrays and dicts are made when they are asked for. The
-//! package calls the program too, as a function of its arguments, so that one wheel installs both. Not here: computation, and rules.
+//! For the Python package, whose interface follows semantic versioning. `calibrate.rs` turns words and units to options, calls the library as the
+//! program does, without the interpreter's lock, and keeps the result; file, residuals, arrays and dicts are made on demand. The package calls the
+//! program too, as a function of its arguments, so that one wheel installs both. Not here: computation, and rules.
 
 mod arguments;
 mod arrays;
@@ -117,8 +117,8 @@ mod _poecal {
     #[pymodule_export]
     use crate::watch::Watch;
 
-    /// A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is computed; keywords that a
-    /// function does not have are answered with the nearest one.
+    /// Initialises the module. A level of vector instructions that `POECAL_SIMD` names and this machine does not have is refused before anything is
+    /// computed. Keywords that a function does not have are answered with the nearest one.
     #[pymodule_init]
     fn begin(module: &Bound<'_, PyModule>) -> PyResult<()> {
         let refused =
@@ -132,7 +132,7 @@ mod _poecal {
     /// Returns
     /// -------
     /// str
-    ///     The version that this module was built from.
+    ///     The version from which this module was built.
     #[pyfunction]
     fn version() -> &'static str {
         env!("CARGO_PKG_VERSION")
@@ -161,7 +161,7 @@ mod _poecal {
         })
     }
 
-    /// Sets what files may take, where that is less than they need.
+    /// Sets a limit of files, if the default is less than they need.
     ///
     /// Parameters
     /// ----------
@@ -208,20 +208,20 @@ mod _poecal {
         Calibration::of_state(crate::pickle::value(state)?)
     }
 
-    /// A result as a notebook shows it.
+    /// A result in the form of a notebook.
     #[pyfunction]
     fn _shown(text: &str, warnings: Vec<String>) -> String {
         crate::notebook::findings(text, &warnings)
     }
 
-    /// The keyword that an old one is now, among these.
+    /// The present keyword for an old one, among these.
     #[pyfunction]
     fn _renamed(word: &str, words: Vec<String>) -> Option<String> {
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         poecal_results::renamed::new_key(word, &words).map(str::to_owned)
     }
 
-    /// The word that one is likely to be.
+    /// The most similar of some words.
     #[pyfunction]
     fn _nearest(word: &str, words: Vec<String>) -> Option<String> {
         poecal_numerics::error::nearest(word, words.iter().map(String::as_str)).map(str::to_owned)

@@ -66,14 +66,14 @@ impl Measurements {
         table(py, self.data().observations.iter().flat_map(position).collect(), 3)
     }
 
-    /// Measured poses device_from_target, shape (m, 4, 4); with the identity where a row has no orientation (`has_orientation`).
+    /// Measured poses device_from_target, shape (m, 4, 4); with the identity if a row has no orientation (`has_orientation`).
     #[getter]
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let poses: Vec<_> = self.data().observations.iter().map(|row| row.measurement.pose()).collect();
         pose_arrays(py, &poses)
     }
 
-    /// Whether a row's orientation was measured, shape (m,).
+    /// Rows with a measured orientation, shape (m,): True if it was measured.
     #[getter]
     fn has_orientation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         let seen = self.data().observations.iter().map(|row| row.measurement.sees_orientation());
@@ -87,7 +87,7 @@ impl Measurements {
         data.observations.iter().map(|row| data.targets.get(row.target).cloned().flatten()).collect()
     }
 
-    /// The instrument, or the place of it, that measured each row; None where there is one without a name.
+    /// The instrument, or its station, that measured each row; None if there is one without a name.
     #[getter]
     fn instruments(&self) -> Vec<Option<String>> {
         let data = self.data();
@@ -110,13 +110,13 @@ impl Measurements {
         self.data().ids.clone()
     }
 
-    /// The files that the rows came from, as they were named.
+    /// The files of the rows, as they were named.
     #[getter]
     fn files(&self) -> Vec<String> {
         self.data().files.iter().map(|path| path.display().to_string()).collect()
     }
 
-    /// What was found in the files, such as where a camera is, a sentence each.
+    /// Findings in the files, such as the position of a camera, a sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
         self.file.notes.iter().map(|note| python_words(note)).collect()

@@ -1,4 +1,4 @@
-//! How objects show themselves in notebooks, as HTML.
+//! Appearance of objects in notebooks, as HTML.
 
 use maud::{Markup, html};
 use poecal_calibrate::AcceptedModel;
@@ -47,7 +47,7 @@ pub(crate) fn findings(text: &str, warnings: &[String]) -> String {
     visible_markup(html! { div { pre { (text) } (warned(warnings)) } })
 }
 
-/// A calibration's verdict and errors; those of the corrected model where it is delivered.
+/// A calibration's verdict and errors; those of the corrected model if it is delivered.
 pub(crate) fn calibration(file: &CalibrationFile, delivered: AcceptedModel, warnings: &[String]) -> String {
     let is_corrected = delivered == AcceptedModel::Corrected;
     let corrected = is_corrected.then_some("corrected");

@@ -15,7 +15,7 @@ pub(crate) enum OfModel {
 }
 
 impl OfModel {
-    /// The model that a word names, beside the one that is delivered.
+    /// The model that a word names, including the delivered one.
     pub(crate) fn named(word: &str, delivered: AcceptedModel) -> PyResult<Self> {
         let delivered = match delivered {
             AcceptedModel::Corrected => OfModel::Corrected,
@@ -31,7 +31,7 @@ impl OfModel {
         chosen("model", word, &words)
     }
 
-    /// Its error of those of all models; NaN without such a model.
+    /// Its error, selected from those of all models; NaN without such a model.
     pub(crate) fn select_error(self, [nominal, registered, calibrated]: [f64; 3], corrected: Option<f64>) -> f64 {
         match self {
             OfModel::Nominal => nominal,

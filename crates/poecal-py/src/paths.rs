@@ -1,4 +1,4 @@
-//! Paths in place of what is read from them.
+//! Paths instead of the objects that are read from them.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::arguments::Argument as _;
 use crate::measurements::Measurements;
 use crate::robot::Robot;
 
-/// Whether it is a path: a text, or an `os.PathLike`.
+/// True if it is a path: a text, or an `os.PathLike`.
 fn is_path(value: &Bound<'_, PyAny>) -> bool {
     value.is_instance_of::<PyString>() || value.extract::<PathBuf>().is_ok()
 }
@@ -40,7 +40,7 @@ pub(crate) fn measurements<'py>(
     Ok(value.cast::<Measurements>()?.clone())
 }
 
-/// The same where there may be none.
+/// Measurements of a robot, as [`measurements`], or `None`.
 pub(crate) fn optional_measurements<'py>(
     value: Option<&Bound<'py, PyAny>>,
     name: &str,

@@ -7,8 +7,7 @@ use serde::de::DeserializeOwned;
 
 use crate::errors::argument;
 
-/// What `__reduce__` gives: the function of this name, and its argument, the state as bytes. Numbers read back as they were, to the
-/// last digit.
+/// Result of `__reduce__`: the function of this name, and its argument, the state as bytes. Numbers read back exactly, to the last digit.
 pub(crate) fn reduce<'py>(
     py: Python<'py>,
     function: &str,

@@ -1,4 +1,4 @@
-//! `plan`: which configurations to measure.
+//! `plan`: choice of configurations to measure.
 
 pub(crate) mod plan_options;
 pub(crate) mod planned;
@@ -17,10 +17,11 @@ use crate::measurements::Measurements;
 use crate::plan_options::Believe;
 use crate::visit_plan::VisitOptions;
 
-/// Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
+/// Plans a session: configurations that determine the most, rows for validation, the worthwhile number, and the expected error.
 ///
-/// With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
-/// of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state what is known of the visits, `target` which target will be measured.
+/// With `purpose="drift"` it plans visits to a calibrated robot: the measured configurations whose repeats detect the smallest shift of the worst
+/// joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state the knowledge of the visits, `target` the target that will
+/// be measured.
 ///
 /// Parameters
 /// ----------
@@ -33,7 +34,7 @@ use crate::visit_plan::VisitOptions;
 /// count
 ///     Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
 /// held_out_count
-///     Number of further rows to judge by, at random over the workspace (default a third of `count`).
+///     Number of further rows for validation, at random over the workspace (default a third of `count`).
 /// candidates
 ///     Configurations to choose from alone, shape (m, n).
 /// workspace
@@ -41,30 +42,30 @@ use crate::visit_plan::VisitOptions;
 /// workspace_box_mm
 ///     Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
 /// keep_rows
-///     Rows that are there already, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
+///     Existing rows, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
 /// replace_rows
-///     Rows of `keep_rows`, from 0, that could not be measured: others take their places, and all other rows stay.
+///     Rows of `keep_rows`, from 0, that could not be measured: they are replaced, and all other rows stay.
 /// criterion
 ///     "expected" (expected error of the calibrated and the corrected model), or a measure of the design: "D", "A", "E", "G".
 /// targets
 ///     Number of targets of a nest at the tip, from 1 to 8, all measured in each configuration.
 /// target_offset_mm
-///     Where the target is in the tip's frame, of several the first, the others turned about z.
+///     Position of the target in the tip's frame; for several the first, the others turned about z.
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
 /// robot_error_mm
-///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm per
-///     metre of reach is assumed).
+///     Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections. By default those of a
+///     calibration of this robot, else 0.3 mm for each metre of reach is assumed.
 /// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// tolerance_deg_mm
 ///     Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
 /// corrections
-///     What joints are expected to do beyond geometry: "auto" and "all" terms of the common sizes, "off" nothing, or groups with their sizes.
+///     Expected joint effects beyond geometry: "auto" and "all" terms of the common sizes, "off" nothing, or groups with their sizes.
 /// gravity
-///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+///     Direction of gravity in the robot's base frame, default (0, 0, -1).
 /// margin_deg_mm
-///     How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
+///     Distance of every joint from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
 /// keep_out_mm
 ///     Boxes into which no part of the robot may reach, each two corners in the base frame.
 /// floor_height_mm
@@ -72,17 +73,17 @@ use crate::visit_plan::VisitOptions;
 /// separation_deg
 ///     Least change of some joint between any two configurations.
 /// device_mm
-///     Where the measuring device is, in the base frame; targets that links hide from it are left out.
+///     Position of the measuring device in the base frame; targets that links hide from it are left out.
 /// device_half_angle_deg, device_aim_mm
-///     Half the angle of the device's cone, and where it looks (default the base).
+///     Half the angle of the device's cone, and the point at which it is aimed (default the base).
 /// distance_mm
 ///     Least and largest distance of the target from the device.
 /// target_half_angle_deg, target_normal
-///     Largest angle between the direction in which the target looks, in its own frame (default (0, 0, 1)), and the line to the device.
+///     Largest angle between the normal of the target, in its own frame (default (0, 0, 1)), and the line to the device.
 /// self_collision
-///     "avoid" links that overlap by their shapes in the URDF, or "ignore" shapes.
+///     "avoid" overlaps of links by their shapes in the URDF, or "ignore" shapes.
 /// stop_s
-///     How long the robot stands at each row, for how long all takes.
+///     Duration of the robot's stop at each row, for the total duration.
 /// seed
 ///     Seed of everything random.
 /// earlier
@@ -92,15 +93,15 @@ use crate::visit_plan::VisitOptions;
 /// tool
 ///     For "drift": "same" if the tool will be on the flange as it was, "refit" if not (default "same").
 /// target
-///     For "drift": the target that will be measured, of several (default all that the rows have).
+///     For "drift": the target that will be measured, of several (default all targets of the rows).
 /// repeatability_mm
 ///     For "drift": standard deviation of one visit and coordinate, as repeats show it (default the noise of the calibration).
 ///
 /// Returns
 /// -------
 /// Plan or VisitPlan
-///     The rows in the order in which to measure them, with the errors to expect; with "drift" what each joint would show. Only configurations are
-///     checked, never the way between them.
+///     The rows in the order of their measurement, with the expected errors; with "drift" the detectable shift of each joint. Only configurations are
+///     checked, never the path between them.
 #[pyfunction]
 #[pyo3(signature = (robot, *, purpose="calibration", kind="point", count=None, held_out_count=None, candidates=None, workspace=None, workspace_box_mm=None, keep_rows=None, replace_rows=None,
                     criterion="expected", targets=1, target_offset_mm=None, sigma_position_mm=None, sigma_rotation_deg=None, robot_error_mm=None,

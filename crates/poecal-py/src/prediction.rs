@@ -53,7 +53,7 @@ impl Prediction {
         self.array(py, PredictedError::bound_position_m)
     }
 
-    /// Whether every joint lies within the range that was sampled, shape (m,).
+    /// Configurations inside the sampled range, shape (m,): True if every joint is inside its range.
     #[getter]
     fn inside_sampled_range<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_vec(py, self.doubts.iter().map(|(_, inside)| *inside).collect())

@@ -12,7 +12,7 @@ use crate::errors::{argument, raise};
 use crate::places::reserved_folder;
 use crate::words::chosen;
 
-/// Most suggested configurations, as by the program.
+/// Most suggested configurations, as in the program.
 const MOST: usize = 100_000;
 
 /// Writes a project folder to start from.

@@ -44,7 +44,7 @@ pub(crate) fn factors(robot: &Robot, given: Option<&Bound<'_, PyAny>>) -> PyResu
     Ok(values)
 }
 
-/// Configurations of the joints alone, and whether it is one.
+/// Configurations of the joints alone, and true if it is a single one.
 fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResult<(Numbers, bool)> {
     let names = robot.joint_reading_names();
     let n = names.len();
@@ -58,8 +58,8 @@ fn configurations(value: &Bound<'_, PyAny>, name: &str, robot: &Robot) -> PyResu
     Ok((numbers.shaped(wanted, name, &expected)?, is_single))
 }
 
-/// The way from what a calibration's controller counts to the model's readings, if arrays are of that; `None` if they are the model's, or the
-/// same.
+/// Mapping from the counts of a calibration's controller to the model's readings, if arrays contain counts; `None` if they contain the model's
+/// readings, or if both are equal.
 pub(crate) fn counting(file: &CalibrationFile, readings: Option<&str>) -> PyResult<Option<Counting>> {
     let is_counted = match readings {
         None => None,
@@ -91,7 +91,7 @@ pub(crate) fn to_model<'r>(counting: Option<&Counting>, rows: &'r [f64], width: 
     rows.chunks_exact(width.max(1)).flat_map(row).collect()
 }
 
-/// Rows of numbers as an array of as many dimensions as were given.
+/// Rows of numbers as an array of the argument's number of dimensions.
 fn rows<'py>(
     py: Python<'py>,
     numbers: Vec<f64>,
@@ -105,7 +105,7 @@ fn rows<'py>(
     }
 }
 
-/// How far a joint may be moved: in degrees and millimetres, or as before in radians and metres.
+/// Largest motion of a joint: in degrees and millimetres, or as before in radians and metres.
 #[derive(Clone, Copy)]
 pub(crate) struct Most {
     pub(crate) turn_deg: Option<f64>,
@@ -114,7 +114,7 @@ pub(crate) struct Most {
     pub(crate) slide_m: Option<f64>,
 }
 
-/// How far readings may be changed.
+/// Largest permitted changes of readings.
 pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
     let usual = MostChange::default();
     let one_of = |names: [&str; 2], values: [Option<f64>; 2], to_si: fn(f64) -> f64, usual: f64| {
@@ -141,7 +141,7 @@ pub(crate) fn change(nearest: bool, most: Most) -> PyResult<ChangeOptions> {
     Ok(ChangeOptions { most_change, nearest })
 }
 
-/// Readings to command for those of a nominal program; with their summary, if that is asked for.
+/// Readings to command for those of a nominal program; with their summary, if that is requested.
 pub(crate) fn compensate<'py>(
     py: Python<'py>,
     (nominal, actual): (&Robot, &Robot),
@@ -211,12 +211,12 @@ pub(crate) fn program<'py>(
     Ok((PyBytes::new(py, &text), found.into_pyobject(py)?))
 }
 
-/// Whether the joint of a name slides.
+/// Function that returns true if the joint of a name slides.
 fn slides(robot: &Robot) -> impl Fn(&str) -> bool + '_ {
     |name| robot.joints.iter().any(|joint| joint.name == name && joint.kind == JointKind::Prismatic)
 }
 
-/// Poses of an array of shape (m, 4, 4) or (4, 4), and whether it is one.
+/// Poses of an array of shape (m, 4, 4) or (4, 4), and true if it is a single one.
 fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
     let expected = "poses of the tip in the base, shape (m, 4, 4) or (4, 4)";
     let numbers = Numbers::finite(value, "poses", expected)?;
@@ -232,7 +232,7 @@ fn targets(value: &Bound<'_, PyAny>) -> PyResult<(Vec<Pose>, bool)> {
     Ok((poses, is_single))
 }
 
-/// Configurations that have the tip at poses: the nearest to `near`, not a number where there is none; without `near` all branches.
+/// Configurations that have the tip at poses: the nearest to `near`, NaN if there is none; without `near` all branches.
 pub(crate) fn inverse<'py>(
     py: Python<'py>,
     robot: &Described,
@@ -340,7 +340,7 @@ fn held_reading(
     Ok((reading, values))
 }
 
-/// Where the tip is.
+/// Poses of the tip.
 pub(crate) fn forward<'py>(
     py: Python<'py>,
     robot: &Robot,
@@ -354,7 +354,7 @@ pub(crate) fn forward<'py>(
     poses(py, &found, is_single)
 }
 
-/// How the tip moves with each reading.
+/// Derivatives of the tip's pose by each reading.
 pub(crate) fn jacobian<'py>(
     py: Python<'py>,
     robot: &Robot,
@@ -371,7 +371,7 @@ pub(crate) fn jacobian<'py>(
     found.reshape([numbers.rows(), 6, n])?.into_bound_py_any(py)
 }
 
-/// What weights move the tip.
+/// Deflection of the tip under weights.
 pub(crate) fn sag<'py>(
     py: Python<'py>,
     robot: &Robot,

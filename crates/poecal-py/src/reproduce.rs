@@ -22,7 +22,7 @@ use crate::words::chosen;
 /// out
 ///     Folder for the report.
 /// force
-///     Whether to write over files that exist.
+///     True to overwrite files that exist.
 /// trials
 ///     Number of sessions that compare the formulations, or the losses.
 /// starts
@@ -33,7 +33,7 @@ use crate::words::chosen;
 /// Returns
 /// -------
 /// Reproduction
-///     The runs, and the claims with what was found.
+///     The runs, and the claims with their results.
 #[pyfunction]
 #[pyo3(signature = (experiment, *, out=None, force=false, trials=1000, starts=100, seed=1))]
 pub(crate) fn reproduce(

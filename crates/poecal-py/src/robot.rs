@@ -93,7 +93,7 @@ impl Robot {
         &self.robot().tip_name
     }
 
-    /// The file that it was read from, as it was named; for robots of arrays their name.
+    /// The file from which it was read, as it was named; for robots of arrays their name.
     #[getter]
     fn path(&self) -> String {
         self.model.path.display().to_string()
@@ -107,7 +107,8 @@ impl Robot {
 
     /// The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
     ///
-    /// "approach" or "approach_JOINT" says from which side joints came, 1 or -1, "payload" which mass hangs at the tip, in kg. They are readings behind those of the joints.
+    /// "approach" or "approach_JOINT" states from which side joints came, 1 or -1, "payload" the mass at the tip, in kg. They are readings behind
+    /// those of the joints.
     ///
     /// Parameters
     /// ----------
@@ -122,13 +123,13 @@ impl Robot {
         Ok(self.with_robot(self.robot().with_factors(&names).map_err(raise)?))
     }
 
-    /// Names of the readings that a configuration consists of: those of the joints but for mimic joints, which follow another.
+    /// Names of the readings that a configuration consists of: those of the joints except mimic joints, which follow another.
     #[getter]
     fn reading_names(&self) -> Vec<String> {
         self.robot().reading_names()
     }
 
-    /// "revolute" or "prismatic", a joint each.
+    /// "revolute" or "prismatic" for each joint.
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         self.robot().joints.iter().map(|joint| joint.kind.word()).collect()
@@ -153,7 +154,7 @@ impl Robot {
         pose_arrays(py, &frames)
     }
 
-    /// Lower and upper limits, shape (n, 2), radians or metres; infinite where a joint has none.
+    /// Lower and upper limits, shape (n, 2), radians or metres; infinite for a joint without limits.
     #[getter]
     fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let none = [f64::NEG_INFINITY, f64::INFINITY];
@@ -202,9 +203,9 @@ impl Robot {
     /// path
     ///     The file.
     /// format
-    ///     "urdf" or "toml", default as the extension says.
+    ///     "urdf" or "toml", by default from the extension.
     /// force
-    ///     Whether to write over a file that exists.
+    ///     True to overwrite a file that exists.
     #[pyo3(signature = (path, *, format=None, force=false))]
     fn write(
         &self,

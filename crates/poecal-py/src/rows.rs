@@ -7,7 +7,7 @@ use pyo3::types::{PyBool, PySlice};
 use crate::arguments::unexpected;
 use crate::errors::{argument, no_row, raise};
 
-/// What rows may be chosen by.
+/// Permitted keys of rows.
 const KEYS: &str = "a slice, a row, a list of rows, or a True or False for each row";
 
 /// The rows that `key` chooses of `count`, as NumPy does: a slice, an integer, integers, or a mask.
@@ -54,7 +54,7 @@ fn row_of(row: isize, count: usize) -> PyResult<usize> {
     }
 }
 
-/// These rows with all that is known of them. Targets, instruments and files that none of them names are gone.
+/// These rows with all of their attributes. Targets, instruments and files that none of them names are removed.
 pub(crate) fn part(data: &Dataset, rows: &[usize]) -> PyResult<Dataset> {
     let mut found = Dataset::new(data.reading_names().to_vec());
     let mut files = vec![None; data.files.len()];
@@ -100,7 +100,7 @@ pub(crate) fn part(data: &Dataset, rows: &[usize]) -> PyResult<Dataset> {
     Ok(found)
 }
 
-/// The rows of all parts, one after the other. Joints, targets and instruments of one name are one.
+/// The rows of all parts, in sequence. Joints, targets and instruments of one name are one.
 pub(crate) fn joined(parts: &[&Dataset]) -> PyResult<Dataset> {
     let Some((first, others)) = parts.split_first() else {
         return Err(argument("parts", "found none, expected at least one"));

@@ -19,7 +19,7 @@ use crate::places::reserved_folder;
 use crate::robot::Robot;
 use crate::words::{direction, frame as frame_word, from_mm, kind as kind_word, size};
 
-/// Most rows of a simulation, as by the program.
+/// Most rows of a simulation, as in the program.
 const MOST: usize = 10_000_000;
 
 /// A simulated session: nominal and actual robot, and measurements of the actual one.
@@ -55,7 +55,7 @@ impl Simulation {
         Measurements::in_memory(self.made.data.clone(), "simulated")
     }
 
-    /// Further rows, free of noise, to judge a calibration by; None if none were asked for.
+    /// Further rows, free of noise, for validation of a calibration; None if none were requested.
     #[getter]
     fn held_out(&self) -> Option<Measurements> {
         self.held_out.clone().map(|data| Measurements::in_memory(data, "simulated, held out"))
@@ -74,7 +74,7 @@ impl Simulation {
     /// folder
     ///     The folder.
     /// force
-    ///     Whether to write over files that exist.
+    ///     True to overwrite files that exist.
     ///
     /// Returns
     /// -------
@@ -112,7 +112,7 @@ impl Simulation {
 /// Parameters
 /// ----------
 /// robot
-///     The robot to deviate from.
+///     The nominal robot, from which the actual one deviates.
 /// kind
 ///     Kind of the measurements: "pose", "point", or "mixed" (both in turn).
 /// count
@@ -120,18 +120,18 @@ impl Simulation {
 /// seed
 ///     Seed of everything random.
 /// error_position_mm, error_rotation_deg
-///     Distance and angle by which every axis, and the tip, is off.
+///     Distance and angle of the error of every axis, and of the tip.
 /// noise_position_mm, noise_rotation_deg
 ///     Standard deviation of each measured component.
 /// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// held_out_count
-///     Number of further measurements, free of noise, to judge a calibration by.
+///     Number of further measurements, free of noise, for validation of a calibration.
 /// terms
-///     What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
+///     Joint effects beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
 ///     (also of texts with a unit) or "sag=1e-3,ratio=1e-4".
 /// gravity
-///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+///     Direction of gravity in the robot's base frame, default (0, 0, -1).
 ///
 /// Returns
 /// -------

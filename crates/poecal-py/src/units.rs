@@ -1,4 +1,4 @@
-//! Texts with units in place of numbers: `sigma_position_mm="50um"` is 0.05.
+//! Texts with units instead of numbers: `sigma_position_mm="50um"` is 0.05.
 
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
@@ -12,7 +12,7 @@ use crate::words::shortened;
 const UNITS: [(&str, Unit); 4] =
     [("mm", Unit::Metre), ("m", Unit::Metre), ("deg", Unit::Radian), ("rad", Unit::Radian)];
 
-/// The unit at the end of an argument's name: of `margin_deg_mm[0]` the first.
+/// The unit at the end of an argument's name: for `margin_deg_mm[0]` the first.
 pub(crate) fn of_name(name: &str) -> Option<NamedUnit> {
     let (name, at) = match name.strip_suffix(']').and_then(|it| it.split_once('[')) {
         Some((name, at)) => (name, at.parse().unwrap_or(0)),
@@ -31,7 +31,7 @@ pub(crate) fn in_unit(text: &str, unit: NamedUnit, name: &str) -> PyResult<f64> 
     let typed = NamedUnit::parse(symbol, unit.si_unit()).map_err(|error| {
         raise(poecal_numerics::error::Error::new(error.kind(), format!("{name}: {}", error.message())))
     })?;
-    // A number in the same unit stays as it is, to the last digit.
+    // A number in the same unit is unchanged, to the last digit.
     Ok(if typed == unit { value } else { unit.from_si(typed.to_si(value)) })
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn in_si(text: &str, name: &str) -> PyResult<f64> {
     Ok(typed.to_si(value))
 }
 
-/// A text of several numbers as a list of texts: `"0.5deg,5mm"`, and `"1500,0,800mm"`, whose last unit is that of all; anything else as it is.
+/// A text of several numbers as a list of texts: `"0.5deg,5mm"`, and `"1500,0,800mm"`, whose last unit is that of all; anything else is unchanged.
 pub(crate) fn listed<'py>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let Ok(text) = value.cast::<PyString>() else { return Ok(value.clone()) };
     let text = text.to_string_lossy();

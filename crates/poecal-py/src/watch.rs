@@ -25,7 +25,7 @@ struct Session {
     watched: Option<Watched>,
 }
 
-/// A session that is watched: each row is judged before it is fitted, while the target is still there.
+/// A session that is watched: each row is judged before it is fitted, while the target is still in place.
 ///
 /// Parameters
 /// ----------
@@ -40,15 +40,15 @@ struct Session {
 /// sigma_position_mm, sigma_rotation_deg
 ///     Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
 /// robot_error_mm
-///     Error of the tip (RMS) that a calibration leaves however much is measured, as of `plan`.
+///     Remaining error of the tip (RMS) after a calibration with any number of rows, as of `plan`.
 /// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// tolerance_deg_mm
 ///     Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
 /// corrections
-///     What joints are expected to do beyond geometry, as of `plan`.
+///     Expected joint effects beyond geometry, as of `plan`.
 /// gravity
-///     Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+///     Direction of gravity in the robot's base frame, default (0, 0, -1).
 /// seed
 ///     Seed of everything random.
 #[pyclass(frozen, module = "poecal", name = "Watch")]
@@ -119,8 +119,8 @@ impl Watch {
     /// Returns
     /// -------
     /// WatchedRow
-    ///     Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
-    ///     (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
+    ///     Comparison of the row with the expectation (`ok`, None while there are too few rows), or else its `mistake`; the detectable error
+    ///     (`noticed_mm`); the expected errors now and after ten more rows; the configuration that gains most (`next`).
     #[pyo3(signature = (joints, *, position=None, pose=None, target=None, id=None))]
     fn add(
         &self,
@@ -155,7 +155,7 @@ impl Watch {
         found.pop().ok_or_else(|| argument("joints", "found no row, expected one"))
     }
 
-    /// Judges the rows of measurements, one after the other.
+    /// Judges the rows of measurements in sequence.
     ///
     /// Parameters
     /// ----------
@@ -165,7 +165,7 @@ impl Watch {
     /// Returns
     /// -------
     /// list of WatchedRow
-    ///     As of `add`, one for each row.
+    ///     Results as of `add`, one for each row.
     fn add_all(
         &self,
         py: Python<'_>,

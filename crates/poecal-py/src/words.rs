@@ -1,4 +1,4 @@
-//! Arguments that are one of a few words, and numbers with a unit in their name.
+//! Arguments with a few words as values, and numbers with a unit in their name.
 
 use nalgebra::Vector3;
 use poecal_calibrate::DeviceFrameKnowledge;
@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::errors::argument;
 
-/// Longest text that a message shows of what was found.
+/// Longest text of a found value in a message.
 const SHOWN: usize = 60;
 
 /// Meaning of `word`, which must be one of these.
@@ -57,7 +57,7 @@ pub(crate) fn sigma(name: &str, value: f64, to_si: fn(f64) -> f64) -> PyResult<f
     Err(argument(name, format!("found {value}, expected a standard deviation above 0")))
 }
 
-/// Standard deviations of positions (millimetres) and rotations (degrees) in SI, where they are given.
+/// Standard deviations of positions (millimetres) and rotations (degrees) in SI, if they are stated.
 pub(crate) fn sigmas(position_mm: Option<f64>, rotation_deg: Option<f64>) -> PyResult<[Option<f64>; 2]> {
     let position = position_mm.map(|it| sigma("sigma_position_mm", it, from_mm));
     let rotation = rotation_deg.map(|it| sigma("sigma_rotation_deg", it, f64::to_radians));

@@ -1,6 +1,6 @@
-"""What all tests share."""
+"""Common settings of all tests."""
 
 
 def pytest_configure(config):
-    # Every URDF that is made anew tells so.
+    # Every newly made URDF warns of this.
     config.addinivalue_line("filterwarnings", "ignore:effort and velocity limits are not known")

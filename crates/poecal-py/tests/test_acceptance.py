@@ -1,4 +1,4 @@
-"""Limits and record in Python: the same figures as in calibration.json, and one sentence for what is wrong."""
+"""Limits and record in Python: the same figures as in calibration.json, and one sentence for each mistake."""
 
 from pathlib import Path
 

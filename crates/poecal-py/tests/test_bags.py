@@ -51,7 +51,7 @@ def point(stamp_ns: int, place) -> bytes:
 
 
 def motion(count: int):
-    """Configurations each hundredth of a second: stands, and moves between them."""
+    """Configurations each hundredth of a second: static intervals, and moves between them."""
     stands = 0.5 * configurations(count, seed=3)
     rows = []
     for here, there in zip(stands, [*stands[1:], stands[-1]], strict=True):
@@ -115,7 +115,7 @@ def test_a_bag_in_sqlite_gives_what_its_tables_give(tmp_path):
         assert pickle.loads(pickle.dumps(read)) == read
     apart = np.abs(bag.positions - tables.positions).max(), np.abs(bag.joints - tables.joints).max()
     print(f"{len(bag)} stands; {apart[0]:.1e} m and {apart[1]:.1e} rad from the tables")
-    # Times in a table have fewer digits, and with them the ends of stands a row more or less.
+    # Times in a table have fewer digits, and with them the ends of static intervals a row more or less.
     assert apart[0] < 2e-5 and apart[1] < 1e-9
     assert any("lag of 0.13" in note for note in bag.notes) or any("lag of 0.14" in note for note in bag.notes), bag.notes
 
@@ -153,7 +153,7 @@ def test_what_is_no_bag_is_named(tmp_path):
     packed = [(topic, at, b"\x28\xb5\x2f\xfd" + data) for topic, at, data in found]
     write_db3(tmp_path / "packed.sqlite", packed)
     assert "`rosbags-convert --src BAG --dst NEW --dst-storage mcap`" in refused("packed.db3", (tmp_path / "packed.sqlite").read_bytes())
-    # Nothing but joints.
+    # Only joints.
     write_db3(tmp_path / "joints.sqlite", [it for it in found if it[0] == "/joint_states"])
     assert "/joint_states" in refused("joints.db3", (tmp_path / "joints.sqlite").read_bytes())
     with pytest.raises(poecal.Error) as error:

@@ -1,4 +1,4 @@
-"""Calibrations: what they find, what they say, and that they come back as they were."""
+"""Calibrations: their findings and messages, and their exact restoration."""
 
 import copy
 import json
@@ -32,7 +32,7 @@ def test_a_calibration_finds_the_robot_that_is_there(made, calibration):
     assert accuracy.held_out.registered.position_mm.rms > 10 > 0.15 > accuracy.held_out.calibrated.position_mm.rms
     assert calibration.converged and calibration.verdict.level == "good" and calibration.verdict.reasons
     assert calibration.verdict.is_at_least("inside_sampled_range")
-    # Free of noise, what is left is the error of the robot.
+    # Free of noise, the remaining error is that of the robot.
     left = calibration.validate(made.held_out)
     print(left)
     assert left["calibrated"]["position_mm"]["rms"] < 0.06 and left["count"] == 40

@@ -1,4 +1,4 @@
-"""The corrected model: what joints do beyond geometry, found, predicted, written and read back."""
+"""The corrected model: joint effects beyond geometry, found, predicted, written and read back."""
 
 import pickle
 
@@ -62,7 +62,7 @@ def test_terms_can_be_left_out_and_chosen(made):
     sag = poecal.calibrate(made.nominal, made.measurements, corrections={"sag": 1e-3}, gravity="find", harmonics=3)
     assert sag.corrected["sizes"] == {"sag": 1e-3, "tilt": 0, "ratio": 0, "harmonics": 0, "wobble": 0, "backlash": 0, "factors": 0, "payload": 0, "shift": 0, "runout": 0}
     direction = sag.corrected["robot"]["gravity"]["direction"]
-    # 2 mrad of sag against 0.05 mm tell the direction to some degrees.
+    # 2 mrad of sag against 0.05 mm determine the direction to some degrees.
     assert direction[2] < -0.98
 
 

@@ -1,4 +1,4 @@
-"""What is wrong is told in a sentence, and nothing crosses as a panic."""
+"""Each fault is reported in a sentence, and no panic reaches Python."""
 
 import itertools
 import random
@@ -9,7 +9,7 @@ import poecal
 import pytest
 from robots import ELBOW, configurations, elbow, session
 
-# What a fit of odd rows warns of is not at stake.
+# Warnings of fits of odd rows are not tested here.
 pytestmark = pytest.mark.filterwarnings("ignore::poecal.PoecalWarning")
 
 JOINTS, POSITIONS = configurations(20), np.ones((20, 3))
@@ -184,7 +184,7 @@ CALLS = {
 
 @pytest.mark.parametrize("name", CALLS)
 def test_odd_arguments_are_refused_without_a_panic(name):
-    """Each argument with each odd value, and pairs at random: an exception of ours, or a result."""
+    """Each argument with each odd value, and pairs at random: an exception of poecal, or a result."""
     call, arguments, usual = CALLS[name]
     pairs = list(itertools.product(arguments, ODD))
     changes = [{argument: value} for argument, value in pairs]

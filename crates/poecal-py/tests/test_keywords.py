@@ -63,7 +63,7 @@ def test_every_public_function_answers(made):
                     asked.append(f"{owner.__name__}.{name}")
     print(len(asked), "keywords of", len(set(asked)), "functions asked")
     assert {"Calibration.validate", "Calibration.predict", "Plan.write", "Residuals.errors", "Robot.from_dh", "poecal._poecal.plan"} <= set(asked)
-    # All that the stubs have were asked, but for those without keywords.
+    # All functions of the stubs were called, except those without keywords.
     stubs = files("poecal").joinpath("_poecal.pyi").read_text()
     classes = {node.name: node for node in ast.parse(stubs).body if isinstance(node, ast.ClassDef)}
     for owner, names in classes.items():

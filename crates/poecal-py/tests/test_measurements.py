@@ -1,4 +1,4 @@
-"""Measurements: of arrays, data frames and files."""
+"""Measurements: from arrays, data frames and files."""
 
 import copy
 import pickle
@@ -16,7 +16,7 @@ HEADER = ",".join(f"joint{i}[deg]" for i in range(1, 7))
 
 
 def table(made: poecal.Simulation) -> dict[str, np.ndarray]:
-    """Columns as a file has them."""
+    """Columns as in a file."""
     seen = made.measurements
     columns = {f"joint{i + 1}[deg]": np.degrees(seen.joints[:, i]) for i in range(6)}
     return columns | {f"{axis}[mm]": 1e3 * seen.positions[:, i] for i, axis in enumerate("xyz")}
@@ -211,7 +211,7 @@ FILES = [path for folder in ("fuzz/seeds/measurements", "fuzz/seeds/recorded", "
 
 
 def understood(read):
-    """What is read, with its warnings, or the error."""
+    """The rows that are read, with their warnings, or the error."""
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         try:

@@ -1,4 +1,4 @@
-"""What the package itself promises: its names, its documentation, its types, how it starts."""
+"""Properties of the package itself: its names, its documentation, its types, its start."""
 
 import ast
 import doctest

@@ -67,7 +67,7 @@ def test_rows_are_judged_as_they_arrive():
     print("named", named, rows[20]["sentence"], "noticed", rows[20]["noticed_mm"])
     assert named == [20] and rows[20]["id"] == "row 20" and len(watch) == 30
     assert rows[0]["ok"] is None and rows[-1]["expected_corrected_mm"] < rows[6]["expected_corrected_mm"]
-    # What is measured is not advised again; the same rows at once are judged alike.
+    # A measured configuration is not advised again; the same rows at once have the same judgement.
     known = {tuple(row) for row in np.round(joints[:11], 9)}
     assert tuple(np.round(rows[10]["next"], 9)) not in known
     again = poecal.Watch(made.nominal, robot_error_mm=(0.1, 0.05), candidates=joints).add_all(made.measurements[:20])

@@ -27,7 +27,7 @@ def test_compensated_joints_reach_what_the_nominal_robot_means(calibration):
     generator = np.random.default_rng(1)
     joints = generator.uniform(-1, 1, (200, 6)) + [0, 0.3, 0.3, 0, 1.5, 0]
     meant = calibration.taught().forward_kinematics(joints)
-    # Errors of a degree take more than two of some joints.
+    # Errors of a degree require more than two for some joints.
     commanded = calibration.compensate(joints, max_turn_rad=1.0)
     assert commanded.shape == joints.shape
     reached = poses_of(calibration, commanded)
@@ -210,7 +210,7 @@ def test_mistakes_are_told(calibration):
 def test_arrays_are_of_what_the_controller_counts_where_that_is_said(tmp_path):
     model, made = elbow(), session(count=60, seed=4, error_rotation_deg=0.1, error_position_mm=0.3)
     joints, poses = made.measurements.joints, made.measurements.poses
-    # Axes 2 and 3 of this arm point alike: from the level, the third counts the second too.
+    # Axes 2 and 3 of this arm turn in the same sense: from the level, the third counts the second too.
     level = np.array([0, 0, 1, 0, 0, 0])
     columns = ",".join([f"J{k}" for k in range(1, 7)] + ["x", "y", "z"] + [f"r{k}" for k in range(9)])
     rows = np.hstack([joints + joints[:, [1]] * level, poses[:, :3, 3], poses[:, :3, :3].reshape(-1, 9)])

@@ -1,4 +1,4 @@
-"""Residuals of rows, covariance of unknowns, and the picture of both: what the files have, as arrays."""
+"""Residuals of rows, covariance of unknowns, and the picture of both: the contents of the files, as arrays."""
 
 import io
 import pickle

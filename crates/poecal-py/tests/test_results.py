@@ -1,4 +1,4 @@
-"""Results say their answer, have the numbers that matter as attributes, and are tables, dicts and JSON."""
+"""Results print their answer, have the important numbers as attributes, and are tables, dicts and JSON."""
 
 import copy
 import json
@@ -62,7 +62,7 @@ def test_each_is_a_mapping_of_what_the_program_prints(results):
         whole = found.to_dict()
         assert whole == json.loads(found.to_json()) == dict(found) == found
         assert list(found) == list(whole) and len(found) == len(whole) and "no such key" not in found
-        # What is changed in a copy is not changed in the result.
+        # A change in a copy does not change the result.
         whole.clear()
         assert len(found) > 0
         with pytest.raises(KeyError):

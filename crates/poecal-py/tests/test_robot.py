@@ -1,4 +1,4 @@
-"""Robots: made of arrays and files, and where their tip stands."""
+"""Robots: made from arrays and files, and the poses of their tips."""
 
 import copy
 import pickle

@@ -16,7 +16,7 @@ pub(crate) fn lines(out: &mut String, acceptance: &Acceptance) {
     }
 }
 
-/// The judged model as it is called.
+/// Name of the judged model.
 pub(crate) fn model(acceptance: &Acceptance) -> &'static str {
     match acceptance.model {
         AcceptedModel::Corrected => "corrected",
@@ -38,7 +38,7 @@ fn words(limit: &AcceptedLimit) -> String {
     )
 }
 
-/// What is known of it with 95 % confidence.
+/// Its 95 % confidence bounds in words.
 pub(crate) fn bounds(limit: &AcceptedLimit) -> String {
     let unit = &limit.unit;
     match limit.to {
@@ -52,7 +52,7 @@ pub(crate) fn bounds(limit: &AcceptedLimit) -> String {
     }
 }
 
-/// How many rows, and configurations where these are fewer.
+/// Number of rows, and of configurations if these are fewer.
 pub(crate) fn counts(limit: &AcceptedLimit) -> String {
     let rows = if limit.rows == 1 { "1 row".to_owned() } else { format!("{} rows", limit.rows) };
     if limit.configurations == limit.rows {

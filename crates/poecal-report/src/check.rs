@@ -1,4 +1,4 @@
-//! What was understood of a model and of measurement files.
+//! Interpretation of a model and of measurement files.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -20,22 +20,22 @@ use poecal_numerics::unit::Unit;
 use poecal_results::calibration_file::{BodyEntry, MassEntry, PoseEntry};
 use poecal_results::model::{Model, ModelSource};
 
-/// Widest name of ours, and of a column, that the table of columns keeps on one line.
+/// Widest name of a quantity, and of a column, that the table of columns keeps on one line.
 const WIDEST: usize = 22;
 
-/// What was understood, for a person to look over or a machine to read.
+/// Interpretation of a model and measurements, for a person to look over or a machine to read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
     model: ModelCheck,
     files: Vec<FileUnderstanding>,
-    /// How files of joint readings and of measurements were joined.
+    /// Joins of files of joint readings with files of measurements.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joins: Vec<JoinEntry>,
     sets: Option<SetCounts>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
     warnings: Vec<String>,
-    /// What sees what, of a robot with branches or with instruments and targets on named bodies.
+    /// Visible pairs of instruments and targets, for a robot with branches or with instruments and targets on named bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     sight: Option<SightCheck>,
     /// Mistakes that the measurements show.
@@ -69,13 +69,13 @@ struct JointCheck {
     name: String,
     kind: &'static str,
     direction: [f64; 3],
-    /// A point of the axis, metres; none for a slide.
+    /// A point of the axis, metres; `None` for a slide.
     point_m: Option<[f64; 3]>,
     limits: Option<[f64; 2]>,
     reading: String,
     multiplier: f64,
     offset: f64,
-    /// The body on which it stands, if that is not the link of the joint before.
+    /// The body that carries it, if that is not the link of the joint before.
     #[serde(skip_serializing_if = "Option::is_none")]
     on: Option<BodyEntry>,
 }
@@ -86,19 +86,19 @@ struct TargetCheck {
     tip_from_target: PoseEntry,
 }
 
-/// How many rows state their set.
+/// Numbers of rows by their stated set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SetCounts {
     /// Measurements to be fitted.
     pub fit: usize,
     /// Measurements to be held out.
     pub held_out: usize,
-    /// Measurements that do not say.
+    /// Measurements without a stated set.
     pub unstated: usize,
 }
 
 impl Check {
-    /// What was understood of a model, and of measurements with their diagnosis if there are some.
+    /// Interpretation of a model, and of measurements with their diagnosis if there are some.
     #[must_use]
     pub fn new(model: &Model, measurements: Option<&MeasurementFile>, diagnosis: &[Diagnosis]) -> Self {
         let robot = &model.robot;
@@ -139,7 +139,7 @@ impl Check {
         }
     }
 
-    /// What was read, and the first mistake that it shows, in a sentence.
+    /// Summary of the input, and the first mistake that it shows, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let Some(SetCounts { fit, held_out, unstated }) = self.sets else { return self.robot_words.clone() };
@@ -154,7 +154,7 @@ impl Check {
         }
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer).
+    /// As text of lines up to 80 characters (except for longer names).
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
@@ -328,7 +328,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     let stated = file.separator_line.map_or_else(String::new, |line| format!(" (line {line})"));
     let units = file.units_line.map_or_else(String::new, |line| format!("; units: line {line}"));
     match file.form {
-        // Separators of the table that was made of it say nothing.
+        // Separators of the converted table carry no information.
         Some(form) => line(out, "form", &format!("{form}{units}")),
         None => line(out, "form", &format!("separator: {separator}{stated}; decimal sign: {decimal}{units}")),
     }
@@ -340,7 +340,7 @@ fn file_text(out: &mut String, file: &FileUnderstanding) {
     let theirs = widest(&mut file.columns.iter().map(|column| width(&column_words(column)))).max(13);
     let units = widest(&mut file.columns.iter().map(|column| width(&unit_words(column)))).max(12);
     let mut row = |name: &str, column: &str, unit: &str, range: &str| {
-        // A long name pushes the rest of its row to a line of its own.
+        // A long name moves the rest of its row to a line of its own.
         let broken = if width(name) > ours || width(column) > theirs {
             format!("\n  {:ours$}  {:theirs$}", "", "")
         } else {

@@ -1,4 +1,4 @@
-//! What changed between two calibrations of one robot.
+//! Changes between two calibrations of one robot.
 
 use std::fmt::Write as _;
 
@@ -16,11 +16,11 @@ use poecal_results::compare::{ChiSquare, Compared, ComparedJoint};
 pub struct Comparison {
     first: SideEntry,
     second: SideEntry,
-    /// Whether the tip moved by more than the limit; null where there is none.
+    /// True if the tip moved by more than the limit; null without a limit.
     moved: Option<bool>,
-    /// Whether more changed than noise makes; null without the uncertainty of both.
+    /// True if more changed than noise explains; null without the uncertainty of both.
     changed: Option<bool>,
-    /// Names of the joints that did.
+    /// Names of the joints that changed by more than noise.
     changed_joints: Vec<String>,
     test: Option<TestEntry>,
     joints: Vec<JointEntry>,
@@ -34,14 +34,14 @@ struct SideEntry {
     calibration: String,
     model: String,
     measurements: Vec<String>,
-    /// The rows that judge: held out, or fitted where none was.
+    /// The rows that judge: held out, or fitted if none was held out.
     rows: &'static str,
     count: usize,
     quantity: &'static str,
     unit: &'static str,
     /// Root mean square error of each model.
     rms: Vec<ModelEntry>,
-    /// Expected error as its verdict states it, millimetres (RMS); null where no use is advised.
+    /// Expected error as its verdict states it, millimetres (RMS); null if no use is advised.
     expected_mm: Option<f64>,
 }
 
@@ -62,11 +62,11 @@ struct TestEntry {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct JointEntry {
     name: String,
-    /// From nominal to the first.
+    /// Change from nominal to the first.
     first: Option<JointChangeEntry>,
-    /// From nominal to the second.
+    /// Change from nominal to the second.
     second: Option<JointChangeEntry>,
-    /// From the first to the second.
+    /// Change from the first to the second.
     change: JointChangeEntry,
     test: Option<TestEntry>,
 }
@@ -81,9 +81,9 @@ struct TipEntry {
     rms_deg: f64,
     max_at: Vec<ReadingEntry>,
     max_place_mm: [f64; 3],
-    /// Up to which RMS the robot is as it was.
+    /// Distance (RMS) up to which the robot is unchanged.
     limit_mm: Option<f64>,
-    /// Whether the limit was stated, or else is the expected errors of both together.
+    /// True if the limit was stated; otherwise it is the expected errors of both together.
     limit_is_stated: bool,
 }
 
@@ -138,7 +138,7 @@ impl SideEntry {
 }
 
 impl Comparison {
-    /// Of two calibrations by their names.
+    /// Comparison of two calibrations by their names.
     ///
     /// # Errors
     /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if a file holds no valid robot.
@@ -186,7 +186,7 @@ impl Comparison {
         })
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer): the answer, and in full each joint with its test.
+    /// As text of lines up to 80 characters (except for longer names): the answer, and in full each joint with its test.
     #[must_use]
     pub fn text(&self, detail: Detail) -> String {
         let mut out = String::new();
@@ -223,7 +223,7 @@ impl Comparison {
         out
     }
 
-    /// By how much the tip moved, and whether that is within the limit, in a sentence.
+    /// Motion of the tip, and its comparison with the limit, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let rms = number(self.tip.rms_mm);
@@ -239,7 +239,7 @@ impl Comparison {
         }
     }
 
-    /// Whether what changed is more than noise.
+    /// Decision whether the changes are more than noise.
     fn noise(&self) -> String {
         let Some(test) = self.test else {
             return "unknown: a calibration has no uncertainty, so that noise is not told from change"

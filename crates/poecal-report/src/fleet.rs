@@ -17,22 +17,22 @@ pub struct Figure {
     pub name: String,
     /// Its unit.
     pub unit: &'static str,
-    /// How it scatters.
+    /// Its scatter.
     pub spread: Spread,
-    /// How well it keeps its limits, where there are some.
+    /// Its capability relative to its limits, if there are some.
     pub capability: Option<Capability>,
 }
 
-/// What the prior of the line did.
+/// Effect of the line's prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PriorUse {
     /// Number of robots that were calibrated by it.
     pub robots: usize,
-    /// Its share in what is known of their axes, 0 to 1: the median.
+    /// Its share in the information on their axes, 0 to 1: the median.
     pub share: f64,
     /// Median of their errors (RMS), millimetres.
     pub error: f64,
-    /// Robots since the first of these that were measured in full and judged without it: their number, the share of the usual tolerance, and the
+    /// Robots since the first of these that were measured in full and judged without it: their number, the share of the default tolerance, and the
     /// median of their errors.
     pub in_full: Option<(usize, f64, f64)>,
 }
@@ -55,7 +55,7 @@ impl PriorUse {
         })
     }
 
-    /// In words.
+    /// The effect in words.
     #[must_use]
     pub fn words(&self) -> String {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share);
@@ -78,37 +78,38 @@ impl PriorUse {
 /// A line of robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// The robots, in the order measured.
+    /// The robots, in the order of measurement.
     pub rows: Vec<LedgerRow>,
-    /// Number of robots, and how many passed at their first measurement.
+    /// Number of robots.
     pub first: usize,
-    /// The latter.
+    /// Number of robots that passed at their first measurement.
     pub first_passed: usize,
-    /// All figures of the line, in the order measured.
+    /// All figures of the line, in the order of measurement.
     pub series: Vec<Series>,
-    /// Whether there are too few robots for spreads.
+    /// True if there are too few robots for spreads.
     pub is_few: bool,
     /// Spreads of all figures.
     pub figures: Vec<Figure>,
-    /// Robots that are none of the line.
+    /// Robots that deviate from the line.
     pub outliers: Vec<Outlier>,
-    /// Steps in time, and whether each is the station's.
+    /// Steps in time, each true if it is the station's.
     pub steps: Vec<(Step, bool)>,
-    /// What the prior of the line did, where there is one.
+    /// Effect of the line's prior, if there is one.
     pub prior: Option<PriorUse>,
 }
 
 /// Outliers that are printed.
 const LISTED: usize = 40;
-/// Share of the figures that step within so many robots at which a step is the station's.
+/// Share of the figures that step within so many robots from which on a step is the station's.
 const MOST_FIGURES: f64 = 0.5;
 const TOGETHER: usize = 10;
 
 impl Line {
-    /// Of the rows of a ledger. `reference` is the serial number of the reference arm, which is none of the line; limits are by the names of figures.
+    /// Figures of the rows of a ledger. `reference` is the serial number of the reference arm, which does not count in the line; limits are by the
+    /// names of figures.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] if a limit is of no figure.
+    /// [`ErrorKind::Option`] if a limit names no figure.
     pub fn from_rows(
         rows: Vec<LedgerRow>,
         reference: Option<&str>,
@@ -150,7 +151,7 @@ impl Line {
         })
     }
 
-    /// The table: a row a robot and date, a column a figure.
+    /// The table: one row for each robot and date, one column for each figure.
     #[must_use]
     pub fn csv(&self) -> String {
         let rows: Vec<&LedgerRow> = self.rows.iter().collect();
@@ -195,7 +196,7 @@ impl Line {
         out
     }
 
-    /// What the line shows, in words.
+    /// Findings on the line, in words.
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
@@ -247,7 +248,7 @@ fn limits_of(
         let (name, unit) = parts.map_or((key.as_str(), None), |(name, unit)| (name, Some(unit)));
         let series = all.iter().find(|it| it.name == name);
         match (series, unit) {
-            // Of robots that were all refused there are no figures.
+            // If all robots were refused there are no figures.
             (None, _) if !all.is_empty() => {
                 let known: Vec<&str> = all.iter().map(|it| it.name.as_str()).collect();
                 ErrorKind::Option.refuse(format!(
@@ -324,7 +325,7 @@ pub(crate) fn series(rows: &[&LedgerRow]) -> Vec<Series> {
                 one(it.amplitude, Some(it.sigma)),
             );
         }
-        // One joint that errs more may be chance where all together are not.
+        // A single joint with a larger error may be chance even if all together are not.
         let groups: BTreeSet<&str> = row.terms.iter().map(|it| it.group.as_str()).collect();
         for group in groups.into_iter().filter(|group| *group != "tilt") {
             let own = || row.terms.iter().filter(|it| it.group == group);

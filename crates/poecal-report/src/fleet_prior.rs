@@ -1,4 +1,4 @@
-//! What a line says of its next robot before it is measured, as settings of `poecal calibrate`.
+//! Estimate of a line's next robot before its measurement, as settings of `poecal calibrate`.
 
 use std::fmt::Write as _;
 
@@ -11,8 +11,8 @@ use poecal_results::fleet::{CorrectionRow, LedgerRow};
 /// Smallest tolerance that is written: degrees and millimetres.
 const LEAST: f64 = 1e-4;
 
-/// Settings: how far axes of this type are from nominal, as a tolerance, and sizes of the terms; mean and spread of each term beside them. Robots
-/// that were calibrated by such a prior say nothing of it.
+/// Settings: a tolerance from the deviations of axes of this type, and sizes of the terms; mean and spread of each term beside them. Robots that were
+/// calibrated by such a prior are left out.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] with fewer than thirty robots that passed without the prior.
@@ -24,7 +24,8 @@ pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
             good.len()
         ));
     }
-    // Of a component: a tilt and a shift have two. What the rows do not show of an axis stays nominal, so that their scatter is not in it.
+    // For each component: a tilt and a shift have two. Parts of an axis that the rows do not determine stay nominal, so that their scatter is not in
+    // it.
     let usual = |length: fn(&CorrectionRow) -> Option<f64>| {
         let all: Vec<f64> = good.iter().flat_map(|row| &row.corrections).filter_map(length).collect();
         (rms(&all) / std::f64::consts::SQRT_2).max(LEAST)
@@ -48,8 +49,7 @@ pub fn fleet_prior(rows: &[LedgerRow], of: &str) -> Result<String> {
     Ok(out)
 }
 
-/// The size of a group: the geometric mean of those that the calibrations chose, which a few odd robots change little, where most robots have the
-/// group.
+/// The size of a group: the geometric mean of the calibrations' choices, which a few odd robots change little, if most robots have the group.
 fn size(good: &[&LedgerRow], group: TermGroup) -> Option<String> {
     let of_row = |row: &&LedgerRow| {
         let own = row.sizes.iter().find(|it| it.group == group.name());

@@ -1,4 +1,4 @@
-//! Numbers of cameras and boards that were found with the robot, in words.
+//! Numbers of cameras and boards that were fitted with the robot, in words.
 
 use super::table::number;
 use poecal_model::camera::PictureNumber;
@@ -7,7 +7,7 @@ use poecal_results::calibration_file::CalibrationFile;
 /// Most numbers that are named one by one.
 const FEW: usize = 12;
 
-/// A sentence for each camera and body whose numbers were found, by its name.
+/// A sentence for each camera and body whose numbers were fitted, by its name.
 pub(crate) fn found_words(file: &CalibrationFile) -> Vec<String> {
     let all = file.pictures.as_ref().map_or(&[][..], |pictures| &pictures.found);
     let groups = all.chunk_by(|a, b| of_what(a) == of_what(b));
@@ -16,7 +16,7 @@ pub(crate) fn found_words(file: &CalibrationFile) -> Vec<String> {
         .collect()
 }
 
-/// Kind and name of what a number is of.
+/// Kind and name of a number's subject.
 fn of_what(entry: &PictureNumber) -> Vec<&str> {
     entry.name.splitn(3, '.').take(2).collect()
 }

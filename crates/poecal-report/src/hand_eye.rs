@@ -7,14 +7,14 @@ use poecal_results::frame_texts::NamedFrame;
 use poecal_results::hand_eye::{ArmByJoints, HandEyeResult};
 use poecal_results::lens_entries::lens_number_name;
 
-/// Where the camera is, how surely, and what to think of it, in a sentence.
+/// Pose of the camera, its bounds, and the judgement, in a sentence.
 #[must_use]
 pub fn hand_eye_answer(result: &HandEyeResult<'_>) -> String {
     let [(frame, placed), _] = result.frames();
     format!("{}: {}", result.found.level.words(), in_parent(&frame, &placed))
 }
 
-/// A level with the bound of what was found, unless nothing holds.
+/// A level with the bound of the result, unless nothing holds.
 pub(crate) fn with_bound(level: Level, what: &str, bound_m: f64) -> String {
     match level {
         Level::DoNotUse => level.words().to_owned(),
@@ -25,13 +25,13 @@ pub(crate) fn with_bound(level: Level, what: &str, bound_m: f64) -> String {
     }
 }
 
-/// Decimals that show two digits of an uncertainty.
+/// Number of decimals that resolve two digits of an uncertainty.
 pub(crate) fn decimals(uncertainty: f64) -> usize {
     let first = if uncertainty > 0.0 { uncertainty.log10().floor() } else { 0.0 };
     (1.0 - first).clamp(0.0, 9.0) as usize
 }
 
-/// Where a frame is in its parent, and how surely.
+/// Pose of a frame in its parent, with its bounds.
 fn in_parent(frame: &NamedFrame, placed: &Placed) -> String {
     let t = 1e3 * frame.pose.translation;
     let (bound_mm, bound_deg) = (1e3 * placed.bound95_m, placed.bound95_rad.to_degrees());
@@ -83,7 +83,7 @@ pub fn hand_eye(result: &HandEyeResult<'_>) -> String {
     out
 }
 
-/// The numbers of a lens that was found, each with its standard deviation.
+/// The numbers of a lens that was fitted, each with its standard deviation.
 fn lens_words(lens: &FoundLens) -> String {
     let number = |it: &PictureNumber| {
         let decimals = decimals(it.deviation);
@@ -97,7 +97,7 @@ fn lens_words(lens: &FoundLens) -> String {
     format!("{} px; {}{bend} (± standard deviation)", of("px").join(", "), of("").join(", "))
 }
 
-/// Which arm predicts poses better, and the command that fits it.
+/// The arm model that predicts poses better, and the command that fits it.
 fn arm_words(arm: &ArmByJoints) -> String {
     let command = &arm.command;
     match &arm.errors {
@@ -134,7 +134,7 @@ fn place(frame: &NamedFrame, placed: &Placed) -> String {
     )
 }
 
-/// What the camera's poses scatter by.
+/// Scatter of the camera's poses.
 fn noise(found: &HandEye) -> String {
     let [across, along, tilt, turn] = found.noise;
     let about = found.noise_about;

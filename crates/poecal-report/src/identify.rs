@@ -1,4 +1,4 @@
-//! What configurations would determine.
+//! Determination of the unknowns by chosen configurations.
 
 use std::fmt::Write as _;
 
@@ -18,7 +18,7 @@ use poecal_results::model::Model;
 /// Directions of a kind that the terminal names.
 const MOST_DIRECTIONS: usize = 6;
 
-/// What configurations would determine, for a person to look over or a machine to read.
+/// Determination of the unknowns by configurations, for a person to look over or a machine to read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Identify {
     model: String,
@@ -31,7 +31,7 @@ pub struct Identify {
     pictures: Option<PicturesEntry>,
     identifiability: IdentifiabilityEntry,
     expected_error: ExpectedEntry,
-    /// Errors of a fit with what the robot itself does not keep; null for kinds whose configurations cannot be chosen freely.
+    /// Errors of a fit including the robot's own scatter; null for kinds whose configurations cannot be chosen freely.
     expected: Option<PlanErrors>,
     robot_error_is_a_guess: bool,
     coverage: Vec<JointCoverage>,
@@ -45,12 +45,12 @@ pub struct Identify {
 struct ExpectedEntry {
     configurations: usize,
     told: usize,
-    /// Null where no prediction is told.
+    /// Mean expected error of positions; null without a prediction.
     position_mean_mm: Option<f64>,
     position_worst_mm: Option<f64>,
 }
 
-/// The pictures, and what is known of their corners.
+/// The pictures, and the noise of their corners.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct PicturesEntry {
     count: usize,
@@ -69,7 +69,7 @@ impl PicturesEntry {
 }
 
 impl Identify {
-    /// What `identify` found of a model in the configurations of some files, named as the user named them, with the errors to expect.
+    /// Result of `identify` for a model in the configurations of some files, named as the user named them, with the expected errors.
     #[must_use]
     pub fn new(
         model: &Model,
@@ -103,7 +103,7 @@ impl Identify {
         }
     }
 
-    /// How many unknowns are determined, and the errors to expect, in a sentence.
+    /// Number of determined unknowns, and the expected errors, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let found = &self.identifiability;
@@ -116,7 +116,7 @@ impl Identify {
         format!("{} of {} unknowns determined{weak}{expected}", found.rank, found.parameters)
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer).
+    /// As text of lines up to 80 characters (except for longer names).
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
@@ -199,7 +199,7 @@ impl Identify {
     }
 }
 
-/// Which unknowns measurements determine, do not determine, determine weakly, and could not determine.
+/// Unknowns that measurements determine, do not determine, determine weakly, and cannot determine.
 fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
     let condition = found.condition.map_or_else(String::new, |it| format!(", condition {it:.3e}"));
     line(out, "determined", &format!("{}{condition}", determined_words(found)));
@@ -228,7 +228,7 @@ fn identifiability_lines(out: &mut String, found: &IdentifiabilityEntry) {
     }
 }
 
-/// What was sampled of each joint's range.
+/// Sampled part of each joint's range.
 pub(crate) fn coverage_table<'a>(
     out: &mut String,
     joints: impl Iterator<Item = (&'a JointCoverage, JointKind)>,

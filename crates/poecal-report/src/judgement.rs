@@ -7,8 +7,8 @@ use poecal_calibrate::{
 };
 use poecal_model::measurement::Quantity;
 
-/// How good a calibration is on measurements that it did not see, as text of lines up to 80 characters. `calibration` and
-/// `measurements` name the files.
+/// Accuracy of a calibration on measurements that it did not use, as text of lines up to 80 characters. `calibration` and `measurements` name the
+/// files.
 #[must_use]
 pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -> String {
     let mut out = String::new();
@@ -60,7 +60,7 @@ pub fn judgement(calibration: &str, measurements: &str, judgement: &Judgement) -
     out
 }
 
-/// What the measurements confirm, in words.
+/// The level that the measurements confirm, in words.
 pub(crate) fn confirmed_words(level: Option<Level>) -> &'static str {
     match level {
         Some(Level::Good) => "the calibration holds for these measurements",
@@ -84,7 +84,7 @@ fn repeats_words(found: &RepeatScatter) -> String {
     format!("scatter by {range} {unit} (repeatability of {poses}, {} rows)", found.rows)
 }
 
-/// How many times smaller errors are than those of the nominal model on these rows.
+/// Ratio of the nominal model's errors to the delivered ones on these rows.
 fn gain_words(judgement: &Judgement) -> String {
     let Some(found) = judgement.improvement else {
         return "not known: too few rows to fit device frame and targets to them".to_owned();
@@ -96,7 +96,7 @@ fn gain_words(judgement: &Judgement) -> String {
     )
 }
 
-/// The judgement of a gain before its factor; nothing of a clear one.
+/// The judgement of a gain before its factor; empty for a clear one.
 pub(crate) fn before_factor(gain: Gain) -> &'static str {
     match gain {
         Gain::Clear => "",
@@ -105,13 +105,13 @@ pub(crate) fn before_factor(gain: Gain) -> &'static str {
     }
 }
 
-/// The verdict with its one figure, and why it is no better.
+/// The verdict with its one figure, and the reasons against a better one.
 fn verdict(judgement: &Judgement) -> Vec<String> {
     let (_, reasons) = judgement.confirmed();
     std::iter::once(judged(judgement)).chain(reasons).collect()
 }
 
-/// What the measurements confirm, with the error of the model that is delivered beside the expected one, in a sentence.
+/// The level that the measurements confirm, with the error of the delivered model beside the expected one, in a sentence.
 #[must_use]
 pub fn judged(judgement: &Judgement) -> String {
     let (level, _) = judgement.confirmed();
@@ -161,7 +161,7 @@ fn refitted_words(judgement: &Judgement) -> String {
     }
 }
 
-/// What was refitted; nothing of nothing.
+/// The refitted parts; empty if there are none.
 pub(crate) fn refitted_parts(judgement: &Judgement) -> String {
     let words = judgement.refitted.iter().map(|part| match part {
         Refitted::DeviceFrame => "device frame",

@@ -4,10 +4,11 @@
 //! nothing by itself.
 //!
 //! No number here that is not in the result, except sums over the rows of `residuals.csv`. `page` makes HTML by maud, which escapes it, and
-//! [`visible_markup`](poecal_numerics::text::visible_markup) goes over the whole; its style and script are built from `web/src` into `page/assets`.
-//! [`plot`] gets numbers, titles and axes, and returns SVG, without robots and calibrations.
+//! [`visible_markup`](poecal_numerics::text::visible_markup) is applied to the whole. Its style and script are built from `web/src` into
+//! `page/assets`. [`plot`] takes numbers, titles and axes, and returns SVG, without robots and calibrations.
 //!
-//! Not here: files (`poecal-results` writes the texts), computation but for charts: smoothed curves, and how joints move what was measured.
+//! Not here: files (`poecal-results` writes the texts), and computation except for charts: smoothed curves, and the motion of measured targets with
+//! the joints.
 
 #![forbid(unsafe_code)]
 

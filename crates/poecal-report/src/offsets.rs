@@ -1,4 +1,4 @@
-//! The offsets that explain how one model differs from another.
+//! The offsets that explain the difference of one model from another.
 
 use std::fmt::Write as _;
 
@@ -21,9 +21,9 @@ pub struct Offsets {
     base: EndEntry,
     tip: EndEntry,
     joints: Vec<JointEntry>,
-    /// Null where the tip is free.
+    /// Pose of the tip at zero joint values; null if the tip is free.
     home: Option<HomeEntry>,
-    /// Names of the joints whose offsets cannot be told.
+    /// Names of the joints whose offsets are not determined.
     undetermined: Vec<String>,
     predictions: Predictions,
     #[serde(skip)]
@@ -41,13 +41,13 @@ struct EndEntry {
 struct JointEntry {
     joint: String,
     kind: &'static str,
-    /// Null for a sliding joint.
+    /// Offset of a turning joint; null for a sliding joint.
     offset_deg: Option<f64>,
-    /// Null for a turning joint.
+    /// Offset of a sliding joint; null for a turning joint.
     offset_mm: Option<f64>,
     determined: bool,
     tilt_deg: f64,
-    /// Null for a sliding joint.
+    /// Shift of a turning joint's axis; null for a sliding joint.
     shift_mm: Option<f64>,
 }
 
@@ -60,7 +60,7 @@ struct HomeEntry {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Predictions {
     configurations: usize,
-    /// Over which range of the joints they are.
+    /// Range of the joints over which they are determined.
     range: &'static str,
     without_offsets: Errors,
     with_offsets: Errors,
@@ -75,7 +75,7 @@ struct Errors {
 }
 
 impl Offsets {
-    /// An explanation of how `actual` differs from `nominal`.
+    /// An explanation of the difference of `actual` from `nominal`.
     #[must_use]
     pub fn new(nominal: &Model, actual: &Model, found: &ModelOffsets) -> Self {
         let ModelOffsets { explanation, reasons, is_sampled } = found;
@@ -118,7 +118,7 @@ impl Offsets {
         }
     }
 
-    /// The offsets, and what they change of the tip's error, in a sentence.
+    /// The offsets, and their effect on the tip's error, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let joints: Vec<String> = self.joints.iter().map(JointEntry::words).collect();
@@ -131,7 +131,7 @@ impl Offsets {
         )
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer).
+    /// As text of lines up to 80 characters (except for longer names).
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();

@@ -10,7 +10,7 @@ use poecal_results::calibration_file::{CalibrationFile, OutlierSet};
 /// Rows that are named.
 const WORST: usize = 5;
 
-/// How many rows are suspected, the worst of them, and how the fit was made; nothing if there is nothing to say.
+/// Number of suspected rows, the worst of them, and the loss of the fit; empty without suspected rows and loss.
 pub(crate) fn suspected(out: &mut String, file: &CalibrationFile) {
     let robust = &file.robust;
     let fit = match robust.loss {

@@ -20,7 +20,7 @@ pub struct Plan {
     kept: usize,
     judge: usize,
     returns: usize,
-    /// How long it takes: the way at the speed of the programs, and a stop at each row.
+    /// Duration: motion at the speed of the programs, and a stop at each row.
     duration_s: f64,
     stop_s: f64,
     unknowns: usize,
@@ -33,12 +33,12 @@ pub struct Plan {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     candidates: Vec<usize>,
     curve: Vec<CurveEntry>,
-    /// Number of configurations from which ten more gain less than 5 %.
+    /// Number of configurations from which on ten more gain less than 5 %.
     enough: Option<usize>,
     rows: Vec<RowEntry>,
-    /// Conditions that are looked at.
+    /// Conditions that are checked.
     checked: Vec<&'static str>,
-    /// How many configurations each condition refused, of those that were tried.
+    /// Numbers of tried configurations that each condition refused.
     refused: BTreeMap<&'static str, usize>,
     tried: usize,
     left_out: Vec<[String; 2]>,
@@ -52,7 +52,7 @@ pub struct Plan {
 /// Columns of the table of errors by number of configurations. Removable is the part of an error that more rows would remove.
 pub(crate) const CURVE_HEAD: [&str; 5] =
     ["configurations", "calibrated", "removable", "corrected", "removable"];
-/// What makes a number of configurations enough.
+/// Reason why a number of configurations is enough.
 const LITTLE_GAIN: &str = "from there 10 more gain less than 5 %";
 
 /// Expected errors (RMS over the workspace) in two parts each.
@@ -92,7 +92,7 @@ impl PlanErrors {
         }
     }
 
-    /// Of the calibrated and of the corrected model: the error, and its parts.
+    /// Words for the calibrated and for the corrected model: the error, and its parts.
     pub(crate) fn words(&self) -> [String; 2] {
         let words = |all, open, rest| {
             format!(
@@ -117,7 +117,7 @@ pub(crate) fn robot_error_words(it: &PlanErrors, is_a_guess: bool) -> String {
 }
 
 impl Plan {
-    /// A plan for a model, and how long the robot stands at each row, seconds.
+    /// A plan for a model, with the duration of the robot's stop at each row, seconds.
     #[must_use]
     pub fn new(model: &Model, options: &PlanOptions, found: &Found, stop_s: f64) -> Self {
         let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
@@ -182,7 +182,7 @@ impl Plan {
         self.configurations + self.kept
     }
 
-    /// Whether as many configurations are planned as are worth it, in words.
+    /// Comparison of the planned number of configurations with the worthwhile one, in words.
     pub(crate) fn advice(&self) -> String {
         let planned = self.planned();
         match self.enough {
@@ -212,7 +212,7 @@ impl Plan {
         )
     }
 
-    /// What is planned, with its name.
+    /// Facts of the plan, with their names.
     pub(crate) fn facts(&self) -> Vec<(&'static str, String)> {
         let kept = if self.kept > 0 { format!(" beside {} kept ones", self.kept) } else { String::new() };
         let mut facts = vec![
@@ -271,7 +271,7 @@ impl Plan {
         facts
     }
 
-    /// As text of lines up to 80 characters (but for names that are longer).
+    /// As text of lines up to 80 characters (except for longer names).
     #[must_use]
     pub fn text(&self) -> String {
         let mut out = String::new();
@@ -297,7 +297,7 @@ impl Plan {
     }
 }
 
-/// The conditions that are looked at.
+/// The conditions that are checked.
 fn checked(conditions: &Conditions) -> Vec<&'static str> {
     let own = [
         (true, "limits of the joints"),

@@ -1,4 +1,4 @@
-//! What sees what: instruments and targets of a robot, and the joints between them.
+//! Lines of sight: instruments and targets of a robot, and the joints between them.
 
 use serde::Serialize;
 
@@ -7,16 +7,16 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::first_few;
 
-/// The ways from instruments to targets, and joints on none of them.
+/// The kinematic chains from instruments to targets, and joints on none of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SightCheck {
     ways: Vec<Way>,
-    /// Joints that no way passes: measurements cannot determine their axes.
+    /// Joints on no such chain: measurements cannot determine their axes.
     unseen: Vec<String>,
 }
 
 impl SightCheck {
-    /// Those of measurements, else of everything that the model names. Nothing for a chain from base to tip alone.
+    /// Chains of the measurements, else of everything that the model names. `None` for a chain from base to tip alone.
     pub(crate) fn from_robot(robot: &Robot, data: Option<&Dataset>) -> Option<Self> {
         if robot.is_serial() && robot.instruments.is_empty() && robot.mounted.is_empty() {
             return None;

@@ -1,4 +1,4 @@
-//! What all tables of 80 columns have in common: labelled lines, figures, errors of the three models.
+//! Common parts of all tables of 80 columns: labelled lines, figures, errors of the three models.
 
 use std::fmt::{Display, Write as _};
 
@@ -8,7 +8,7 @@ use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::error::shown;
 use poecal_numerics::text::visible;
 
-/// A model: its word, and how to take it from the accuracy of a set.
+/// A model: its word, and its accuracy in a set.
 type Model = (&'static str, fn(&SetAccuracy) -> Option<&ModelAccuracy>);
 
 /// The models; not every calibration has the last.
@@ -24,7 +24,7 @@ pub(crate) fn models(set: &SetAccuracy) -> Vec<Model> {
     MODELS.into_iter().filter(|(_, model)| model(set).is_some()).collect()
 }
 
-/// A row of statistics: its label, its name in files, and how to take it.
+/// A row of statistics: its label, its name in files, and its value.
 type StatisticRow = (&'static str, &'static str, fn(Statistic) -> f64);
 
 /// The rows of every table of errors.
@@ -38,7 +38,7 @@ pub(crate) const STATISTICS: [StatisticRow; 4] = [
 /// Widths of the label and of each cell in tables of models.
 pub(crate) const WIDTHS: [usize; 2] = [26, 13];
 
-/// Errors of each quantity by the three models, training and held out apart.
+/// Errors of each quantity by the three models, training and held out separately.
 pub(crate) fn accuracy_table(training: &SetAccuracy, held_out: Option<&SetAccuracy>) -> String {
     let mut out = String::new();
     for (k, quantity) in measured(training, held_out).enumerate() {
@@ -96,7 +96,7 @@ pub fn row(
     out.push('\n');
 }
 
-/// Four digits that matter, without an exponent where people read lengths.
+/// Four significant digits, without an exponent in the range of lengths.
 pub fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -113,7 +113,7 @@ pub(crate) fn rounded(values: [f64; 3], factor: f64, digits: usize) -> String {
     format!("({})", values.map(|value| short(value * factor, digits)).join(", "))
 }
 
-/// Up to `digits` decimals, without zeros at the end; digits of their own for what would else become nothing.
+/// Up to `digits` decimals, without zeros at the end; more decimals for a value that would otherwise become zero.
 pub(crate) fn short(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -130,7 +130,7 @@ pub(crate) fn leading_words(numbers: &Measured<f64>) -> String {
     numbers.leading().map_or_else(|| "-".to_owned(), words)
 }
 
-/// What is said behind a number of a quantity that is no part of a pose, since its unit does not tell which it is.
+/// Words after a number of a quantity that is no part of a pose, since its unit does not identify it.
 pub(crate) fn further_words(quantity: Quantity) -> String {
     if quantity.is_of_pose() { String::new() } else { format!(" of {}", quantity.name()) }
 }
@@ -143,7 +143,7 @@ pub(crate) fn noise_words(sigma: &Measured<f64>) -> String {
     format!("{} each component", words.collect::<Vec<_>>().join(", "))
 }
 
-/// [`number`], or a dash for what does not exist.
+/// [`number`], or a dash for a missing value.
 pub(crate) fn number_or_dash(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), number)
 }
@@ -153,7 +153,7 @@ pub(crate) fn robot_words(robot: &Robot) -> String {
     format!("{}: {kinds}, from {} to {}", shown(&robot.name), shown(&robot.base_name), shown(&robot.tip_name))
 }
 
-/// How many joints turn, and how many slide.
+/// Number of joints that turn, and of joints that slide.
 pub(crate) fn joints_words(kinds: impl Iterator<Item = JointKind>) -> String {
     let (turning, sliding): (Vec<_>, Vec<_>) = kinds.partition(|kind| *kind == JointKind::Revolute);
     let words = [(turning.len(), "revolute"), (sliding.len(), "prismatic")];
@@ -161,7 +161,7 @@ pub(crate) fn joints_words(kinds: impl Iterator<Item = JointKind>) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// How many poses and points.
+/// Number of poses and points.
 pub(crate) fn kinds_words(poses: usize, points: usize) -> String {
     let words = |count: usize, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     match (poses, points) {
@@ -190,8 +190,7 @@ pub fn lines<T: AsRef<str>>(out: &mut String, label: &str, texts: impl IntoItera
     }
 }
 
-/// A text with line breaks in place of blanks where it would be wider than `width`: behind `before` characters, and further lines
-/// indented.
+/// A text with line breaks in place of blanks if it would be wider than `width`: after `before` characters, and with further lines indented.
 #[must_use]
 pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String {
     let (mut out, mut used) = (String::new(), before);
@@ -210,12 +209,12 @@ pub fn broken(text: &str, before: usize, indent: usize, width: usize) -> String 
     }
     out
 }
-/// How far corners are off: in the picture, and at the board.
+/// Errors of corners: in the picture, and at the board.
 pub(crate) fn corner_words(found: &PixelAccuracy) -> String {
     format!("{} px, {} mm at the board square to the ray", number(found.rms_px), number(found.rms_mm))
 }
 
-/// The same of some pictures, with the median one.
+/// Errors of some pictures, with the median one.
 pub(crate) fn pictures_words(found: &PixelAccuracy) -> String {
     let median = number(found.median_picture_px);
     format!("{} pictures: {} (RMS), median picture {median} px", found.pictures, corner_words(found))

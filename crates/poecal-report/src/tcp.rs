@@ -5,14 +5,14 @@ use super::table::lines;
 use poecal_fit::hand_eye::{Tip, Tool};
 use poecal_results::tcp::ToolResult;
 
-/// Where the tip is, how surely, and what to think of it, in a sentence.
+/// Position of the tip, its bounds, and the judgement, in a sentence.
 #[must_use]
 pub fn tool_tip_answer(found: &Tool) -> String {
     let tips: Vec<String> = found.tips.iter().map(tip_words).collect();
     format!("{}: {}", found.level.words(), tips.join("; "))
 }
 
-/// The place of a tip.
+/// The position of a tip.
 fn tip_words(tip: &Tip) -> String {
     let t = 1e3 * tip.placed.pose.translation;
     let name = if tip.name.is_empty() { String::new() } else { format!("{}: ", tip.name) };

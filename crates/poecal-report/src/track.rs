@@ -1,4 +1,4 @@
-//! Whether a robot has drifted, for a person to look over or a machine to read.
+//! Detection of a robot's drift, for a person to look over or a machine to read.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use poecal_results::record::Record;
 use poecal_results::track::{JudgedBy, Repaired, State, Tracked, Witnesses};
 use poecal_results::validation::{TRACK, ValidationInputs};
 
-/// A visit with what was judged by what.
+/// A visit with its references.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Track {
     /// Name and version of this schema.
@@ -20,28 +20,28 @@ pub struct Track {
     pub poecal_version: &'static str,
     /// The robot's name.
     pub robot: String,
-    /// What was judged, and by what.
+    /// The judged calibration and the measurements that judge it.
     pub inputs: ValidationInputs,
-    /// What is stated of the visit, not of the calibration's session.
+    /// Statements about the visit, not about the calibration's session.
     #[serde(skip_serializing_if = "Record::is_empty")]
     pub record: Record,
     state: State,
     judged_by: JudgedBy,
-    /// Where the measuring device is stated to be, and how the tool was mounted: words of `--device` and `--tool`.
+    /// Stated position of the measuring device and mounting of the tool: words of `--device` and `--tool`.
     device: &'static str,
     tool: &'static str,
     pub(crate) rows: usize,
     repeated: usize,
     explanation: Option<ExplanationEntry>,
     alternatives: Vec<ExplanationEntry>,
-    /// Joints of whose zeros no shift is visible.
+    /// Joints without a visible shift of their zeros.
     pub(crate) invisible: Vec<InvisibleEntry>,
     pub(crate) joints: Vec<SightEntry>,
-    /// Root mean square change of measured places beside what is free, millimetres.
+    /// Root mean square change of measured positions beside the free unknowns, millimetres.
     pub(crate) change_mm: f64,
-    /// The same of what the explanation leaves.
+    /// Root mean square change that the explanation leaves.
     left_mm: f64,
-    /// Standard deviation of a coordinate of such a change, millimetres, and its degrees of freedom; null of a known one.
+    /// Standard deviation of a coordinate of such a change, millimetres, and its degrees of freedom; null for a known one.
     pub(crate) noise_mm: f64,
     freedom: Option<f64>,
     /// Root mean square error of the delivered model in this visit, millimetres.
@@ -49,22 +49,22 @@ pub struct Track {
     pub(crate) notes: Vec<String>,
 }
 
-/// What repeats of chosen configurations would show.
+/// Detectable shifts of repeats of chosen configurations.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WitnessPlan {
     robot: String,
     configurations: usize,
-    /// Whether they are new, and no earlier visit has them.
+    /// True if they are new, and no earlier visit has them.
     are_new: bool,
-    /// Standard deviation of a visit and coordinate for which this is, millimetres.
+    /// Standard deviation of a visit and coordinate for which this holds, millimetres.
     noise_mm: f64,
     joints: Vec<SightEntry>,
-    /// Joints of whose zeros no shift is visible.
+    /// Joints without a visible shift of their zeros.
     invisible: Vec<InvisibleEntry>,
 }
 
 impl WitnessPlan {
-    /// Of chosen configurations.
+    /// Plan of chosen configurations.
     #[must_use]
     pub fn new(found: &Witnesses, robot: &str, are_new: bool) -> Self {
         WitnessPlan {
@@ -77,7 +77,7 @@ impl WitnessPlan {
         }
     }
 
-    /// How many configurations are chosen, and the smallest shifts that their repeats show, in a sentence.
+    /// Number of chosen configurations, and the smallest shifts that their repeats detect, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let seen = self.joints.iter().filter_map(|it| {
@@ -109,7 +109,7 @@ impl WitnessPlan {
     }
 }
 
-/// What was calibrated anew, in words.
+/// Recalibrated parts, in words.
 #[must_use]
 pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
     let mut out = String::new();
@@ -131,7 +131,7 @@ pub fn recalibrated(found: &Repaired, before: &CalibrationFile) -> String {
 }
 
 impl Track {
-    /// Of what a visit showed.
+    /// Entries of a visit's result.
     #[must_use]
     pub fn new(found: &Tracked, robot: &str, inputs: ValidationInputs) -> Self {
         Track {
@@ -159,13 +159,13 @@ impl Track {
         }
     }
 
-    /// The same with what is stated of the visit.
+    /// The same result with the statements about the visit.
     #[must_use]
     pub fn with_record(self, record: Record) -> Self {
         Track { record, ..self }
     }
 
-    /// What changed, in a sentence.
+    /// The change, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let Some(found) = &self.explanation else {
@@ -186,7 +186,7 @@ impl Track {
         format!("{}{others}", found.words)
     }
 
-    /// The state with what changed.
+    /// The state with the change.
     pub(crate) fn state_words(&self) -> String {
         match (&self.explanation, self.state) {
             (Some(_), State::Changed) => format!("changed: {}", self.answer()),
@@ -194,7 +194,7 @@ impl Track {
         }
     }
 
-    /// By what it was judged.
+    /// Reference of the judgement.
     pub(crate) fn judged_words(&self) -> String {
         match self.judged_by {
             JudgedBy::Repeats => format!(
@@ -205,7 +205,7 @@ impl Track {
         }
     }
 
-    /// What the explanation leaves of the change.
+    /// Part of the change that the explanation leaves.
     pub(crate) fn left_words(&self) -> Option<String> {
         let left = || format!(", {:.3} mm of which the explanation leaves", self.left_mm);
         self.explanation.as_ref().map(|_| left())
@@ -220,7 +220,7 @@ impl Track {
         }
     }
 
-    /// What to do after the visit.
+    /// Advice after the visit.
     pub(crate) fn to_do(&self) -> String {
         let Some(found) = &self.explanation else {
             return match self.state {

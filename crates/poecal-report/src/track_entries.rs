@@ -1,4 +1,4 @@
-//! What a visit showed of each joint and of each cause, in numbers and words.
+//! Results of a visit for each joint and each cause, in numbers and words.
 
 use std::fmt::Write as _;
 
@@ -8,13 +8,13 @@ use poecal_fit::analysis::JointCoverage;
 use poecal_numerics::text::visible;
 use poecal_results::track::{Explanation, JointSight, Kind, Size, Unseen};
 
-/// What explains the changes.
+/// An explanation of the changes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ExplanationEntry {
     #[serde(skip)]
     pub(crate) of: Kind,
     pub(crate) kind: &'static str,
-    /// The joint of it; of two zeros both, null where it is of none.
+    /// Its joint; for two zeros both, null if it concerns no joint.
     pub(crate) joint: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) other_joint: Option<String>,
@@ -29,18 +29,18 @@ pub(crate) struct ExplanationEntry {
     pub(crate) other_sigma_deg: Option<f64>,
     pub(crate) size_mm: Option<f64>,
     pub(crate) sigma_mm: Option<f64>,
-    /// Growth of all lengths, parts in a million.
+    /// Growth of all lengths, parts per million.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) size_ppm: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sigma_ppm: Option<f64>,
-    /// Of zeros of three joints or more each.
+    /// Zeros of three joints or more, each with its shift.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) zeros: Vec<ZeroEntry>,
     pub(crate) words: String,
 }
 
-/// The zero of one of several joints: its shift in degrees, of a slide in millimetres.
+/// The zero of one of several joints: its shift in degrees, for a slide in millimetres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct ZeroEntry {
     pub(crate) joint: String,
@@ -61,7 +61,7 @@ impl ZeroEntry {
     }
 }
 
-/// A joint of which no shift of the zero is visible.
+/// A joint without a visible shift of its zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct InvisibleEntry {
     pub(crate) joint: String,
@@ -69,18 +69,18 @@ pub(crate) struct InvisibleEntry {
     pub(crate) words: String,
 }
 
-/// What would be visible of a joint: in degrees, of a slide in millimetres.
+/// Detectability of a joint's shift: in degrees, for a slide in millimetres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SightEntry {
     pub(crate) joint: String,
     pub(crate) unit: &'static str,
-    /// Smallest shift of its zero that is visible with 95 %; null where none is.
+    /// Smallest shift of its zero that is visible with 95 %; null if none is.
     pub(crate) smallest: Option<f64>,
     pub(crate) sigma: Option<f64>,
     /// Part of its range that the visit samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sampled: Option<[f64; 2]>,
-    /// Shift of its zero as found beside the explanation, and its standard deviation.
+    /// Estimated shift of its zero beside the explanation, and its standard deviation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) shift: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -102,7 +102,7 @@ fn kind(of: Kind) -> &'static str {
     }
 }
 
-/// Words of why no shift of a joint is visible.
+/// Words for the reason why no shift of a joint is visible.
 fn because(unseen: Unseen) -> (&'static str, &'static str) {
     match unseen {
         Unseen::Device => (
@@ -120,7 +120,7 @@ fn because(unseen: Unseen) -> (&'static str, &'static str) {
     }
 }
 
-/// A value in degrees; of a slide in millimetres.
+/// A value in degrees; for a slide in millimetres.
 pub(crate) fn shown(value: f64, slides: bool) -> f64 {
     if slides { 1e3 * value } else { value.to_degrees() }
 }
@@ -183,7 +183,7 @@ impl ExplanationEntry {
         }
     }
 
-    /// What it is of, in a word.
+    /// Its subject, in a word.
     pub(crate) fn named(&self) -> String {
         match (&self.joint, &self.other_joint, &self.name) {
             (Some(joint), Some(other), _) => format!("{joint} and {other}"),
@@ -195,7 +195,7 @@ impl ExplanationEntry {
     }
 }
 
-/// Whether programs and the calibration are used on, and what to do, by what explains the changes.
+/// Further use of programs and the calibration, and advice, by the explanation of the changes.
 pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
     let joint = found.joint.as_deref().map(visible).unwrap_or_default();
     let named = found.named();
@@ -240,12 +240,12 @@ pub(crate) fn to_do(found: &ExplanationEntry) -> (Use, String) {
     }
 }
 
-/// How far a calibration is used after a visit.
+/// Extent to which a calibration is used after a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     /// As before.
     Whole,
-    /// The axes as before, the tool not.
+    /// The axes as before, but not the tool.
     Axes,
     /// Not at all.
     None,
@@ -293,7 +293,7 @@ fn words(found: &Explanation) -> String {
     }
 }
 
-/// A line for each joint: the smallest shift that is visible, or why none is.
+/// A line for each joint: the smallest shift that is visible, or the reason if none is.
 pub(crate) fn sight_table(joints: &[SightEntry], invisible: &[InvisibleEntry]) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "\n  {:16} {:>30}", "joint", "smallest visible shift (95 %)");

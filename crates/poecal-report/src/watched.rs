@@ -18,13 +18,13 @@ pub struct Watched {
     row: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     id: Option<String>,
-    /// Whether the row is as expected; null while too few rows are known.
+    /// True if the row is as expected; null while too few rows are known.
     ok: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mistake: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     sentence: Option<String>,
-    /// How far the row is from what was expected, as a share of what is named.
+    /// Ratio of the row's deviation from expectation to the named quantity.
     ratio: Option<f64>,
     noticed_mm: Option<f64>,
     expected_calibrated_mm: Option<f64>,
@@ -82,7 +82,7 @@ impl Watched {
         })
     }
 
-    /// Whether the row is as expected, in a sentence.
+    /// Comparison of the row with the expectation, in a sentence.
     #[must_use]
     pub fn answer(&self) -> String {
         let named = self.id.as_ref().map_or_else(String::new, |id| format!(" ({id})"));

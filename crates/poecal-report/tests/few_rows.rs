@@ -1,4 +1,4 @@
-//! A calibration of geometry by few rows wakes no thread: what they cost to start is more than all that it does.
+//! A calibration of geometry by few rows wakes no thread: the start of threads costs more than the whole calculation.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used)]
@@ -36,7 +36,7 @@ fn fifty_rows_are_one_threads_work() {
         std::fs::remove_dir_all(&folder).unwrap();
     }
     assert_eq!(threads(), before);
-    // Many rows show that the count would have told.
+    // Many rows show that the count would have detected threads.
     let many = Simulation { count: 20_000, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     calibrate(&many.nominal, &many.data, &CalibrationOptions::default()).unwrap();
     if std::thread::available_parallelism().is_ok_and(|count| count.get() > 1) {

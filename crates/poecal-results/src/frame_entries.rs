@@ -1,4 +1,4 @@
-//! What the JSON of a camera's place and of a tool's tip have in common.
+//! Common parts of the JSON of a camera's pose and of a tool's tip.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use poecal_fit::hand_eye::{Finding, Level};
 
-/// What a result was computed from.
+/// Inputs of a result.
 #[derive(Serialize)]
 pub(crate) struct InputsEntry<'a> {
     #[serde(skip_serializing_if = "str::is_empty")]
@@ -46,7 +46,7 @@ impl<'a> FindingEntry<'a> {
     }
 }
 
-/// What a row is called.
+/// Name of a row.
 pub(crate) fn name_of(names: &[String], row: usize) -> &str {
     names.get(row).map_or("", String::as_str)
 }

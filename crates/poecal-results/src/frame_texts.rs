@@ -1,4 +1,4 @@
-//! A frame in the forms that people paste: matrix, quaternion, ROS, URDF, easy_handeye2, MoveIt, OpenCV, and makers' tools.
+//! A frame in the usual forms for pasting: matrix, quaternion, ROS, URDF, easy_handeye2, MoveIt, OpenCV, and makers' tools.
 
 use std::fmt::Write as _;
 
@@ -116,7 +116,7 @@ impl NamedFrame {
         )
     }
 
-    /// What `cv::FileStorage` reads: `rvec`, `tvec` and the matrix.
+    /// Text that `cv::FileStorage` reads: `rvec`, `tvec` and the matrix.
     #[must_use]
     pub fn opencv(&self) -> String {
         let matrix = |name: &str, rows: usize, columns: usize, values: &[f64]| {
@@ -132,7 +132,7 @@ impl NamedFrame {
             + &matrix(&format!("{}_from_{}", self.parent, self.child), 4, 4, self.matrix().as_flattened())
     }
 
-    /// Its place alone, where its orientation was not measured.
+    /// Its position alone, if its orientation was not measured.
     #[must_use]
     pub fn position_forms(&self) -> String {
         let millimetres: Vec<f64> = self.pose.translation.iter().map(|it| 1e3 * it).collect();
@@ -182,12 +182,12 @@ impl NamedFrame {
     }
 }
 
-/// What is known of a tool: lengths and, if its direction was measured, angles within which it is.
+/// Bounds of a tool: of the tip and, if its direction was measured, of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToolBounds {
-    /// Of the tip, metres.
+    /// Bound of the tip, metres.
     pub tip_m: f64,
-    /// Of the direction, radians; none if it was not measured.
+    /// Bound of the direction, radians; `None` if it was not measured.
     pub axis_rad: Option<f64>,
 }
 
@@ -196,13 +196,13 @@ pub struct ToolBounds {
 pub struct ToolForm {
     /// The maker's short name.
     pub maker: &'static str,
-    /// Its language and units, with what is not known and stays as the controller has it.
+    /// Its language and units, and the unknown values that stay as the controller has them.
     pub remark: String,
     /// The text to paste, or the numbers to type.
     pub text: String,
 }
 
-/// Decimals that show a tenth of a bound.
+/// Number of decimals that resolve a tenth of a bound.
 fn known_to(bound: f64) -> usize {
     if bound > 0.0 { (1.0 - bound.log10().floor()).clamp(0.0, 9.0) as usize } else { 9 }
 }
@@ -216,7 +216,7 @@ fn with_decimals(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A tool's tip, and its axes if its direction was measured, in the forms of controllers: with as many digits as are known, and without a mass.
+/// A tool's tip, and its axes if its direction was measured, in the forms of controllers: with only significant digits, and without a mass.
 #[must_use]
 pub fn tool_forms(pose: &Pose, bounds: ToolBounds) -> Vec<ToolForm> {
     let (mm, m) = (known_to(1e3 * bounds.tip_m), known_to(bounds.tip_m));

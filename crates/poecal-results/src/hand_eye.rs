@@ -1,4 +1,4 @@
-//! `hand_eye.json`: where a camera is, with its bounds, and the texts of the files beside it.
+//! `hand_eye.json`: pose of a camera with its bounds, and the texts of the files beside it.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ use poecal_storage::json_text;
 /// Version word of `hand_eye.json`.
 pub const SCHEMA: &str = "poecal-hand-eye-1";
 
-/// Names of the frames in what is written.
+/// Names of the frames in the output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameNames {
     /// The arm's base.
@@ -58,7 +58,7 @@ impl std::str::FromStr for FrameNames {
 }
 
 impl FrameNames {
-    /// With base and flange as a robot calls them.
+    /// Names with base and flange as in a robot.
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
         FrameNames { base: robot.base_name.clone(), flange: robot.tip_name.clone(), ..FrameNames::default() }
@@ -76,26 +76,26 @@ pub struct HandEyeResult<'a> {
     pub names: &'a FrameNames,
     /// The command that makes the same result; empty if there is none.
     pub command: &'a str,
-    /// What joint readings add.
+    /// Additional results from joint readings.
     pub arm: Option<&'a ArmByJoints>,
 }
 
-/// What joint readings add to a hand-eye calibration.
+/// Additional results of a hand-eye calibration from joint readings.
 #[derive(Clone, Debug)]
 pub struct ArmByJoints {
     /// The session as `calibrate` reads it.
     pub session: String,
-    /// Errors of held-out poses with the arm as it is and fitted too, or why the arm was not fitted.
+    /// Errors of held-out poses with the arm held and with the arm fitted, or the reason why the arm was not fitted.
     pub errors: std::result::Result<ArmToo, String>,
     /// The command that fits the arm with the camera.
     pub command: String,
 }
 
 impl ArmByJoints {
-    /// Of the session of a robot's joint readings, and the errors that were found with it.
+    /// Results from the session of a robot's joint readings, and the errors that were found with it.
     ///
     /// # Errors
-    /// As of any unit that is not known.
+    /// Those of an unknown unit.
     pub fn new(
         (robot, data): (&Robot, &Dataset),
         found: &HandEye,

@@ -1,11 +1,11 @@
-//! A lens that a hand-eye calibration found, in its JSON and as a file.
+//! A lens from a hand-eye calibration, in its JSON and as a file.
 
 use serde::Serialize;
 
 use poecal_fit::hand_eye::FoundLens;
 use poecal_model::camera::PictureNumber;
 
-/// A lens that was found with the frames.
+/// A lens that was fitted with the frames.
 #[derive(Serialize)]
 pub(crate) struct LensEntry<'a> {
     numbers: Vec<LensNumberEntry<'a>>,
@@ -13,7 +13,7 @@ pub(crate) struct LensEntry<'a> {
     apart: f64,
 }
 
-/// A number of a lens: as it was found, and by the pictures alone.
+/// A number of a lens: as fitted, and by the pictures alone.
 #[derive(Serialize)]
 struct LensNumberEntry<'a> {
     name: &'a str,

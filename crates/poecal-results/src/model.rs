@@ -17,7 +17,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_plan::plan::RobotError;
 use poecal_storage::{looks_like, source_text};
 
-/// What a model's file is.
+/// Description of a model's file.
 const MODEL: &str = "a robot model (URDF, MJCF, SDF, TOML or calibration.json)";
 
 /// Source of a model.
@@ -34,8 +34,8 @@ const MODEL: &str = "a robot model (URDF, MJCF, SDF, TOML or calibration.json)";
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelSource {
-    /// A URDF text, into which other values can be written; of a model of another form (MJCF, SDF, a driver's YAML, a controller's conf)
-    /// the URDF that says the same.
+    /// A URDF text, into which other values can be written; for a model of another form (MJCF, SDF, a driver's YAML, a controller's conf) the
+    /// equivalent URDF.
     Urdf(Box<UrdfDocument>),
     /// A TOML model.
     Toml,
@@ -58,12 +58,12 @@ pub struct Model {
     pub robot: Robot,
     /// Its source.
     pub source: ModelSource,
-    /// File name as given by the user.
+    /// File name as stated by the user.
     pub path: PathBuf,
 }
 
 impl Model {
-    /// `base_from_device` of each station of some measurements, if the model is a calibration that has them all; else none.
+    /// `base_from_device` of each station of some measurements, if the model is a calibration with all of them; else empty.
     #[must_use]
     pub fn devices_of(&self, data: &Dataset) -> Vec<Pose> {
         match &self.source {
@@ -110,7 +110,7 @@ impl ModelFormat {
         }
     }
 
-    /// The form that a text looks like.
+    /// The probable form of a text.
     fn of_text(text: &str) -> Self {
         match text.trim_start_matches('\u{feff}').trim_start().chars().next() {
             Some('<') => ModelFormat::Urdf,
@@ -123,13 +123,13 @@ impl Model {
     /// Reads a robot model, with the form by the file's extension, else by the beginning of the text. `selection` is for URDF.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one, or an instrument or a target that it does not have;
-    /// otherwise as the reader of its form.
+    /// [`ErrorKind::File`] if the file cannot be read; [`ErrorKind::Option`] if a chain is selected in a model that has only one, or an instrument or
+    /// a target that it does not have; otherwise as the reader of its form.
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         Model::read_at(path.as_ref(), selection)
     }
 
-    /// Compiled once, and not for each kind of path.
+    /// The part of reading that does not depend on the kind of path, compiled once.
     fn read_at(path: &Path, selection: &ChainSelection) -> Result<Self> {
         let text = source_text::read(path, MODEL)?;
         let beside = Form::from_text(&text, path).and_then(|form| form.sibling(&text, path));
@@ -141,7 +141,7 @@ impl Model {
         Model::parse_beside(&text, path, Some((&table, &beside)), selection)
     }
 
-    /// A robot model from its text; messages call it `path`, whose extension gives the form, as for a file.
+    /// A robot model from its text; messages name it `path`, whose extension determines the form, as for a file.
     ///
     /// # Errors
     /// As [`Model::read`].
@@ -192,7 +192,7 @@ impl Model {
 }
 
 impl Model {
-    /// How the readings of a calibration are made of those that its controller counts; `None` of other models, and where they are the same.
+    /// Mapping from the controller's counts to the readings of a calibration; `None` for other models, and if they are equal.
     #[must_use]
     pub fn controller(&self) -> Option<&Controller> {
         match &self.source {
@@ -201,13 +201,13 @@ impl Model {
         }
     }
 
-    /// The same where some reading is made of others than one by itself.
+    /// The same mapping if some reading depends on more than one count.
     #[must_use]
     pub fn sums(&self) -> Option<&Controller> {
         self.controller().filter(|it| !it.is_plain())
     }
 
-    /// What its file states of links and joints that is not read, or that others understand differently, a sentence each.
+    /// Statements of its file about links and joints that are not read, or that other programs interpret differently, a sentence each.
     #[must_use]
     pub fn remarks(&self) -> &[String] {
         match &self.source {
@@ -216,7 +216,7 @@ impl Model {
         }
     }
 
-    /// What looks like other units than those of its form, a sentence each.
+    /// Values that seem to be in other units than those of its form, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         match &self.source {
@@ -225,7 +225,7 @@ impl Model {
         }
     }
 
-    /// That a new calibration starts from the axes of this one alone; `None` of other models, and of a calibration without joint terms.
+    /// Note that a new calibration starts from the axes of this one alone; `None` for other models, and for a calibration without joint terms.
     #[must_use]
     pub fn terms_left_out(&self) -> Option<String> {
         match &self.source {
@@ -239,7 +239,7 @@ impl Model {
         }
     }
 
-    /// Options that read files for this robot with what its controller counts.
+    /// Options that read files for this robot with its controller's counts.
     #[must_use]
     pub fn reads(&self, options: ReadOptions) -> ReadOptions {
         let beyond_tip = match &self.source {
@@ -249,7 +249,7 @@ impl Model {
         ReadOptions { controller: self.controller().cloned(), beyond_tip, ..options }
     }
 
-    /// The URDF that was read, or calibrated; none of other models.
+    /// The URDF that was read, or calibrated; `None` for other models.
     pub(crate) fn document(&self) -> Result<Option<Cow<'_, UrdfDocument>>> {
         match &self.source {
             ModelSource::Urdf(document) => Ok(Some(Cow::Borrowed(document))),
@@ -301,7 +301,7 @@ fn refuse_chain(path: &Path, selection: &ChainSelection) -> Result<()> {
         .in_file(path))
 }
 
-/// Refuses instruments and targets that a model without links does not have itself.
+/// Refuses instruments and targets that are not in a model without links.
 fn check_mounts(path: &Path, selection: &ChainSelection, robot: &Robot) -> Result<()> {
     let instruments: Vec<&str> = robot.instruments.iter().map(|mount| mount.name.as_str()).collect();
     let mounted = robot.mounted.iter().map(|mount| mount.name.as_str());

@@ -1,4 +1,4 @@
-//! The joint offsets with which one model comes nearest to another, as every command states them.
+//! The joint offsets of the best fit of one model to another, as every command states them.
 
 use super::model::{Model, ModelSource};
 use poecal_calibrate::DeviceFrameKnowledge;
@@ -7,7 +7,7 @@ use poecal_model::offsets::{End, Explanation, OffsetOptions, explain};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// The offsets between two models, and how they were found.
+/// The offsets between two models, and the choices of their fit.
 ///
 /// ```
 /// use poecal_results::model::{Model, ModelSource};
@@ -19,17 +19,17 @@ use poecal_numerics::error::Result;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelOffsets {
-    /// The offsets, and what they leave.
+    /// The offsets, and the errors that remain.
     pub explanation: Explanation,
-    /// Why the base and the tip are kept or free.
+    /// Reason why the base and the tip are held or free.
     pub reasons: [&'static str; 2],
-    /// Whether the tips are compared over the range that the calibration sampled, and not within the limits.
+    /// True if the tips are compared over the range that the calibration sampled, and not within the limits.
     pub is_sampled: bool,
 }
 
 impl ModelOffsets {
-    /// Those with which `nominal` comes nearest to `actual`, with base and tip as stated or else as `ModelOffsets::ends` says: the tip is nearest over
-    /// the sampled range where the actual model is a calibration, otherwise over the nominal limits.
+    /// Offsets that fit `nominal` best to `actual`, with base and tip as stated, or else as `ModelOffsets::ends` decides. The tips are compared over
+    /// the sampled range if the actual model is a calibration, otherwise over the nominal limits.
     ///
     /// # Errors
     /// As [`explain`].
@@ -37,7 +37,7 @@ impl ModelOffsets {
         Self::of_robots(&nominal.robot, &actual.robot, actual, ends)
     }
 
-    /// The same of robots of the models: `source` is the actual one's.
+    /// Offsets between robots of the models: `source` is the actual one's.
     pub(crate) fn of_robots(
         nominal: &Robot,
         actual: &Robot,
@@ -54,7 +54,8 @@ impl ModelOffsets {
         Ok(ModelOffsets { explanation, reasons: [base_reason, tip_reason], is_sampled: !coverage.is_empty() })
     }
 
-    /// Whether base and tip are kept or free, as asked or else as usual, each with the reason: free is what a calibration does not know.
+    /// Decision whether base and tip are held or free, as requested or by default, each with the reason. By default an end is free if the calibration
+    /// does not determine it.
     fn ends([base, tip]: [Option<End>; 2], actual: &Model) -> [(End, &'static str); 2] {
         let both = (End::Kept, "both models state it");
         let (usual_base, usual_tip) = match &actual.source {

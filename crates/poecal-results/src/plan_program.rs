@@ -7,13 +7,13 @@ use poecal_model::robot::{ReadingKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_plan::plan::PlannedRow;
 
-/// Speed of the fastest joint of a program for Universal Robots, radians per second; others have a tenth of what they can, or 100 mm/s.
+/// Speed of the fastest joint of a program for Universal Robots, radians per second; others have a tenth of their maximum, or 100 mm/s.
 pub const SPEED_RAD_S: f64 = 0.3;
 /// Most axes of a program.
 const AXES: usize = 6;
 
-/// Writes the rows as a program of the language that the name of its file says (`.script`, `.mod`, `.src`, `.ls`): slow joint motions, each
-/// with a stop at which a person measures and goes on. Angles are those of the model, with its zeros and signs.
+/// Writes the rows as a program of the language that its file's extension states (`.script`, `.mod`, `.src`, `.ls`). Its slow joint motions end each
+/// with a stop, at which a person measures and continues. Angles are those of the model, with its zeros and signs.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] for a name of another ending, and for robots of other than up to six turning joints.
@@ -56,7 +56,7 @@ impl Row {
         Row { number, angles_rad: row.readings.clone() }
     }
 
-    /// Its angles in degrees, those that are missing 0.
+    /// Its angles in degrees, 0 for missing ones.
     fn degrees(&self) -> Vec<f64> {
         let mut degrees: Vec<f64> = self.angles_rad.iter().map(|it| it.to_degrees()).collect();
         degrees.resize(AXES, 0.0);
@@ -64,7 +64,7 @@ impl Row {
     }
 }
 
-/// What stands above every program.
+/// Lines above every program.
 const ABOVE: [&str; 3] = [
     "Written by poecal plan. ONLY CONFIGURATIONS ARE CHECKED, NEVER THE WAY BETWEEN THEM:",
     "go through it slowly, in single steps, before anything is fixed to the flange.",

@@ -31,8 +31,8 @@ pub enum PredictionFrame {
     Device,
 }
 
-/// Predicts the pose of the tip, or of a target ([`default_target`] without a name), in each configuration: a header and `x[m],y[m],z[m],qx,qy,qz,qw` a row, after
-/// the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
+/// Predicts the pose of the tip, or of a target ([`default_target`] without a name), in each configuration. The text has a header and rows
+/// `x[m],y[m],z[m],qx,qy,qz,qw`, after the rows' `id` if they have one. Numbers read back exactly; `qw ≥ 0`.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the model has no such target, no measuring device, or several targets that it may see.
@@ -92,7 +92,7 @@ pub struct Predicted {
     pub target: Option<String>,
     /// Pose of the tip or target in the chosen frame, one for each configuration.
     pub poses: Vec<Pose>,
-    /// Predicted uncertainty of each, and whether every joint is inside the sampled range; if asked for.
+    /// Predicted uncertainty of each, and true if every joint is inside the sampled range; if requested.
     pub doubts: Option<Vec<(PredictedError, bool)>>,
 }
 
@@ -127,12 +127,12 @@ pub fn predicted(
     Ok(Predicted { target: target.map(str::to_owned), poses, doubts })
 }
 
-/// How many times the expected error of a measured target that of the tip is, from which the reason is said.
+/// Ratio of the tip's expected error to a measured target's from which on the reason is stated.
 const WORSE: f64 = 1.5;
-/// The name of the tip where a target is asked for.
+/// Name of the tip as a requested target.
 const TIP: &str = "tip";
 
-/// Whether a name means the tip: that of no target.
+/// True if a name denotes the tip, and not a target.
 fn is_tip(model: &Model, name: &str) -> bool {
     let Robot { targets, mounted, .. } = &model.robot;
     name == TIP && !targets.iter().any(|(it, _)| it == TIP) && !mounted.iter().any(|it| it.name == TIP)
@@ -145,8 +145,8 @@ fn measured(model: &Model) -> Vec<(&str, &TargetEntry)> {
     file.targets.iter().filter(|(_, it)| is_measured(it)).map(|(name, it)| (name.as_str(), it)).collect()
 }
 
-/// The target that is predicted where none is named; `None` is the tip. In the device's frame it is the only one that was measured, which the device
-/// sees; in the base frame the tip, but with the expected error the first that was measured on the robot: the place of a tip on its link was not.
+/// The default target of a prediction; `None` is the tip. In the device's frame it is the only measured one, which the device sees. In the base frame
+/// it is the tip. With the expected error it is the first measured target on the robot, since the position of a tip on its link was not measured.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if several targets were measured that the device may see.
@@ -158,7 +158,7 @@ pub fn default_target(model: &Model, frame: PredictionFrame, with_uncertainty: b
     }
 }
 
-/// The first target that was measured on the robot; of the states of one target the last. `None` where the tip itself was measured.
+/// The first target that was measured on the robot; of the states of one target the last. `None` if the tip itself was measured.
 fn on_robot(model: &Model) -> Option<&str> {
     let robot = &model.robot;
     let is_at_tip = |name: &str| robot.mounted.iter().any(|it| it.name == name && robot.is_at_tip(it));
@@ -170,8 +170,8 @@ fn on_robot(model: &Model) -> Option<&str> {
     only_target(&names).or_else(|| names.first().copied())
 }
 
-/// What is to be said of a prediction with its expected error: which target is predicted where none was named, and of a tip that was not measured
-/// why its error is larger, each with the way to the other.
+/// Note on a prediction with its expected error. It states the default target if none was named, and the option for the other. For a tip that was not
+/// measured it states the reason of the larger error.
 ///
 /// # Errors
 /// As [`predict`].
@@ -206,7 +206,7 @@ pub fn remark(
     }
 }
 
-/// The only target that a calibration measured; `None` where that is the tip.
+/// The only target that a calibration measured; `None` if that is the tip.
 fn seen(model: &Model) -> Result<Option<&str>> {
     let names: Vec<&str> = measured(model).into_iter().map(|(name, _)| name).collect();
     match (names.as_slice(), only_target(&names)) {

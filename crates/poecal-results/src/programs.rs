@@ -1,4 +1,4 @@
-//! Robot programs, as the bytes that they are.
+//! Robot programs as raw bytes.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -7,16 +7,16 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::limits::Limit;
 use poecal_storage::source;
 
-/// The bytes of a robot program, of whatever encoding.
+/// The bytes of a robot program, in any encoding.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than [`Limit::Program`], or empty; [`ErrorKind::Syntax`] if it is text of two
-/// bytes a letter.
+/// [`ErrorKind::File`] if it is a directory, missing, unreadable, larger than [`Limit::Program`], or empty; [`ErrorKind::Syntax`] if it is text of
+/// two bytes for each letter.
 pub fn read_program(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     read_at(path.as_ref())
 }
 
-/// Compiled once, and not for each kind of path.
+/// The part of reading that does not depend on the kind of path, compiled once.
 fn read_at(path: &Path) -> Result<Vec<u8>> {
     let expected = "a robot program";
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! What a certificate says of a session beside its figures: which robot, who, when, where, with what.
+//! Statements of a certificate about a session beside its figures: robot, persons, date, place and equipment.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,10 +11,10 @@ const LONGEST: usize = 200;
 /// Most letters of a note.
 const LONGEST_NOTE: usize = 1000;
 
-/// Makes the record from its entries: key, label, and what it is.
+/// Defines the record by its entries: key, label, and description.
 macro_rules! record {
     ($($(#[$doc:meta])+ $key:ident = $label:literal,)+) => {
-        /// What is stated of a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from it.
+        /// Statements about a session, for its report: after ISO/IEC 17025:2017, 7.8.2. poecal computes nothing from them.
         #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
         #[serde(default)]
         pub struct Record {
@@ -25,7 +25,7 @@ macro_rules! record {
             /// The keys, in the order of the report.
             pub const KEYS: &[&str] = &[$(stringify!($key)),+];
 
-            /// What is stated: key, label and text.
+            /// The statements: key, label and text.
             #[must_use]
             pub fn entries(&self) -> Vec<(&'static str, &'static str, &str)> {
                 let all = [$((stringify!($key), $label, &self.$key)),+];
@@ -46,11 +46,11 @@ macro_rules! record {
 record! {
     /// Number of the report or certificate.
     certificate = "Certificate",
-    /// Who calibrated: name and address.
+    /// Name and address of the calibrating laboratory.
     laboratory = "Laboratory",
-    /// For whom.
+    /// Customer of the calibration.
     customer = "Customer",
-    /// The robot as its owner calls it: maker and type.
+    /// The robot's name used by its owner: maker and type.
     robot = "Robot",
     /// Its serial number.
     serial = "Serial number",
@@ -62,11 +62,11 @@ record! {
     tool = "Tool",
     /// The load that the robot carried, with its unit.
     payload = "Payload",
-    /// Who measured.
+    /// Person who measured.
     operator = "Operator",
     /// Day of the measurements, `YYYY-MM-DD`.
     date = "Date",
-    /// Where the robot stood.
+    /// Location of the robot.
     place = "Place",
     /// Temperature there, with its unit, `21.5 °C` or `21.5 ± 0.5 °C`.
     temperature = "Temperature",
@@ -77,11 +77,11 @@ record! {
 }
 
 impl Record {
-    /// Of keys and texts; an empty text states nothing.
+    /// Record of keys and texts; an empty text states nothing.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] for a key that is not known or stands twice, a text that is too long or has control characters, a date that
-    /// is none, and a temperature that is none.
+    /// [`ErrorKind::Option`] for a key that is not known or repeated, a text that is too long or has control characters, an invalid date, and an
+    /// invalid temperature.
     pub fn from_pairs<'a>(pairs: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<Self> {
         let mut record = Record::default();
         for (key, text) in pairs {
@@ -108,7 +108,7 @@ impl Record {
         Ok((key.to_owned(), value))
     }
 
-    /// The same with what another states in place of its own.
+    /// The same record with another's statements in place of its own.
     #[must_use]
     pub fn overridden(mut self, by: &Record) -> Self {
         for (key, _, text) in by.entries() {
@@ -119,13 +119,13 @@ impl Record {
         self
     }
 
-    /// Whether it states nothing.
+    /// True if it states nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entries().is_empty()
     }
 
-    /// A text as it is kept; `None` of an empty one.
+    /// A text as it is stored; `None` for an empty one.
     fn checked(key: &str, text: &str) -> Result<Option<String>> {
         if !Record::KEYS.contains(&key) {
             return Err(unknown(key));
@@ -175,7 +175,7 @@ fn unknown(key: &str) -> Error {
     refused(format!("found the key `{key}`, expected one of the record: {near}"))
 }
 
-/// Whether it is a day of the calendar, `YYYY-MM-DD`.
+/// True if it is a day of the calendar, `YYYY-MM-DD`.
 fn is_date(text: &str) -> bool {
     let form: String = text.chars().map(|c| if c.is_ascii_digit() { '0' } else { c }).collect();
     let mut parts = text.split('-').map(str::parse::<u32>);
@@ -193,7 +193,7 @@ fn is_date(text: &str) -> bool {
     form == "0000-00-00" && year >= 1900 && (1..=days).contains(&day)
 }
 
-/// Degrees Celsius with their unit, and how far they varied, as people read them.
+/// Degrees Celsius with their unit, and their variation, as people read them.
 fn temperature(text: &str) -> Option<String> {
     let number = text.strip_suffix('C')?.trim_end();
     let number = number.strip_suffix('°').unwrap_or(number).trim_end();

@@ -1,6 +1,6 @@
 //! Old words of commands, options and settings, each with the new one: the table *Names that changed* of CHANGELOG.md.
 
-/// Commands with an old word (none: the program itself), the old word, and the new one.
+/// Commands with an old word (empty: the program itself), the old word, and the new one.
 pub const RENAMED: [(&str, &str, &str); 41] = [
     ("", "apply", "export CALIBRATION --onto URDF"),
     ("", "board", "detect --print BOARD"),

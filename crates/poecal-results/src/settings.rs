@@ -44,7 +44,7 @@ pub struct Setting {
 /// A settings file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// File name as given by the user.
+    /// File name as stated by the user.
     pub path: PathBuf,
     /// The settings, in the order of their lines.
     pub entries: Vec<Setting>,
@@ -64,7 +64,7 @@ impl Settings {
         )
     }
 
-    /// Settings from their text; messages call it `path`.
+    /// Settings from their text; messages name it `path`.
     ///
     /// # Errors
     /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, is not of this version, or has a key that is not known
@@ -73,7 +73,7 @@ impl Settings {
         Settings::parse_at(text, path.as_ref(), keys)
     }
 
-    /// Compiled once, and not for each kind of path.
+    /// The part of reading that does not depend on the kind of path, compiled once.
     fn parse_at(text: &str, path: &Path, keys: &[&str]) -> Result<Self> {
         let at =
             |offset: usize, message: String| ErrorKind::Syntax.error(message).at_offset(path, text, offset);

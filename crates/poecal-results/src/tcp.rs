@@ -1,4 +1,4 @@
-//! `tcp.json`: where the tip of a tool is, with its bounds, and the texts of the files beside it.
+//! `tcp.json`: position of a tool's tip with its bounds, and the texts of the files beside it.
 
 use serde::Serialize;
 
@@ -72,7 +72,7 @@ impl ToolResult<'_> {
         NamedFrame { parent: "tool0".to_owned(), child: "tcp".to_owned(), pose: self.found.frame }
     }
 
-    /// The tool in the forms of controllers; none of one that is not to be used.
+    /// The tool in the forms of controllers; empty for one that is not to be used.
     #[must_use]
     pub fn forms(&self) -> Vec<ToolForm> {
         if self.found.level == Level::DoNotUse {
@@ -82,7 +82,7 @@ impl ToolResult<'_> {
         tool_forms(&self.found.frame, ToolBounds { tip_m, axis_rad: self.found.axis.map(|it| it.1) })
     }
 
-    /// The same as text, each under its remark.
+    /// The forms as text, each under its remark.
     fn forms_text(&self) -> String {
         self.forms().iter().map(|it| format!("# {}\n{}\n", it.remark, it.text)).collect()
     }

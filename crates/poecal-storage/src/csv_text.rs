@@ -1,17 +1,17 @@
-//! Text cells of CSV output, protected from being run by a spreadsheet and read back the same.
+//! Text cells of CSV output, protected from execution by a spreadsheet and read back unchanged.
 
 use std::borrow::Cow;
 
 /// Prefix of a text that a spreadsheet would run.
 const MARK: char = '\'';
 
-/// Whether a cell with this beginning would be run or misread.
+/// True if a cell with this beginning would be run or misread.
 pub fn is_run(c: char) -> bool {
     matches!(c, '=' | '+' | '-' | '@' | '\t' | '\r' | '\n')
 }
 
-/// A text as a cell: one that a spreadsheet would run, or that begins with an apostrophe, gets an apostrophe in front; numbers do not.
-/// Quoted where necessary.
+/// A text as a cell. A text that a spreadsheet would run, or that begins with an apostrophe, receives a leading apostrophe, unless it is a number.
+/// Quotes are added if necessary.
 pub fn cell(text: &str) -> Cow<'_, str> {
     if is_plain(text) {
         return text.into();
@@ -26,7 +26,7 @@ pub fn cell(text: &str) -> Cow<'_, str> {
     if is_marked { format!("{MARK}{text}").into() } else { text.into() }
 }
 
-/// Whether a text is surely a cell as it is: digits with a point, letters.
+/// True if a text is surely an unchanged cell: digits with a point, letters.
 fn is_plain(text: &str) -> bool {
     let body = text.strip_prefix('-').unwrap_or(text);
     let mut points = 0;
@@ -46,7 +46,7 @@ pub fn plain(text: &str) -> &str {
     }
 }
 
-/// Whether a text is a number with a sign and nothing else.
+/// True if a text is a number with a sign and nothing else.
 pub fn is_number(text: &str) -> bool {
     let characters = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
     text.chars().all(characters) && text.parse::<f64>().is_ok()
@@ -79,7 +79,7 @@ mod tests {
         for (text, expected) in cases {
             assert_eq!(cell(text), expected);
         }
-        // An apostrophe of somebody else's stays.
+        // An apostrophe in a foreign file stays.
         assert_eq!((plain("'abc"), plain("'"), plain("5'")), ("'abc", "'", "5'"));
     }
 }

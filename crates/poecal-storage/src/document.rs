@@ -1,8 +1,8 @@
-//! Inputs that are opened once: what was read of one is kept, for each later question about the same path.
+//! Inputs that are opened once: the bytes that were read are kept for each later question about the same path.
 //!
-//! So a pipe answers like a file, and all answers are of the same bytes while a log grows. Within [`reading`] alone; elsewhere, and for what is
-//! [streamed](super::source::open_streamed), nothing is kept. Of a file, whose beginning is all that most questions are about, no more is kept than
-//! 64 MiB, and of many files few stay open: those are opened again.
+//! So a pipe answers like a file, and all answers are from the same bytes while a log grows. This applies within [`reading`] only. Elsewhere, and
+//! for [streamed](super::source::open_streamed) inputs, nothing is kept. Most questions concern the beginning of a file, so at most 64 MiB of it
+//! are kept. Of many files few stay open: the others are opened again.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -13,19 +13,19 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::disk;
 use poecal_numerics::error::Result;
 
-/// Bytes that are read of an input at a time.
+/// Number of bytes that are read from an input at a time.
 const BLOCK: usize = 1 << 16;
-/// Most bytes of a file that are kept.
+/// Largest number of bytes of a file that are kept.
 const MOST_KEPT: usize = 64 << 20;
-/// Most files that stay open.
+/// Largest number of files that stay open.
 const MOST_OPEN: usize = 64;
 
 thread_local! {
-    /// The inputs of this thread that were opened, within [`reading`].
+    /// The open inputs of this thread, within [`reading`].
     static OPEN: RefCell<Option<BTreeMap<PathBuf, Document>>> = const { RefCell::new(None) };
 }
 
-/// Does some work in which this thread opens each input once.
+/// Runs `work`, during which this thread opens each input once.
 pub fn reading<T>(work: impl FnOnce() -> T) -> T {
     if OPEN.with_borrow(Option::is_some) {
         return work();
@@ -35,7 +35,7 @@ pub fn reading<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The same with an input of these bytes, which has this name and is on no disk.
+/// Runs `work` like [`reading`], with an input of this name and text, which is on no disk.
 pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
     reading(|| {
         let before = keep(name, Some(Document::new(Box::new(Cursor::new(text.as_bytes().to_vec())), None)));
@@ -45,7 +45,7 @@ pub fn reading_text<T>(name: &Path, text: &str, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Keeps this as the input of a path, or nothing; gives what was kept.
+/// Keeps this as the input of a path, or nothing; returns the previous input.
 fn keep(path: &Path, document: Option<Document>) -> Option<Document> {
     OPEN.with_borrow_mut(|all| match document {
         Some(document) => all.as_mut()?.insert(path.to_path_buf(), document),
@@ -53,7 +53,7 @@ fn keep(path: &Path, document: Option<Document>) -> Option<Document> {
     })
 }
 
-/// Whether a path is that of an input that is kept: no folder.
+/// True if a path is that of an input that is kept: no folder.
 pub fn is_kept(path: &Path) -> bool {
     OPEN.with_borrow(|all| all.as_ref().is_some_and(|all| all.contains_key(path)))
 }
@@ -67,12 +67,12 @@ impl Drop for End {
     }
 }
 
-/// Forgets what was read: for whoever changes files that may be inputs.
+/// Forgets all inputs: for code that changes files that may be inputs.
 pub fn forget() {
     OPEN.with_borrow_mut(|open| open.iter_mut().for_each(BTreeMap::clear));
 }
 
-/// A reader of an input from its beginning: of what is kept, and then of what `open` opens.
+/// A reader of an input from its beginning: from the kept bytes, then from the source that `open` opens.
 pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<Source> {
     let kept = OPEN.with_borrow(|all| all.as_ref().map(|all| all.get(path).cloned()));
     Ok(match kept {
@@ -87,7 +87,7 @@ pub(crate) fn open(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result
     })
 }
 
-/// Closes the files that are kept, if they are many.
+/// Closes the files that are kept, if there are many.
 fn close_most() {
     OPEN.with_borrow(|all| {
         let all = all.iter().flatten().map(|it| it.1);
@@ -102,7 +102,7 @@ pub(crate) fn again(path: &Path) -> Option<Source> {
     OPEN.with_borrow(|all| Some(Box::new(Reader::Kept(all.as_ref()?.get(path)?.clone())) as Source))
 }
 
-/// The same of an input whose bytes are kept no longer: what was read before is read again.
+/// A reader of an input whose bytes are no longer kept: bytes that were read before are read again.
 pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Result<io::Result<Source>> {
     match OPEN.with_borrow_mut(|all| all.as_mut()?.remove(path)) {
         None => open().map(Ok),
@@ -113,12 +113,12 @@ pub(crate) fn stream(path: &Path, open: impl FnOnce() -> Result<Source>) -> Resu
 /// Bytes that are still to be read.
 pub(crate) type Source = Box<dyn Read + Send>;
 
-/// What was read of an input, and the rest of it.
+/// The bytes that were read from an input, and the rest of it.
 struct Kept {
     bytes: Vec<u8>,
-    /// None of a file that was closed.
+    /// `None` for a file that was closed.
     rest: Option<Source>,
-    /// Of a file, which can be opened again.
+    /// The path of a file, which can be opened again.
     path: Option<PathBuf>,
 }
 
@@ -163,13 +163,13 @@ impl Document {
                 let rest = kept.take_rest()?;
                 Ok(Box::new(Cursor::new(kept.bytes).chain(rest)))
             }
-            // Somebody reads it at the moment.
+            // Another reader uses it at the moment.
             Err(kept) => Ok(Box::new(Reader::Kept(Document { kept, at: 0 }))),
         }
     }
 }
 
-/// A reader of an input: of what is kept, or of the rest of a file, of which no more is kept.
+/// A reader of an input: of the kept bytes, or of the rest of a file, which is not kept.
 enum Reader {
     Kept(Document),
     Rest(Source),
@@ -191,7 +191,7 @@ impl Read for Reader {
                 return Ok(count);
             }
             let read = rest.by_ref().take(BLOCK.max(into.len()) as u64).read_to_end(&mut kept.bytes);
-            // At its end it is closed, and not opened again; what fails may fail again.
+            // At its end it is closed, and not opened again; after an error it may fail again.
             match read {
                 Ok(0) => kept.path = None,
                 _ => kept.rest = Some(rest),
@@ -208,7 +208,7 @@ impl Read for Reader {
 mod tests {
     use super::*;
 
-    /// A source that tells how often it was opened, and how much was read of it.
+    /// A source that counts how often it was opened, and the bytes that were read.
     fn text_of(path: &str, opened: &mut usize, text: &'static [u8]) -> String {
         let mut read = String::new();
         let mut source = open(Path::new(path), || {
@@ -232,7 +232,7 @@ mod tests {
             begun.read_to_string(&mut rest).unwrap();
             assert_eq!((&head, rest.as_str()), (b"012", "3456789"));
             assert_eq!(text_of("b", &mut opened, b"b"), "b");
-            // A part of the work is no other work.
+            // Nested work belongs to the outer work.
             reading(|| assert_eq!(text_of("b", &mut opened, b"c"), "b"));
             assert_eq!(opened, 1);
             forget();
@@ -255,7 +255,7 @@ mod tests {
         });
     }
 
-    /// More files than stay open, each longer than what is read at a time: their beginnings first, then the rest.
+    /// More files than stay open, each longer than one block: first their beginnings are read, then the rest.
     #[test]
     fn files_that_were_closed_are_opened_again_where_they_were_left() {
         let folder = std::env::temp_dir().join(format!("poecal_documents_{}", std::process::id()));

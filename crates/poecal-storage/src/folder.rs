@@ -1,4 +1,4 @@
-//! Members of a folder that is searched: regular files and folders in it. A pipe would be waited for, and a link could lead anywhere.
+//! Members of a folder that is searched: regular files and folders in it. Reading a pipe would block, and a link could lead anywhere.
 
 use std::fmt;
 use std::io;
@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use super::disk::{self, ObjectKind};
 use super::limits::Limit;
 
-/// Something in a folder that is not taken.
+/// A member of a folder that is not taken.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LeftOut {
-    /// Its place; of a name that is no UTF-8 with signs in place of what is none.
+    /// Its path; in a name that is not UTF-8, invalid bytes are replaced by signs.
     pub path: PathBuf,
-    /// Why, as a noun.
+    /// The reason, as a noun.
     pub reason: &'static str,
 }
 
@@ -22,7 +22,7 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// The names in a folder, and those that are no UTF-8.
+/// The names in a folder, and those that are not UTF-8.
 ///
 /// # Errors
 /// Those of the system, and more names than [`Limit::Files`].
@@ -45,10 +45,10 @@ pub fn names(folder: &Path) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
     Ok((found, left))
 }
 
-/// Whether a member of a folder is a file or a folder; links may lead to others below `root` alone.
+/// Kind of a member of a folder, a file or a folder; links may only lead to others below `root`.
 ///
 /// # Errors
-/// Why it is neither.
+/// The reason why it is neither.
 pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, LeftOut> {
     let disk = disk::here();
     let left = |reason| LeftOut { path: path.to_owned(), reason };
@@ -70,10 +70,10 @@ pub fn kind(root: &Path, path: &Path) -> Result<ObjectKind, LeftOut> {
     }
 }
 
-/// The regular files of a folder whose names are as asked for, and what has such a name and is none.
+/// The regular files of a folder with a wanted name, and members with such a name that are none.
 ///
 /// # Errors
-/// As [`names`].
+/// Those of [`names`].
 pub fn files(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> io::Result<(Vec<String>, Vec<LeftOut>)> {
     let (names, mut left) = names(folder)?;
     let mut found = Vec::new();

@@ -21,7 +21,7 @@ pub fn sha256(path: &Path) -> Result<Option<String>> {
         return Ok(None);
     }
     let read = || {
-        // What was read of it is that which was read.
+        // The checksum is over the bytes that were read before, if any.
         let file = document::again(path).map_or_else(|| disk.open(path), Ok)?;
         let mut file = Hashing::new(file);
         io::copy(&mut file, &mut io::sink())?;
@@ -43,7 +43,7 @@ pub fn sha256_of(text: &str) -> String {
     hashing.sha256()
 }
 
-/// A reader that computes the checksum of what it has read.
+/// A reader that computes the checksum of the bytes read.
 pub struct Hashing<R> {
     source: R,
     hasher: Sha256,
@@ -55,7 +55,7 @@ impl<R: Read> Hashing<R> {
         Hashing { source, hasher: Sha256::new() }
     }
 
-    /// The same that goes on with another source.
+    /// Continues the checksum with another source.
     #[cfg(feature = "bags")]
     pub fn over(self, source: R) -> Self {
         Hashing { source, ..self }
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn digests_are_those_of_the_standard() {
-        // FIPS 180-2, appendices B.1 and B.3: three bytes, and more than are read at a time.
+        // FIPS 180-2, appendices B.1 and B.3: three bytes, and more than one block of the reader.
         let cases = [
             ("abc".to_owned(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"),
             ("a".repeat(1_000_000), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0"),

@@ -1,7 +1,7 @@
-//! Locks of what one run at a time writes to: a ledger, a history, a folder of results.
+//! Locks of files and folders to which only one run at a time writes: a ledger, a history, a folder of results.
 //!
-//! A lock is a file beside the place, which the system locks and which names its holder. That of a killed run is taken over. Where the file system has no
-//! locks, or nothing can be written beside the place, there is none.
+//! A lock is a file beside that path, which the system locks and which names its holder. The lock of a killed run is taken over. Without locks in
+//! the file system, or if nothing can be written beside the path, there is none.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -30,9 +30,9 @@ fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A place that no other run writes to until this is dropped.
+/// A path to which no other run writes until this is dropped.
 pub struct HeldPlace {
-    /// Taken before the path is forgotten.
+    /// Dropped before the path is removed from the list.
     lock: Option<Lock>,
     path: PathBuf,
 }
@@ -51,13 +51,13 @@ pub fn give_back_all() {
     }
 }
 
-/// How long locks of other runs are waited for on this thread.
+/// Time to wait for locks of other runs, on this thread.
 #[must_use]
 pub fn patience() -> Duration {
     PATIENCE.get()
 }
 
-/// Does some work in which locks of other runs are waited for so long, as far as this thread does it.
+/// Runs `work` with this time to wait for locks of other runs, on this thread only.
 pub fn waiting<T>(patience: Duration, work: impl FnOnce() -> T) -> T {
     let before = PATIENCE.replace(patience);
     let done = work();
@@ -65,7 +65,7 @@ pub fn waiting<T>(patience: Duration, work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// The file of a place's lock, beside it.
+/// The lock file of a path, beside it.
 #[must_use]
 pub fn lock_of(place: &Path) -> PathBuf {
     let mut name = OsString::from(".");
@@ -74,11 +74,11 @@ pub fn lock_of(place: &Path) -> PathBuf {
     place.with_file_name(name)
 }
 
-/// Locks a place for this run, which `what` names with an article; `None` where there are no locks. Waits so long for another run, and says whose lock
-/// it took over.
+/// Locks a path for this run, which `what` names with an article; `None` if there are no locks. Waits up to the patience for another run, and
+/// reports whose lock it took over.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if another run holds it, with the name of that.
+/// [`ErrorKind::File`] if another run holds it, with the name of this run.
 pub fn hold(
     place: &Path,
     what: &str,
@@ -106,7 +106,7 @@ pub fn hold(
                 return Err(ErrorKind::File.error(message).in_file(&path));
             }
         };
-        // Not everywhere is a clock: it is asked where there is somebody to wait for.
+        // Some systems have no clock: it is read only if there is time to wait.
         if !patience.is_zero() {
             let end = *end.get_or_insert_with(|| Instant::now().checked_add(patience));
             if end.is_none_or(|end| Instant::now() < end) {
@@ -122,7 +122,7 @@ pub fn hold(
     }
 }
 
-/// Whether a lock cannot be, which is no reason not to work.
+/// True if a lock is impossible, which does not prevent the work.
 fn is_nowhere(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -136,7 +136,7 @@ fn is_nowhere(error: &io::Error) -> bool {
     )
 }
 
-/// This run, for others.
+/// Name of this run, for others.
 fn holder() -> String {
     let process = if cfg!(target_family = "wasm") { 0 } else { std::process::id() };
     let host = std::env::var("HOSTNAME").or_else(|_| std::env::var("COMPUTERNAME")).unwrap_or_default();

@@ -1,12 +1,13 @@
 //! Files as bytes and text: a disk behind a trait, inputs with limits, CSV, XML, YAML and checksums.
 //!
-//! A part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package: its interface follows their needs and promises
-//! nothing by itself.
+//! This crate is a part of [poecal](https://docs.rs/poecal), for the other parts, the program and the package. Its interface follows their needs
+//! and promises nothing by itself.
 //!
-//! It is the only part that opens files. [`disk`] has the trait; inputs are opened in [`source`] alone (limits, standard input, files that are not
-//! text), once for all questions of a command ([`document`]), and what a file may take is in [`limits`]. Results are put in place by `poecal-results`'s `output`, through the same trait.
+//! It is the only part that opens files. [`disk`] has the trait. Inputs are opened only in [`source`] (limits, standard input, files that are not
+//! text), once for all questions of a command ([`document`]). Their sizes are limited in [`limits`]. Results are put in place by `poecal-results`'s
+//! `output`, through the same trait.
 //!
-//! Not here: robots, measurements, results, and computation beyond the numbers of a text.
+//! Other crates have robots, measurements, results, and computation beyond the numbers of a text.
 
 #![forbid(unsafe_code)]
 
@@ -33,7 +34,7 @@ use serde::Serialize;
 
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// The text of a file that is no model and no table; `what` it is, messages say.
+/// The text of a file that is no model and no table; `what` describes it in messages.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if it cannot be read, or is no text.
@@ -41,7 +42,7 @@ pub fn text_of(path: &std::path::Path, what: &str) -> Result<String> {
     source_text::read(path, what)
 }
 
-/// A value as the text of a JSON file; `what` it is, messages say.
+/// A value as the text of a JSON file; `what` describes it in messages.
 pub fn json_text(value: &impl Serialize, what: &str) -> Result<String> {
     let text = serde_json::to_string_pretty(value);
     let text =

@@ -1,4 +1,4 @@
-//! Recognises tables given as models, and models given as tables.
+//! Recognises tables passed as models, and models passed as tables.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ pub fn table_for_model(text: &str, path: &Path) -> Option<Error> {
     Some(ErrorKind::Syntax.error(message).at_line(path, index + 1))
 }
 
-/// What a text is, if it is a robot model that is no calibration.
+/// The kind of a robot model, by its text; `None` for a calibration or another text.
 pub fn model(text: &str) -> Option<&'static str> {
     let text = text.trim_start_matches('\u{feff}').trim_start();
     let begins = |word: &str| text.lines().any(|line| line.trim_start().starts_with(word));
@@ -88,7 +88,7 @@ fn cells(line: &str) -> Option<Vec<&str>> {
         .into_iter()
         .map(|cell| cell.trim().trim_matches('"').split('[').next().unwrap_or_default().trim())
         .collect();
-    // A few words are no table yet.
+    // A few words are not yet a table.
     let fewest = if separator.is_some() { 2 } else { 3 };
     (cells.len() >= fewest).then_some(cells)
 }

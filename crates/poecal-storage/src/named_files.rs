@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use super::disk::{self, Disk};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Canonical path of an existing file. Others stay as they are, for the reader's error.
+/// Canonical path of an existing file. Other paths stay unchanged, for the reader's error.
 #[must_use]
 pub fn actual(path: &Path) -> PathBuf {
     disk::here().actual(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Whether two paths lead to the same file, also by links.
+/// True if two paths lead to the same file, also by links.
 pub fn are_same(disk: &dyn Disk, one: &Path, other: &Path) -> bool {
     let (Ok(one_found), Ok(other_found)) = (disk.follow(one), disk.follow(other)) else { return false };
     match (one_found.identity, other_found.identity) {
@@ -34,7 +34,7 @@ pub fn refuse_repeats(paths: &[PathBuf]) -> Result<()> {
     )
 }
 
-/// Refuses a file for both fit and validation.
+/// Refuses a file for both training and validation.
 ///
 /// # Errors
 /// [`ErrorKind::Option`].

@@ -17,7 +17,7 @@ pub fn push_number(out: &mut String, number: f64) {
     out.push_str(text.strip_suffix(".0").unwrap_or(text));
 }
 
-/// Removes the rounding of products: a number within 1e-15 of one with twelve decimals becomes that one, 0.2025 for 0.20249999999999999 and
+/// Removes the rounding of products: a number within 1e-15 of a number with twelve decimals becomes that number, 0.2025 for 0.20249999999999999 and
 /// 0 for 6e-17.
 pub fn tidy<const N: usize>(numbers: [f64; N]) -> [f64; N] {
     numbers.map(|number| {

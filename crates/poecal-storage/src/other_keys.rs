@@ -1,4 +1,4 @@
-//! Keys of files of cameras, boards and robots that are not read: those that scale or shift are refused, others are named unless they are harmless.
+//! Unread keys in files of cameras, boards and robots: those that scale or shift are refused, others are listed unless they are harmless.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use poecal_numerics::text::visible;
 
 use crate::yaml::Leaf;
 
-/// Parts of names of keys that say how pictures were made of the sensor's, or how numbers are scaled.
+/// Parts of names of keys that describe the processing of the sensor's pictures, or a scale of numbers.
 const CHANGES: [&str; 17] = [
     "scale",
     "factor",
@@ -27,19 +27,19 @@ const CHANGES: [&str; 17] = [
     "downsampl",
     "subsampl",
 ];
-/// The same where it has one value: a list of several is where the camera is.
+/// A part that also counts if the key has one value: a list of several is the orientation of the camera.
 const TURNS: &str = "rotat";
-/// The same as whole names: the second parameter of an omnidirectional lens, and regions.
+/// Whole names of such keys: the second parameter of an omnidirectional lens, and regions.
 const CHANGES_BY_NAME: [&str; 3] = ["xi", "roi", "region"];
 /// Parts of names of keys that change no number of a lens or a board.
 const HARMLESS: [&str; 16] = [
     "time", "date", "stamp", "error", "rms", "serial", "comment", "note", "version", "name", "topic",
     "frames", "flag", "views", "gray", "grey",
 ];
-/// Values of a key that leave everything as it is.
+/// Values of a key without any effect.
 const NEUTRAL: [&str; 6] = ["", "false", "no", "none", "off", "null"];
 
-/// Whose keys a file has, for the sentence of a key that changes them.
+/// Subject of the keys of a file, for the sentence of a key that changes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeysOf {
     /// A camera's pictures.
@@ -51,7 +51,7 @@ pub enum KeysOf {
 }
 
 impl KeysOf {
-    /// What is expected, and what to do.
+    /// The expected state, and the remedy.
     fn as_they_are(self) -> &'static str {
         match self {
             KeysOf::Pictures => "numbers of the pictures as they are: state them for these pictures",
@@ -61,11 +61,11 @@ impl KeysOf {
     }
 }
 
-/// The keys of a file that were not read and are not harmless, in words; `read` says of a lower-case key at the place `at` of the leaves' keys
-/// whether it was read or is known to be harmless there.
+/// The keys of a file that were not read and are not harmless, in words. `read` returns true for a lower-case key at depth `at` of the leaves' keys
+/// that was read or is known to be harmless there.
 ///
 /// # Errors
-/// [`ErrorKind::Measurement`] of a key that scales or shifts what was read, with its place.
+/// [`ErrorKind::Measurement`] for a key that scales or shifts the numbers, with its position.
 pub fn other_keys(
     leaves: &[Leaf],
     at: usize,
@@ -97,7 +97,7 @@ pub fn other_keys(
     Ok((!others.is_empty()).then(|| format!("did not read {}", first_few(&others))))
 }
 
-/// Whether a key scales or shifts.
+/// True if a key scales or shifts.
 fn changes(leaf: &Leaf, at: usize) -> bool {
     let keys: Vec<String> = leaf.path.iter().skip(at).map(|key| key.to_lowercase()).collect();
     let is_one = |key: &String| {
@@ -107,9 +107,9 @@ fn changes(leaf: &Leaf, at: usize) -> bool {
     is_turn || keys.iter().any(is_one)
 }
 
-/// Whether a key that scales or shifts has a value that leaves everything as it is.
+/// True if a key that scales or shifts has a value without any effect.
 fn is_neutral(leaf: &Leaf, at: usize) -> bool {
-    // Of these 1 is no neutral value.
+    // For these, 1 is no neutral value.
     const SHIFTS: [&str; 5] = ["offset", "shift", "flip", "mirror", "invert"];
     let is_shift = |key: &String| SHIFTS.iter().any(|part| key.to_lowercase().contains(part));
     let value = leaf.text.trim().to_lowercase();

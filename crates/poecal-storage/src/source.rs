@@ -1,4 +1,4 @@
-//! Opens inputs, files and standard input: of limited size ([`Limit`]), and no archive or workbook.
+//! Opening of inputs, files and standard input: of limited size ([`Limit`]), and no archive or workbook.
 
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -13,23 +13,23 @@ pub(crate) const STANDARD_INPUT: &str = "-";
 /// Number of bytes by which other forms are recognised.
 const HEAD: u64 = 16;
 
-/// What a bag is where it cannot be read.
+/// Description of a bag that cannot be read.
 const BAG: &str = if cfg!(feature = "bags") {
     "a ROS 2 bag (.mcap), which is read as a measurement file"
 } else {
     "a ROS 2 bag (.mcap); write its messages as tables with `ros2 topic echo --csv`"
 };
 
-/// What a bag in SQLite is.
+/// Description of a bag in SQLite.
 pub const SQLITE_BAG: &str = "a ROS 2 bag in SQLite (.db3), which the Python package reads (`Measurements.from_files`); `rosbags-convert --src BAG --dst NEW --dst-storage mcap` writes it as MCAP";
 
 /// A form of files that is not read as a text.
 struct Form {
-    /// How its files begin; empty where that says nothing.
+    /// Beginnings of its files; empty if these are not specific.
     starts: &'static [&'static [u8]],
-    /// How their names end, in small letters, where they begin like others or like a text.
+    /// Endings of their names, in small letters, if they begin like other files or like a text.
     ends: &'static [&'static str],
-    /// What they are, with advice.
+    /// Description of the files, with a remedy.
     words: &'static str,
 }
 
@@ -106,9 +106,9 @@ impl Form {
     }
 }
 
-/// An input. Beyond its largest size it gives an error.
+/// An input. Reading beyond its largest size is an error.
 pub struct Input {
-    /// The head, which is looked at first, and the rest.
+    /// The head, which is examined first, and the rest.
     bytes: io::Chain<Cursor<Vec<u8>>, io::Take<Source>>,
     limit: Limit,
 }
@@ -130,19 +130,19 @@ pub fn refuse_other_forms(path: &Path, expected: &str, head: &[u8]) -> Result<()
     FORMS.iter().find(begins).map_or(Ok(()), |form| Err(form.error(path, expected)))
 }
 
-/// Refuses a file that is no text, by its name alone: many of these begin like a workbook.
+/// Refuses a file that is no text, by its name only: many of these begin like a workbook.
 pub fn refuse_named(path: &Path, expected: &str) -> Result<()> {
     let end = path.extension().map(|it| it.to_string_lossy().to_lowercase()).unwrap_or_default();
     let named = FORMS.iter().find(|form| form.ends.contains(&end.as_str()));
     named.map_or(Ok(()), |form| Err(form.error(path, expected)))
 }
 
-/// The same of any form, with its first bytes.
+/// Opens a file of any form, with its first bytes.
 pub fn open_any(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
     headed(document::open(path, || opened(path, expected))?, path, expected, limit)
 }
 
-/// The same of what is too large to be kept.
+/// Opens a file that is too large to be kept, with its first bytes.
 pub fn open_streamed(path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
     let source = document::stream(path, || opened(path, expected))?;
     headed(source.map_err(|cause| unreadable(path, &cause, expected))?, path, expected, limit)
@@ -172,7 +172,7 @@ fn opened(path: &Path, expected: &str) -> Result<Source> {
 fn headed(mut rest: Source, path: &Path, expected: &str, limit: Limit) -> Result<(Input, Vec<u8>)> {
     let mut head = Vec::new();
     rest.by_ref().take(HEAD).read_to_end(&mut head).map_err(|cause| unreadable(path, &cause, expected))?;
-    // One byte more than allowed shows that the file is too large.
+    // One byte beyond the limit shows that the file is too large.
     let rest = rest.take((limit.most() + 1).saturating_sub(head.len() as u64));
     let input = Input { bytes: Cursor::new(head.clone()).chain(rest), limit };
     Ok((input, head))
@@ -187,7 +187,7 @@ impl Input {
     }
 }
 
-/// What is wrong with an input beyond its limit.
+/// Message on an input beyond its limit.
 fn too_large(limit: Limit) -> String {
     let (row, most) = (limit.row(), limit.most());
     format!(
@@ -198,12 +198,12 @@ fn too_large(limit: Limit) -> String {
     )
 }
 
-/// Whether a path means standard input.
+/// True if a path means standard input.
 pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new(STANDARD_INPUT)
 }
 
-/// The error of a file that cannot be read; `expected` names the kind of file.
+/// The error of a file that cannot be read; `expected` describes the kind of file.
 pub fn unreadable(path: &Path, error: &io::Error, expected: &str) -> Error {
     ErrorKind::File.error(format!("the file cannot be read ({error}), expected {expected}")).in_file(path)
 }

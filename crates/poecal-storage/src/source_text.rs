@@ -34,7 +34,7 @@ pub fn read_up_to(path: &Path, expected: &str, limit: Limit) -> Result<String> {
     Ok(text)
 }
 
-/// The text of an XML file that declares ISO-8859-1 in its first line, each byte of which is a character. It is UTF-8 from then on, and says so.
+/// The text of an XML file that declares ISO-8859-1 in its first line, so that each byte is a character. The result is UTF-8, and declares it.
 fn latin(bytes: &[u8]) -> Option<String> {
     let end = bytes.iter().take(LONGEST_DECLARATION).position(|it| *it == b'>')?;
     let declaration = std::str::from_utf8(bytes.get(..end)?).ok().filter(|it| it.starts_with("<?xml"))?;

@@ -1,4 +1,4 @@
-//! XML texts and the attributes of their elements, with errors that know their line and column.
+//! XML texts and the attributes of their elements, with errors that state line and column.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use crate::limits::Limit;
 use crate::numbers::LARGEST_NUMBER;
 use poecal_numerics::error::{Error, ErrorKind, Result, position};
 
-/// Most attributes of an element: the parser compares each with all others.
+/// Largest number of attributes of an element: the parser compares each with all others.
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Byte offset of the first element with more attributes, if there is one.
@@ -21,7 +21,7 @@ fn crowded_element(text: &str) -> Option<usize> {
     let (mut element, mut values, mut quote) = (None, 0, None);
     for at in memchr::memchr3_iter(b'<', b'"', b'\'', bytes) {
         match (bytes.get(at), quote) {
-            // No value holds this character, whatever was left open before.
+            // No value contains this character, even if a quote before it was not closed.
             (Some(b'<'), _) => (element, values, quote) = (Some(at), 0, None),
             (Some(sign), None) => quote = Some(*sign),
             (Some(sign), Some(open)) if *sign == open => {
@@ -37,7 +37,7 @@ fn crowded_element(text: &str) -> Option<usize> {
     None
 }
 
-/// Byte offset of the first element within more others than there may be: what walks through a document may take a frame of the stack for each.
+/// Byte offset of the first element beyond the limit of nesting: code that walks through a document may take a stack frame for each level.
 fn deepest_element(text: &str) -> Option<usize> {
     let (bytes, most) = (text.as_bytes(), Limit::Nesting.most_held());
     let (mut at, mut depth) = (0, 0_usize);
@@ -48,7 +48,7 @@ fn deepest_element(text: &str) -> Option<usize> {
             at = open + start.len() + rest.get(start.len()..)?.find(end)? + end.len();
             continue;
         }
-        // No value of an attribute holds `<`, so that a tag that is not closed ends with the next one.
+        // No value of an attribute contains `<`, so that a tag that is not closed ends with the next one.
         let mut end = open + 1;
         let mut quote = None;
         while let Some(byte) = bytes.get(end).filter(|it| **it != b'<' && (**it != b'>' || quote.is_some())) {
@@ -74,10 +74,10 @@ fn deepest_element(text: &str) -> Option<usize> {
     None
 }
 
-/// A text whose prefixes are all declared: the colon of a prefix that the text declares nowhere (`<sensor:camera>` in a `<gazebo>` of old) is
-/// written as `_`, so that the names are those of elements that nobody knows, and every byte is where it was.
+/// A text whose prefixes are all declared. The colon of an undeclared prefix (`<sensor:camera>` in an old `<gazebo>`) is written as `_`. Such names
+/// are those of unknown elements, and all byte offsets are kept.
 pub fn readable(text: &str) -> Cow<'_, str> {
-    // What is refused needs no list of its prefixes.
+    // A text that will be refused needs no list of its prefixes.
     let colons = if is_beyond(text, Limit::Elements.most()) { Vec::new() } else { undeclared(text) };
     if colons.is_empty() {
         return Cow::Borrowed(text);
@@ -88,7 +88,7 @@ pub fn readable(text: &str) -> Cow<'_, str> {
             *byte = b'_';
         }
     }
-    // A colon and a low line are of one byte each.
+    // A colon and an underscore have one byte each.
     String::from_utf8(bytes).map_or(Cow::Borrowed(text), Cow::Owned)
 }
 
@@ -106,7 +106,7 @@ fn undeclared(text: &str) -> Vec<usize> {
             at = open + length + end.len();
             continue;
         }
-        // Names of the tag, up to its end; what is in quotes has none.
+        // Names of the tag, up to its end; quoted values contain none.
         at = open + 1;
         let mut quote = None;
         while let Some(&byte) = bytes.get(at) {
@@ -143,7 +143,7 @@ fn undeclared(text: &str) -> Vec<usize> {
     used.into_iter().map(|(_, at)| at).collect()
 }
 
-/// Whether a text has more signs of elements and attributes than so many elements need: the parser makes room for each before it counts.
+/// True if a text has more signs of elements and attributes than `most` elements need: the parser allocates memory for each before it counts.
 fn is_beyond(text: &str, most: u64) -> bool {
     let count = |sign: u8| memchr::memchr_iter(sign, text.as_bytes()).count() as u64;
     count(b'<') > most.saturating_mul(2) || count(b'=') > most.saturating_mul(4)
@@ -188,7 +188,7 @@ pub fn root_name(text: &str) -> Option<&str> {
     name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()
 }
 
-/// The parser's message as one sentence with its place.
+/// The parser's message as one sentence with its position.
 fn broken(error: &roxmltree::Error, path: &Path, expected: &str) -> Error {
     let place = error.pos();
     let (line, column) = (place.row as usize, place.col as usize);
@@ -226,18 +226,18 @@ impl<'a> XmlSource<'a> {
         self.error_at(node.range().start, message.into())
     }
 
-    /// The same as a result.
+    /// The error at the start of an element, as a result.
     pub fn refuse<T>(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Result<T> {
         Err(self.error(node, message))
     }
 
-    /// The same for a text that is no URDF at all.
+    /// The error of a text that is no URDF at all.
     pub fn syntax_error(&self, node: Node<'a, 'a>, message: impl Into<String>) -> Error {
         let text = self.document.input_text();
         ErrorKind::Syntax.error(message).at_offset(self.path, text, node.range().start)
     }
 
-    /// What a word of an attribute means; `of` says where it is.
+    /// The meaning of a word of an attribute; `of` describes the owner.
     pub fn meaning<T: Copy>(
         &self,
         node: Node<'a, 'a>,
@@ -262,8 +262,8 @@ impl<'a> XmlSource<'a> {
         node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
     }
 
-    /// The only child of this name: readers differ on which of two counts. A second one with the same values is ignored, unless elements of
-    /// this name are rewritten (`anew`).
+    /// The only child of this name: readers differ on which of two counts. A second one with the same values is ignored, unless elements of this
+    /// name are rewritten (`anew`).
     pub fn only_child(
         self,
         node: Node<'a, 'a>,
@@ -316,7 +316,7 @@ impl<'a> XmlSource<'a> {
         self.numbers_up_to(node, name, of, LARGEST_NUMBER)
     }
 
-    /// The numbers of an attribute that states limits, if present: these may be infinite, or as large as they like.
+    /// The numbers of an attribute that states limits, if present: these may be infinite, or of any size.
     pub fn bounds<const N: usize>(
         &self,
         node: Node<'a, 'a>,

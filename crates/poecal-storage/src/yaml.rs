@@ -1,4 +1,4 @@
-//! YAML as its values, each with its keys and its place.
+//! YAML as its values, each with its keys and its position.
 
 use std::path::Path;
 
@@ -11,9 +11,9 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 pub struct Value {
     /// The keys that lead to it.
     pub keys: Vec<String>,
-    /// Its text; of a list, dots in brackets.
+    /// Its text; for a list, dots in brackets.
     pub(crate) text: String,
-    /// Whether it is marked as degrees.
+    /// True if it is marked as degrees.
     in_degrees: bool,
     line: usize,
     column: usize,
@@ -47,7 +47,7 @@ impl Value {
     }
 }
 
-/// The values of the mappings of a text, in its order; a list is one without its entries. `expected` describes the file in messages.
+/// The values of the mappings of a text, in its order; a list is one value, without its entries. `expected` describes the file in messages.
 pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
     let refuse = |node: &Node, found: &str| {
         let message = format!("found {found}, expected {expected}");
@@ -67,7 +67,7 @@ pub fn values(text: &str, path: &Path, expected: &str) -> Result<Vec<Value>> {
     Ok(found)
 }
 
-/// The values below a node whose keys are these; whether one of what it is in is a list.
+/// Collects the values below a node with these keys; the flag is true if a list contains the node.
 fn values_of<'n>(
     node: &'n Node,
     (keys, is_in_list): (&mut Vec<&'n str>, bool),
@@ -97,10 +97,10 @@ fn values_of<'n>(
     Ok(())
 }
 
-/// A number or word of a file with all the keys and places in lists that lead to it.
+/// A number or word of a file with all the keys and list indices that lead to it.
 #[derive(Clone, Debug)]
 pub struct Leaf {
-    /// Keys, and numbers of places in lists.
+    /// Keys, and list indices.
     pub path: Vec<String>,
     /// Its text.
     pub text: String,
@@ -108,12 +108,12 @@ pub struct Leaf {
     pub line: usize,
 }
 
-/// All numbers and words of a text, entries of lists too; tags are passed over.
+/// All numbers and words of a text, including entries of lists; tags are ignored.
 pub fn leaves(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
     Ok(trees(text, path, expected)?.concat())
 }
 
-/// The same of each document of YAML, or value of JSON.
+/// The numbers and words of each document of YAML, or value of JSON.
 pub fn trees(text: &str, path: &Path, expected: &str) -> Result<Vec<Vec<Leaf>>> {
     let all = documents(text, path, expected)?;
     let trees = all.iter().map(|document| {

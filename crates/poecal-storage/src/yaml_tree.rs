@@ -1,4 +1,4 @@
-//! Documents of YAML and JSON as trees, each part with its place.
+//! Documents of YAML and JSON as trees, each part with its position.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -10,17 +10,17 @@ use serde::de::IgnoredAny;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::text::visible;
 
-/// Most lists and mappings in each other.
+/// Largest depth of nested lists and mappings.
 const DEEPEST: usize = 64;
 
 /// A part of a document.
 #[derive(Debug)]
 pub struct Node {
-    /// What it is.
+    /// Kind and content of the part.
     pub kind: NodeKind,
-    /// Where it begins.
+    /// Line of its beginning, from 1.
     pub line: usize,
-    /// The column of that.
+    /// Column of its beginning.
     pub column: usize,
     /// Its tag: handle and name.
     pub tag: Option<Box<(String, String)>>,
@@ -46,7 +46,7 @@ impl Node {
         }
     }
 
-    /// The entries of a list; none of anything else.
+    /// The entries of a list; `None` for anything else.
     pub fn list(&self) -> Option<&[Node]> {
         match &self.kind {
             NodeKind::List(entries) => Some(entries),
@@ -62,17 +62,17 @@ impl Node {
         }
     }
 
-    /// Whether a number is marked as degrees, or what is wrong with its mark.
+    /// True if a number is marked as degrees; an error describes an invalid mark.
     pub(crate) fn is_in_degrees(&self) -> std::result::Result<bool, String> {
         match self.tag.as_ref().map(|tag| (tag.0.as_str(), tag.1.as_str())) {
-            // As xacro reads them; others would be other numbers.
+            // These are xacro's marks; others would mean other numbers.
             None | Some(("tag:yaml.org,2002:", _) | ("!", "radians")) => Ok(false),
             Some(("!", "degrees")) => Ok(true),
             Some((_, name)) => Err(format!("the unknown tag `!{}`", visible(name))),
         }
     }
 
-    /// An error at its place.
+    /// An error at its position.
     pub fn error(&self, path: &Path, message: impl Into<String>) -> Error {
         Error::new(ErrorKind::Measurement, message).at(path, self.line, self.column)
     }
@@ -93,7 +93,7 @@ pub fn documents(text: &str, path: &Path, expected: &str) -> Result<Vec<Node>> {
     }
 }
 
-/// The values of a text of JSON, each with the number of lines before it; `None` of YAML, which may begin as JSON does.
+/// The values of a text of JSON, each with the number of lines before it; `None` for YAML, which may begin like JSON.
 fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<Vec<(usize, &'a str)>>> {
     if !text.trim_start().starts_with(['{', '[']) {
         return Ok(None);
@@ -119,13 +119,13 @@ fn json_values<'a>(text: &'a str, path: &Path, expected: &str) -> Result<Option<
 }
 
 impl Open {
-    /// Whether a key comes next.
+    /// True if a key comes next.
     fn wants_key(&self) -> bool {
         matches!(self.node.kind, NodeKind::Map(_)) && self.key.is_none()
     }
 }
 
-/// A list or mapping that has begun.
+/// A list or mapping that is still open.
 struct Open {
     node: Node,
     /// The key whose value comes next.
@@ -134,13 +134,13 @@ struct Open {
     seen: BTreeSet<String>,
 }
 
-/// The text with its directive as a comment: OpenCV's is no YAML, and the parser reads no other.
+/// The text with its directive as a comment: OpenCV's is invalid YAML, and the parser reads no other.
 fn without_directive(text: &str) -> Cow<'_, str> {
     let rest = text.trim_start_matches('\u{feff}').strip_prefix("%YAML");
     rest.map_or(Cow::Borrowed(text), |rest| Cow::Owned(format!("#{rest}")))
 }
 
-/// The documents of YAML, with so many lines before it.
+/// The documents of YAML, with `before` lines above it.
 pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)) -> Result<Vec<Node>> {
     let refuse = |span: &Span, found: &str| {
         let message = format!("found {found}, expected {expected}");
@@ -202,7 +202,7 @@ pub(crate) fn of_yaml(text: &str, path: &Path, (before, expected): (usize, &str)
     Ok(found)
 }
 
-/// Puts a part that has ended to what it is in, or to the documents.
+/// Adds a part that has ended to its parent, or to the documents.
 fn close(node: Node, open: &mut [Open], found: &mut Vec<Node>) {
     match open.last_mut() {
         None => found.push(node),

@@ -1,6 +1,6 @@
 //! Damage of binary files.
 
-/// Hands on each text of bytes that differs from a whole one in a single byte, and each beginning of it.
+/// Passes on each text of bytes that differs from a whole one in a single byte, and each beginning of it.
 pub fn damaged(whole: &[u8], mut read: impl FnMut(&[u8])) {
     let mut bytes = whole.to_vec();
     for at in 0..whole.len() {

@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A new folder that goes with its owner.
+/// A new folder that is removed with its owner.
 pub struct Folder(PathBuf);
 
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
 impl Folder {
-    /// A folder that no other test has.
+    /// A folder that no other test uses.
     #[must_use]
     #[allow(clippy::new_without_default)]
     pub fn new() -> Self {

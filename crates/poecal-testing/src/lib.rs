@@ -1,4 +1,4 @@
-//! What tests of several crates share: numbers of trials, folders, sessions, and the files of `data/`.
+//! Shared parts of the tests of several crates: numbers of trials, folders, sessions, and the files of `data/`.
 //!
 //! Not published.
 

@@ -13,7 +13,7 @@ pub fn container(stream: &[u8]) -> Vec<u8> {
         head[at..at + 4].copy_from_slice(&u32::to_le_bytes(value));
     }
     head[80..].fill(0xFF);
-    // Of itself, of the directory, and of the stream.
+    // Entries of the table itself, of the directory, and of the stream.
     let mut table: Vec<u32> = vec![u32::MAX - 2, END];
     table.extend((1..count).map(|at| at + 2).chain([END]));
     assert!(table.len() <= 128);

@@ -15,13 +15,13 @@ pub fn simulated(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulate
     Simulation { count, seed, ..Simulation::default() }.run(robot, kind).unwrap()
 }
 
-/// A calibration as it is done without options.
+/// A calibration with default options.
 #[cfg(feature = "calibrate")]
 pub fn calibrated(robot: &Robot, data: &Dataset) -> Calibration {
     calibrate(robot, data, &geometry()).unwrap()
 }
 
-/// Runs something in a pool of so many threads.
+/// Runs a closure in a pool of this number of threads.
 pub fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
 }
@@ -34,7 +34,7 @@ pub fn unlimited_elbow() -> Robot {
     robot
 }
 
-/// `a` turns by half a turn either way, `lift` slides up to 0.5 m, `b` turns without limits; the tip is 1 m out.
+/// `a` turns by half a turn in either direction, `lift` slides up to 0.5 m, `b` turns without limits; the tip is 1 m out.
 pub fn lifting_robot() -> Robot {
     let z = Vector3::z();
     let a = Joint::revolute("a", Screw::revolute(&z, &Vector3::zeros()));

@@ -1,7 +1,7 @@
-//! How many trials a test makes of its weekly number, which `POECAL_TRIALS` says: nothing, a twelfth; `quick`, a twentieth; `weekly`, all;
-//! `full`, a hundred times as many; or a number.
+//! Number of trials of a test as a part of its weekly number, by `POECAL_TRIALS`: unset, a twelfth; `quick`, a twentieth; `weekly`, all; `full`, a
+//! hundred times as many; or a number.
 
-/// A number of trials, and by how much a figure that is made of them may be off more than one of the weekly number.
+/// A number of trials, from which follows the additional tolerance of their figures relative to the weekly number.
 #[derive(Clone, Copy, Debug)]
 pub struct Trials {
     /// The number.
@@ -9,15 +9,15 @@ pub struct Trials {
     weekly: usize,
 }
 
-/// The fewest trials that show anything.
+/// The fewest meaningful trials.
 const FEWEST: usize = 2;
-/// The part of the weekly number that every change is tried by. The scatter of a mean is 3.5 times as large, and its tolerance grows by three of
-/// the added standard errors ([`Trials::more`]): a fault shows if it is 3.5 times as large as one that the weekly number just shows.
+/// Part of the weekly number for every change. The scatter of a mean is 3.5 times as large, and its tolerance grows by three of the added standard
+/// errors ([`Trials::more`]): a fault shows if it is 3.5 times as large as the smallest that the weekly number shows.
 const OF_A_CHANGE: usize = 12;
-/// The same of `quick`.
+/// The same part for `quick`.
 const OF_A_QUICK_LOOK: usize = 20;
 
-/// So many trials as `POECAL_TRIALS` makes of the weekly number.
+/// Number of trials by `POECAL_TRIALS` and the weekly number.
 pub fn trials(weekly: usize) -> Trials {
     let said = std::env::var("POECAL_TRIALS").ok();
     let part = |of: usize| (weekly / of).max(FEWEST).min(weekly);
@@ -33,14 +33,14 @@ pub fn trials(weekly: usize) -> Trials {
     Trials { count, weekly }
 }
 
-/// Of cases that are no trials, each of which is for itself: all, or with `quick` every fifth.
+/// Selection of independent cases that are no trials: all, or with `quick` every fifth.
 pub fn some<T>(all: impl IntoIterator<Item = T>) -> Vec<T> {
     let is_quick = std::env::var("POECAL_TRIALS").is_ok_and(|said| said == "quick");
     all.into_iter().step_by(if is_quick { 5 } else { 1 }).collect()
 }
 
 impl Trials {
-    /// No fewer than these, if the weekly number is not below it.
+    /// At least this number of trials, unless the weekly number is below it.
     pub fn at_least(self, fewest: usize) -> Self {
         Trials { count: self.count.max(fewest.min(self.weekly)), ..self }
     }
@@ -50,14 +50,14 @@ impl Trials {
         0..self.count as u64
     }
 
-    /// What a tolerance of a mean over the trials grows by: three standard errors, less those that the weekly number has. Nothing for the
-    /// weekly number and more. `sigma` is the standard deviation of one trial.
+    /// Increase of the tolerance of a mean over the trials: three standard errors, less those of the weekly number. Zero for the weekly number and
+    /// more. `sigma` is the standard deviation of one trial.
     pub fn more(self, sigma: f64) -> f64 {
         let root = |count: usize| (count as f64).sqrt();
         3.0 * sigma * (1.0 / root(self.count) - 1.0 / root(self.weekly)).max(0.0)
     }
 
-    /// What the tolerance of a share of the trials grows by.
+    /// Increase of the tolerance of a share of the trials.
     pub fn more_of_a_share(self, share: f64) -> f64 {
         self.more((share * (1.0 - share)).sqrt())
     }

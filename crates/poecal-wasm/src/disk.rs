@@ -13,7 +13,7 @@ use crate::names::{Names, Node, whole};
 #[derive(Debug)]
 struct State {
     names: Names,
-    /// The bytes of each file that there ever was; empty for one that has no name any more.
+    /// The bytes of each file that ever existed; empty for one without a name.
     files: Vec<Arc<Vec<u8>>>,
     /// The files that were put here, by their paths and numbers.
     put: BTreeMap<PathBuf, usize>,
@@ -21,12 +21,12 @@ struct State {
     input: Option<Vec<u8>>,
 }
 
-/// Folders and files in memory; the current folder is the root. Clones are the same disk. What was written is there at once, so that
-/// there is nothing to sync, and errors are those that a system gives.
+/// Folders and files in memory; the current folder is the root. Clones are the same disk. Written data are there at once, so that there is nothing to
+/// sync, and errors are those of a system.
 #[derive(Clone, Debug)]
 pub struct MemoryDisk(Arc<Mutex<State>>);
 
-/// A file that is read: its bytes when it was opened.
+/// A file being read: its bytes when it was opened.
 struct Reader {
     bytes: Arc<Vec<u8>>,
     at: usize,
@@ -42,7 +42,7 @@ impl Read for Reader {
     }
 }
 
-/// A file that is written.
+/// A file being written.
 struct Writer {
     disk: MemoryDisk,
     number: usize,
@@ -75,7 +75,7 @@ impl Drop for Held {
 }
 
 impl MemoryDisk {
-    /// An empty disk, and what standard input gives.
+    /// An empty disk, with this standard input.
     #[must_use]
     pub fn new(input: Vec<u8>) -> Self {
         MemoryDisk(Arc::new(Mutex::new(State {
@@ -91,10 +91,10 @@ impl MemoryDisk {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a file here, with the folders on its way; a folder if its path ends in `/`.
+    /// Puts a file here, with the folders of its path; a folder if its path ends in `/`.
     ///
     /// # Errors
-    /// [`ErrorKind::AlreadyExists`] if something is at its path, [`ErrorKind::NotADirectory`] if a file is on its way.
+    /// [`ErrorKind::AlreadyExists`] if something is at its path, [`ErrorKind::NotADirectory`] if a file is within its path.
     pub fn put(&self, path: &Path, bytes: Vec<u8>) -> io::Result<()> {
         let is_folder = path.as_os_str().as_encoded_bytes().ends_with(b"/");
         let path = whole(path);
@@ -118,7 +118,7 @@ impl MemoryDisk {
         Ok(())
     }
 
-    /// Files that are not as they were put here, new or in place of others, by paths from the root, and those that are gone.
+    /// Files that differ from those put here, new or replaced, by paths from the root, and removed ones.
     #[must_use]
     pub fn changes(&self) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
         let state = self.state();
@@ -247,7 +247,7 @@ impl Disk for MemoryDisk {
     }
 
     fn copy_access(&self, from: &Path, to: &Path) -> io::Result<()> {
-        // All is the caller's.
+        // The caller owns all files.
         self.look(from).and_then(|_| self.look(to)).map(|_| ())
     }
 
@@ -267,7 +267,7 @@ impl Disk for MemoryDisk {
     }
 
     fn lock_folder(&self, path: &Path) -> io::Result<Lock> {
-        // A disk has one user, whose runs come one after the other.
+        // A disk has one user, whose runs are sequential.
         self.state().names.folder(&whole(path))?;
         Ok(Box::new(()))
     }

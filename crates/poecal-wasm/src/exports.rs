@@ -1,5 +1,5 @@
-//! What the module gives to JavaScript. The caller takes memory by `allocate`, writes a request there, and calls `run`, which gives back
-//! the place of an answer: its length as a number of 32 bits, and its bytes. `release` returns memory of either.
+//! Interface of the module to JavaScript. The caller obtains memory by `allocate`, writes a request there, and calls `run`, which returns the address
+//! of an answer: its length as a number of 32 bits, and its bytes. `release` frees memory of either.
 #![expect(
     unsafe_code,
     reason = "places in the memory come from JavaScript, and are what `allocate` and `run` gave"
@@ -10,22 +10,22 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::{decode, encode};
 
-/// What the last panic said, with its length before it.
+/// Message of the last panic, with its length before it.
 static LAST_WORDS: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 fn layout(length: usize) -> Option<Layout> {
-    // Nothing has no place of its own.
+    // An empty layout has no address of its own.
     Layout::from_size_align(length.max(1), 1).ok()
 }
 
-/// Memory of so many bytes; null if there is none left.
+/// Memory of this number of bytes; null if there is none left.
 #[unsafe(no_mangle)]
 extern "C" fn allocate(length: usize) -> *mut u8 {
     // SAFETY: the layout has at least one byte.
     layout(length).map_or(std::ptr::null_mut(), |layout| unsafe { alloc(layout) })
 }
 
-/// Returns memory.
+/// Frees memory.
 ///
 /// # Safety
 /// It came from [`allocate`] of this length, or from [`run`] with the length of the answer and its head, and is not used any more.
@@ -44,7 +44,7 @@ fn with_head(bytes: &[u8]) -> Vec<u8> {
     all
 }
 
-/// Runs a request; null if it is none.
+/// Runs a request; null if the bytes are none.
 ///
 /// # Safety
 /// `place` came from [`allocate`] of this length, and the bytes are written.
@@ -55,18 +55,18 @@ unsafe extern "C" fn run(place: *const u8, length: usize) -> *mut u8 {
     let bytes = unsafe { std::slice::from_raw_parts(place, length) };
     let Some(request) = decode(bytes) else { return std::ptr::null_mut() };
     let answer = with_head(&encode(&crate::run(request)));
-    // As the caller has to name the length, there is no more memory than that.
+    // The caller has to name the length, so there is no more memory than that.
     Box::into_raw(answer.into_boxed_slice()).cast()
 }
 
-/// Keeps what a panic says, since the module ends by it, and its memory is all that can still be read.
+/// Keeps the message of a panic, since the module ends by it, and only its memory can still be read.
 fn listen() {
     std::panic::set_hook(Box::new(|panic| {
         *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = with_head(panic.to_string().as_bytes());
     }));
 }
 
-/// The place of what the last panic said, its length before it; null if there was none.
+/// Address of the message of the last panic, its length before it; null if there was none.
 #[unsafe(no_mangle)]
 extern "C" fn last_words() -> *const u8 {
     let words = LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner);

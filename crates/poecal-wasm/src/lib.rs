@@ -1,10 +1,10 @@
 //! The program `poecal` as a WebAssembly module: words and files in, an exit code, words and files out.
 //!
-//! [`run`] is the whole of it: it puts files on a [`MemoryDisk`], runs the program on it, and collects what was written. `exports` hands it
-//! to JavaScript through plain memory; the module imports nothing. `web/npm/poecal.js` is the other side, with the same encoding.
+//! [`run`] is the whole interface: it puts files on a [`MemoryDisk`], runs the program on it, and collects the written files. `exports` passes it to
+//! JavaScript through plain memory; the module imports nothing. `web/npm/poecal.js` is the other side, with the same encoding.
 //!
-//! For `web/npm` and the page in `web/app`; its interface promises nothing beyond the program's. `exports.rs` is its only `unsafe` code. Not here:
-//! computation, sentences and settings of its own.
+//! For `web/npm` and the page in `web/app`; its interface is not stable beyond the program's. `exports.rs` is its only `unsafe` code. This crate has
+//! no computation, sentences or settings of its own.
 
 mod disk;
 #[cfg(target_arch = "wasm32")]
@@ -23,25 +23,25 @@ use poecal_storage::disk::on;
 pub use disk::MemoryDisk;
 pub use message::{decode, encode};
 
-/// A run that is asked for.
+/// A requested run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Request {
     /// The words after the program's name.
     pub words: Vec<String>,
-    /// What `-` reads; an empty text if nothing is given.
+    /// Input of `-`; an empty text if none is supplied.
     pub input: Vec<u8>,
     /// Files by their paths, which begin in the current folder. A path that ends in `/` is a folder.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Answer {
     /// Exit code, standard output and standard error.
     pub said: Said,
     /// Files written by the run, new or in place of others, by paths as in [`Request::files`].
     pub written: BTreeMap<String, Vec<u8>>,
-    /// Files that were there before and are no longer.
+    /// Files that existed before and were removed.
     pub removed: Vec<String>,
 }
 

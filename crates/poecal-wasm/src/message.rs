@@ -6,7 +6,7 @@
 
 use crate::{Answer, Request};
 
-/// What is left to read.
+/// Rest that is not read yet.
 struct Rest<'a>(&'a [u8]);
 
 impl<'a> Rest<'a> {
@@ -31,7 +31,7 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// The request in these bytes; `None` if they are none.
+/// The request in these bytes; `None` if they contain none.
 #[must_use]
 pub fn decode(bytes: &[u8]) -> Option<Request> {
     let mut rest = Rest(bytes);
@@ -46,7 +46,7 @@ pub fn decode(bytes: &[u8]) -> Option<Request> {
     rest.0.is_empty().then_some(request)
 }
 
-/// Adds a number. What a module of 4 GiB holds is counted by 32 bits.
+/// Adds a number. 32 bits suffice for counts in a module of 4 GiB.
 fn number(out: &mut Vec<u8>, number: usize) {
     out.extend(u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes());
 }

@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind};
 use std::ops::Bound;
 use std::path::{Component, Path, PathBuf};
 
-/// What a name stands for.
+/// Item of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
     Folder,
@@ -40,12 +40,12 @@ impl Names {
         self.0.iter().map(|(path, node)| (path.as_path(), *node))
     }
 
-    /// What is at a whole path.
+    /// The item at a whole path.
     pub(crate) fn at(&self, path: &Path) -> io::Result<Node> {
         if let Some(node) = self.0.get(path) {
             return Ok(*node);
         }
-        // A file on the way is another mistake than a name that is missing.
+        // A file within the path is another mistake than a missing name.
         let is_through_file =
             path.ancestors().skip(1).any(|above| matches!(self.0.get(above), Some(Node::File(_))));
         Err(if is_through_file { ErrorKind::NotADirectory } else { ErrorKind::NotFound }.into())
@@ -79,7 +79,7 @@ impl Names {
             .collect()
     }
 
-    /// A new name, where none is and its folder is there.
+    /// Adds a new name, if it is free and its folder exists.
     pub(crate) fn add(&mut self, path: PathBuf, node: Node) -> io::Result<()> {
         if self.0.contains_key(&path) {
             return Err(ErrorKind::AlreadyExists.into());
@@ -93,7 +93,7 @@ impl Names {
         self.0.remove(path);
     }
 
-    /// Moves a file, or a folder with all below it, to where nothing is, or a file is in place of a file.
+    /// Moves a file, or a folder with its content, to a free name, or a file onto a file.
     pub(crate) fn rename(&mut self, from: &Path, to: &Path, replaces: bool) -> io::Result<()> {
         let node = self.at(from)?;
         self.folder(to.parent().unwrap_or(Path::new("/")))?;
@@ -132,7 +132,7 @@ impl Names {
         Ok(())
     }
 
-    /// Takes a name, and all below it, out of the tree.
+    /// Removes a name, and all below it, from the tree.
     fn taken(&mut self, path: &Path) -> Vec<(PathBuf, Node)> {
         let mut paths: Vec<PathBuf> = self.below(path).map(|(path, _)| path.clone()).collect();
         paths.push(path.to_owned());
@@ -140,10 +140,10 @@ impl Names {
     }
 }
 
-/// A path below `from`, below `to` instead.
+/// A path below `from` moved below `to`.
 fn moved(path: &Path, from: &Path, to: &Path) -> PathBuf {
     match path.strip_prefix(from) {
-        // Joined with nothing, a path would get a mark at its end.
+        // Joined with an empty path, a path would end in a separator.
         Ok(rest) if rest.as_os_str().is_empty() => to.to_owned(),
         Ok(rest) => to.join(rest),
         Err(_) => path.to_owned(),

@@ -1,6 +1,6 @@
-//! One bundle of pictures, for `benches/peers/bundle`: `bundle PROBLEM.txt PICTURES [known]` writes a session of so many pictures of 40 corners
-//! by an arm of seven joints, with lens and points of the board unknown (or known), and prints the CPU time of its fit from the nominal arm.
-//! Beside the corners' noise of 0.3 px nothing is wrong with a picture. Metres, radians and pixels.
+//! One bundle of pictures, for `benches/peers/bundle`: `bundle PROBLEM.txt PICTURES [known]`. It writes a session with this number of pictures of 40
+//! corners by an arm of seven joints, with lens and points of the board unknown (or known), and prints the CPU time of its fit from the nominal arm.
+//! The pictures have no errors except the corners' noise of 0.3 px. Metres, radians and pixels.
 
 #![allow(clippy::print_stdout, reason = "what it finds is for a program that reads it")]
 
@@ -17,9 +17,9 @@ use poecal_model::camera::{Board, CommonError, Distortion, Lens, PictureUnknown,
 use poecal_model::robot::{JointKind, Robot};
 use poecal_model::simulate::{Photographed, PictureSimulation, Simulation, random_chain};
 
-/// Fits are repeated for so many seconds.
+/// Seconds for which fits are repeated.
 const LONG_ENOUGH: f64 = 0.5;
-/// The first distortion of the lens, and how far off the focal length is that the fit begins with.
+/// Distortion of the lens, and ratio of the initial to the true focal length.
 const DISTORTION: [f64; 8] = [-0.1, 0.02, 1e-4, 1e-4, 1e-3, 0.0, 0.0, 0.0];
 const FOCAL_OFF: f64 = 1.005;
 
@@ -73,7 +73,7 @@ fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error
         let lens = &mut made.data.pictures.cameras[0].lens;
         lens.focal_px = lens.focal_px.map(|it| it * FOCAL_OFF);
     }
-    // The camera is on the tip, so that it is the target, and the board what it is seen from.
+    // The camera is on the tip, so it is the target, and the board observes it.
     for picture in &mut made.data.pictures.all {
         picture.of_camera = true;
         picture.corners.iter_mut().for_each(|corner| corner.weight = 1.0);
@@ -81,14 +81,14 @@ fn session(robot: &Robot, count: usize, is_free: bool) -> poecal_numerics::error
     Ok(made)
 }
 
-/// The nominal arm with camera and board some millimetres from where they are.
+/// The nominal arm with camera and board displaced by some millimetres.
 fn start(robot: &Robot, made: &Photographed) -> Estimate {
     let off = Pose::from_xyz_rpy([2e-3, -1e-3, 1e-3], [2e-3, 1e-3, -2e-3]);
     let camera = robot.home * made.tip_from_held * off;
     Estimate::new(robot, vec![camera], made.base_from_other.inverse() * off)
 }
 
-/// Everything: camera, board and axes.
+/// All unknowns: camera, board and axes.
 fn free(start: &Estimate) -> Vec<Parameter> {
     let frames = [
         Parameter::DeviceFrame(DeviceFrame::new(0, start.device_from_base.translation)),
@@ -97,8 +97,8 @@ fn free(start: &Estimate) -> Vec<Parameter> {
     frames.into_iter().chain(screw_axes(start.kinds())).collect()
 }
 
-/// What the other program is given, as plain numbers: axes at zero (two directions across it, direction, point), `board_from_base` and
-/// `base_from_camera`, lens with its priors (0 if known), points with their prior, noise, and of each picture readings and pixels.
+/// Input of the other program, as plain numbers: axes at zero (two directions across it, direction, point), `board_from_base` and `base_from_camera`,
+/// lens with its priors (0 if known), points with their prior, noise, and readings and pixels of each picture.
 fn problem(robot: &Robot, made: &Photographed, start: &Estimate, numbers: &PictureUnknowns) -> String {
     let data = &made.data;
     let (lens, board) = (&data.pictures.cameras[0].lens, &data.pictures.boards[0]);

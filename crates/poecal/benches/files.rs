@@ -23,7 +23,7 @@ fn session() -> Simulated {
     simulation.run(&elbow(), Kind::POSE).expect("a simulation of a finite robot")
 }
 
-/// The rows as a file of our own form, every number with so many decimals, or else to its last digit.
+/// The rows as a file of the project's form, every number with this number of decimals, or else to its last digit.
 fn table(made: &Simulated, decimals: Option<usize>) -> String {
     let mut text = made.data.reading_names().join(",") + ",x,y,z,qx,qy,qz,qw\n";
     for (row, observation) in made.data.observations.iter().enumerate() {
@@ -62,13 +62,13 @@ fn read_text(bencher: Bencher<'_, '_>, decimals: Option<usize>) {
     std::fs::remove_file(&path).expect("the file just written");
 }
 
-/// `residuals.csv` of rows at hand: the text alone.
+/// `residuals.csv` of available rows: the text alone.
 #[divan::bench]
 fn write_residuals_at_hand(bencher: Bencher<'_, '_>) {
     write(bencher, true);
 }
 
-/// `residuals.csv` of rows that are worked out meanwhile: errors of three models, leverage and studentised residual.
+/// `residuals.csv` of rows that are computed meanwhile: errors of three models, leverage and studentised residual.
 #[divan::bench]
 fn write_residuals(bencher: Bencher<'_, '_>) {
     write(bencher, false);

@@ -1,5 +1,6 @@
-//! Fits of the paper's elbow to poses and nothing else: `ROWS [REPEATS [poses|points [alone]]]`, with the prior of every fit unless it is `alone`. Once for `scripts/count-instructions`; repeated, it
-//! prints the median and the least CPU time in milliseconds (packing included) for `scripts/plot-cost`.
+//! Fits of the paper's elbow to poses and nothing else: `ROWS [REPEATS [poses|points [alone]]]`, with the prior of every fit unless it is `alone`.
+//! Run once for `scripts/count-instructions`; repeated, it prints the median and the least CPU time in milliseconds (packing included) for
+//! `scripts/plot-cost`.
 
 #![allow(
     clippy::expect_used,

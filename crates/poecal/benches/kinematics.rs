@@ -1,5 +1,5 @@
-//! Poses, Jacobians and sag in many configurations, eight side by side, beside one after the other: nanoseconds a configuration on one thread,
-//! the least and the median of turns.
+//! Poses, Jacobians and sag in many configurations, eight side by side, compared with one after the other: nanoseconds per configuration on one
+//! thread, the least and the median of turns.
 //!
 //! `RAYON_NUM_THREADS=1 cargo bench -p poecal --bench kinematics`
 
@@ -71,7 +71,7 @@ fn with_terms() -> Robot {
 
 fn compare<A, B>(name: &str, one: impl Fn() -> A, eight: impl Fn() -> B) {
     let mut times: [Vec<f64>; 2] = Default::default();
-    // In turn, so that what disturbs the machine disturbs both.
+    // In turn, so that disturbances of the machine affect both.
     for _ in 0..TURNS {
         let begin = Instant::now();
         black_box(one());

@@ -96,7 +96,7 @@ fn pass(bencher: Bencher<'_, '_>, kind: Kind) {
     bencher.counter(divan::counter::ItemsCount::new(PASS)).bench_local(|| black_box(problem.normal(&start)));
 }
 
-/// The same for an arm of thirty joints, one in four of which slides.
+/// The solve of an arm of thirty joints, one in four of which slides.
 fn solve_thirty_joints(bencher: Bencher<'_, '_>, kind: Kind) {
     let made = simulation(5_000).run(&random_chain(30, 1), kind).expect("a simulation of a finite robot");
     solve_session(bencher, &made);
@@ -133,14 +133,13 @@ fn monte_carlo(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// Everything `calibrate` does for geometry alone: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held
-/// out.
+/// All steps of `calibrate` for geometry alone: starts, noise estimation, fit, gauge, rank, accuracy; device frame unknown, nothing held out.
 #[divan::bench(args = ROWS)]
 fn calibrate_poses(bencher: Bencher<'_, '_>, rows: usize) {
     calibrated(bencher, rows, Corrections::Off);
 }
 
-/// The same with the corrected model of a robot that sags.
+/// A calibration with the corrected model of a robot that sags.
 #[divan::bench(args = ROWS)]
 fn correct_poses(bencher: Bencher<'_, '_>, rows: usize) {
     calibrated(bencher, rows, Corrections::Auto);
@@ -158,7 +157,7 @@ fn calibrated(bencher: Bencher<'_, '_>, rows: usize, corrections: Corrections) {
     bencher.bench_local(|| black_box(calibrate(&made.nominal, &made.data, &options)));
 }
 
-/// What is clean must cost next to nothing, since it is looked at after every calibration: far less than a fit.
+/// The diagnosis of a clean session must cost far less than a fit, since it follows every calibration.
 #[divan::bench]
 fn diagnose_what_is_clean(bencher: Bencher<'_, '_>) {
     let made = Simulation::default().run(&elbow(), Kind::POINT).expect("a simulation of a finite robot");

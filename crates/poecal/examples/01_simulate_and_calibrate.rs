@@ -1,7 +1,7 @@
 //! An elbow with known errors, calibrated from poses.
 //!
-//! A device at an unknown place measures the pose of the tool of a six-axis arm in m = 50 random configurations. The
-//! arm differs from nominal: every axis, and the tool, is turned by 1° and shifted by 2 mm.
+//! A device at an unknown position measures the pose of the tool of a six-axis arm in m = 50 random configurations. The arm differs from nominal:
+//! every axis, and the tool, is turned by 1° and shifted by 2 mm.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
@@ -13,7 +13,7 @@
 //!
 //! State: 4 unknowns an axis, 6 of the tool; `D` has 6 more, which the screws absorb (docs/theory.md §8): 30 in all.
 //! Measurement equation: `Y_k = D exp(ξ_1 θ_1k) … exp(ξ_6 θ_6k) M`, and noise.
-//! Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. It is not given to the fit.
+//! Noise: white, 0.05 mm in each component of position and 0.01° in each of rotation. The fit estimates it.
 //!
 //! Its twin in Python prints the same: `examples/python/01_simulate_and_calibrate.py`.
 

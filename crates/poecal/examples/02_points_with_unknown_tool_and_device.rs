@@ -1,7 +1,7 @@
-//! A laser tracker at an unknown place, and a reflector at an unknown place on the tool.
+//! A laser tracker at an unknown position, and a reflector at an unknown position on the tool.
 //!
-//! The tracker measures positions alone, of one reflector, in m = 100 configurations. Its place, and that of the
-//! reflector on the tool, are unknown.
+//! The tracker measures positions alone, of one reflector, in m = 100 configurations. Its own position, and that of the reflector on the tool, are
+//! unknown.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
@@ -13,7 +13,7 @@
 //!
 //! State: 4 unknowns an axis and 3 of the reflector; `D` has 6 more, which the screws absorb (docs/theory.md §8): 27 in all.
 //! Measurement equation: `y_k = D exp(ξ_1 θ_1k) … exp(ξ_6 θ_6k) p`, and noise.
-//! Noise: white, 0.05 mm in each component. It is not given to the fit.
+//! Noise: white, 0.05 mm in each component. The fit estimates it.
 //!
 //! The rows are those of `examples/elbow/points.csv`. Its twin in Python prints the same:
 //! `examples/python/02_points_with_unknown_tool_and_device.py`.

@@ -1,7 +1,7 @@
-//! The expected error of each prediction, against the true one.
+//! The expected error of each prediction, compared with the true one.
 //!
-//! A calibrated model predicts the pose of the tool, with its uncertainty. Here the truth is known: the predictions of 1,000 further
-//! configurations are compared with it.
+//! A calibrated model predicts the pose of the tool, with its uncertainty. Here the truth is known: the predictions of 1,000 further configurations
+//! are compared with it.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
@@ -11,7 +11,7 @@
 //! | `C` | covariance of all unknowns | fitted with them |
 //! | `J(θ)` | motion of the tool by the unknowns | from the screws |
 //!
-//! State: 30 unknowns, of six axes and the tool, from 35 poses of 50 (the others are held out); the device's place is unknown.
+//! State: 30 unknowns, of six axes and the tool, from 35 poses of 50 (the others are held out); the device frame is unknown.
 //! Measurement equation: `Y_k = D f*(θ_k)`, and noise.
 //! Noise: white, 0.05 mm and 0.01° in each component. Prediction: `cov f(θ) = J(θ) C J(θ)ᵀ` (docs/theory.md §9).
 //!
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truth = simulation.held_out(&made, Kind::POSE, 1000)?;
     let calibration = calibrate(&nominal, &made.data, &CalibrationOptions::default())?;
 
-    // A calibration as its file says it: robot, device and covariance, those of the corrected model.
+    // The calibration in the form of its file: robot, device and covariance, those of the corrected model.
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let file = file.corrected().unwrap_or(file);
     let model = Model {

@@ -1,7 +1,7 @@
-//! Which configurations to measure, and a calibration judged by other rows.
+//! Choice of the configurations to measure, and a calibration judged by other rows.
 //!
-//! Before anything is measured, `identify` shows which unknowns given configurations would determine. 8 and
-//! 40 are compared; the 40 are measured, every row is fitted, and the calibration is judged by 200 held-out rows.
+//! Before anything is measured, `identify` shows which unknowns the listed configurations would determine. 8 and 40 are compared; the 40 are
+//! measured, every row is fitted, and the calibration is judged by 200 held-out rows.
 //!
 //! | symbol | what | known |
 //! |---|---|---|
@@ -10,9 +10,9 @@
 //! | `H_k` | motion of the reflector of row k by `x` | nominal |
 //! | `y_k` | position of the reflector in the tracker | measured |
 //!
-//! State: `x`; the tracker's place is unknown.
-//! Measurement equation: `y_k = D f(θ_k; x)`, and noise; of errors of `x`, `δy_k = H_k δx`.
-//! Noise: white, σ = 0.05 mm in each component. Information: `Σ H_kᵀ H_k / σ²`, of which rank and covariance follow.
+//! State: `x`; the tracker's position is unknown.
+//! Measurement equation: `y_k = D f(θ_k; x)`, and noise; for errors of `x`, `δy_k = H_k δx`.
+//! Noise: white, σ = 0.05 mm in each component. Information: `Σ H_kᵀ H_k / σ²`, which determines rank and covariance.
 //!
 //! Its twin in Python prints the same: `examples/python/04_validate_and_identify.py`.
 

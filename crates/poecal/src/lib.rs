@@ -1,16 +1,16 @@
 //! Kinematic calibration of robot arms, and of trees of them, by the product of exponentials.
 //!
-//! For programs in Rust. What is public here follows semantic versioning. Not here: code of its own, which is in the parts, and whatever only
-//! the program or the Python package needs of them.
+//! For programs in Rust. Public items here follow semantic versioning. This crate has no code of its own, which is in the parts, and nothing that
+//! only the program or the Python package needs of them.
 //!
-//! A robot is a screw `ξᵢ` for every joint and a home pose `M`. With joint values `θ`, its tip stands in the base frame at
+//! A robot is a screw `ξᵢ` for every joint and a home pose `M`. With joint values `θ`, the pose of its tip in the base frame is
 //!
 //! ```text
 //! base_from_tip(θ) = exp(ξ₁θ₁) exp(ξ₂θ₂) … exp(ξₙθₙ) M
 //! ```
 //!
-//! A real robot's screws are a little off. A device at an unknown place measures the tool, as points or poses: [`calibrate`] fits the
-//! screws, the tool and the device frame to these measurements.
+//! A real robot's screws have small errors. A device at an unknown position measures the tool, as points or poses: [`calibrate`] fits the screws, the
+//! tool and the device frame to these measurements.
 //!
 //! ```
 //! use poecal::simulate::elbow;
@@ -31,28 +31,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is here
+//! # Contents
 //!
 //! | to | there is |
 //! |---|---|
 //! | describe a robot | [`Robot`], [`Joint`], [`JointKind`], [`Limits`], [`Reading`], [`Tolerance`]; [`Model`] and [`ChainSelection`] read it from URDF, MJCF, SDF, TOML, makers' files or a calibration |
-//! | say what was measured | [`Dataset`], [`Observation`], [`Measurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] gives a [`MeasurementFile`] |
-//! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) gives a [`Calibration`] with its [`CalibratedTarget`]s |
-//! | know how good it is | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
-//! | judge it by other measurements | [`judge`], which gives a [`Judgement`] |
-//! | predict | [`Robot::forward_kinematics`]; [`predicted`], which gives [`Predicted`] poses in a [`PredictionFrame`] with their uncertainty |
-//! | plan a session | [`identify`] a [`PlannedSession`], which gives a [`Foresight`] |
+//! | state measurements | [`Dataset`], [`Observation`], [`Measurement`], [`Noise`], [`Set`]; [`read_measurements`] with [`ReadOptions`] returns a [`MeasurementFile`] |
+//! | calibrate | [`calibrate`] with [`CalibrationOptions`] ([`DeviceFrameKnowledge`], [`Robust`], [`Loss`], [`Formulation`]) returns a [`Calibration`] with its [`CalibratedTarget`]s |
+//! | assess it | [`Accuracy`] ([`SetAccuracy`], [`ModelAccuracy`], [`Statistic`]), [`Verdict`], [`Trust`], [`Identifiability`] ([`Direction`]), [`Diagnosis`] of mistakes in the input |
+//! | judge it by other measurements | [`judge`], which returns a [`Judgement`] |
+//! | predict | [`Robot::forward_kinematics`]; [`predicted`], which returns [`Predicted`] poses in a [`PredictionFrame`] with their uncertainty |
+//! | plan a session | [`identify`] a [`PlannedSession`], which returns a [`Foresight`] |
 //! | hand it on | [`CalibrationFile`] with its [`Inputs`], [`Residuals`], [`ModelFormat`], [`calibration_page`] (the report), [`summary`] (the table) |
 //! | try it without a robot | [`Simulation`], [`Simulated`], [`Kind`] and the robots of [`simulate`] |
 //! | compute with poses | [`lie`]: poses, twists, screws |
 //! | solve other least squares | [`solve`]: Levenberg-Marquardt on a manifold, which knows no robots |
 //!
-//! Whatever fails says so by [`Error`] with an [`ErrorKind`].
+//! Every failure is reported by [`Error`] with an [`ErrorKind`].
 //!
-//! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` takes coordinates in b to coordinates in a. The
-//! formulas stand in `docs/theory.md`, the conventions in `docs/conventions.md`, the crates and what they may import in
-//! `ARCHITECTURE.md`. This crate hands on what users need of the parts that it is made of (`poecal-model`, `poecal-fit`,
-//! `poecal-calibrate` and others, all of the same version), whose interfaces change without notice.
+//! Lengths are in metres and angles in radians, a twist is `(v; ω)`, `a_from_b` transforms coordinates in b to coordinates in a. The formulas are in
+//! `docs/theory.md`, the conventions in `docs/conventions.md`, the crates and their permitted imports in `ARCHITECTURE.md`. This crate re-exports the
+//! items that users need of its parts (`poecal-model`, `poecal-fit`, `poecal-calibrate` and others, all of the same version), whose interfaces change
+//! without notice.
 
 #![forbid(unsafe_code)]
 

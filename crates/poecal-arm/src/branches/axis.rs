@@ -1,4 +1,4 @@
-//! Axes as a direction and a point, and turns about them.
+//! Axes as a direction and a point, and rotations about them.
 
 use nalgebra::Vector3;
 
@@ -21,19 +21,19 @@ impl Axis {
         Axis { w: screw.w(), point: screw.nearest_point(&Vector3::zeros()) }
     }
 
-    /// A direction after a turn.
+    /// A direction after a rotation.
     #[inline]
     pub(crate) fn turned(&self, (c, s): (f64, f64), v: &Vector3<f64>) -> Vector3<f64> {
         v * c + self.w.cross(v) * s + self.w * ((1.0 - c) * self.w.dot(v))
     }
 
-    /// A point after a turn.
+    /// A point after a rotation.
     #[inline]
     pub(crate) fn moved(&self, turn: (f64, f64), p: &Vector3<f64>) -> Vector3<f64> {
         self.point + self.turned(turn, &(p - self.point))
     }
 
-    /// The angle that turns `from` to where it comes closest to `to`.
+    /// Angle that turns `from` closest to `to`.
     #[inline]
     pub(crate) fn angle(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
         let across = self.w.dot(&from.cross(to));
@@ -41,7 +41,7 @@ impl Axis {
         if across == 0.0 && along == 0.0 { 0.0 } else { across.atan2(along) }
     }
 
-    /// The place between two axes that is nearest to both, and their distance there; `None` of parallel ones.
+    /// Point between two axes that is nearest to both, and their distance there; `None` if they are parallel.
     pub(crate) fn between(&self, other: &Axis) -> Option<(Vector3<f64>, f64)> {
         let across = self.w.cross(&other.w);
         let squared = across.norm_squared();

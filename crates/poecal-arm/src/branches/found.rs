@@ -1,4 +1,4 @@
-//! Configurations that were found, without those that are the same.
+//! Configurations that were found, without duplicates.
 
 use core::f64::consts::TAU;
 
@@ -11,10 +11,10 @@ use crate::trig::wrapped;
 /// Difference of all joints (rad) below which two configurations are one.
 pub(super) const SAME: f64 = 1e-7;
 
-/// Most branches of an arm of six axes (primrose1986).
+/// Largest number of branches of an arm of six axes (primrose1986).
 pub const MOST_BRANCHES: usize = 16;
 
-/// Configurations that have the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`](super::AllBranches::at).
+/// Configurations with the tip at a pose, joint values (rad) in (-π, π]: those of [`AllBranches::at`](super::AllBranches::at).
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -50,12 +50,12 @@ impl<const N: usize> Branches<N> {
     }
 }
 
-/// The largest difference of a joint, rad.
+/// Largest difference of a joint, rad.
 pub(super) fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
     one.iter().zip(other).map(|(a, b)| wrapped(a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A configuration turned by whole turns to where it is nearest to `near` and within limits; `None` if there is no such one.
+/// A configuration turned by whole turns, nearest to `near` and within limits; `None` if there is none.
 pub(super) fn turned<const N: usize>(
     branch: &[f64; N],
     near: &[f64; N],
@@ -65,7 +65,7 @@ pub(super) fn turned<const N: usize>(
     for ((q, near), &(low, high)) in q.iter_mut().zip(near).zip(limits) {
         let turns = ((near - *q) / TAU).round();
         let turned = *q + turns * TAU;
-        // Limits that are met but for rounding are met.
+        // Limits that are met except for rounding count as met.
         let least = ((low - SAME - turned) / TAU).ceil();
         let most = ((high + SAME - turned) / TAU).floor();
         if least > most {

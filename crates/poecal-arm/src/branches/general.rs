@@ -1,11 +1,11 @@
 //! Arms of six revolute axes without any special geometry (raghavan1993).
 //!
-//! A point `p` and the direction `l` of the sixth axis are at the same place seen from both ends of the loop: `e₃e₄e₅ (p, l) =
-//! e₂⁻¹e₁⁻¹ R (p, l)`, with `eᵢ = exp(ξᵢqᵢ)` and the motion `R` that is asked for. Six equations, and eight that follow from them (p·p, p·l,
-//! p × l, (p·p) l - 2 (p·l) p), hold no more than products of cosines and sines of one angle each. Six combinations of them are free of q₁
-//! and q₂; their resultant in q₄ and q₅ is a trigonometric polynomial of degree 8 in q₃.
+//! A point `p` and the direction `l` of the sixth axis are equal from both ends of the loop: `e₃e₄e₅ (p, l) = e₂⁻¹e₁⁻¹ R (p, l)`, with `eᵢ =
+//! exp(ξᵢqᵢ)` and the requested motion `R`. Six equations, and eight that follow from them (p·p, p·l, p × l, (p·p) l - 2 (p·l) p), hold no
+//! more than products of cosines and sines of one angle each. Six combinations of them are free of q₁ and q₂; their resultant in q₄ and q₅
+//! is a trigonometric polynomial of degree 8 in q₃.
 
-// Rows and columns by their numbers, as equations have them.
+// Rows and columns are by their numbers, as in the equations.
 #![allow(clippy::needless_range_loop)]
 
 use core::f64::consts::TAU;
@@ -23,23 +23,23 @@ use crate::trig::cosine_and_sine;
 #[allow(unused_imports)]
 use nalgebra::{ComplexField as _, RealField as _};
 
-/// Imaginary part of a pair of roots up to which a real pair of the arm may be near but for rounding, rad.
+/// Imaginary part of a pair of roots up to which rounding may hide a real pair of the arm, rad.
 const BEYOND: f64 = 0.075;
 /// Unknown products of the cosines and sines of the first two angles.
 const UNKNOWN: usize = 8;
-/// Samples of a polynomial of degree 8.
+/// Number of samples of a polynomial of degree 8.
 const SAMPLES: usize = 17;
-/// Zero of the fourth and fifth angle: half an angle has no tangent at π, where arms are often.
+/// Zero of the fourth and fifth angle: half an angle has no tangent at π, a frequent angle of arms.
 const TURNED: [f64; 2] = [0.734, -1.187];
 
-/// An arm of six axes, with what does not depend on the pose.
+/// An arm of six axes, with quantities that do not depend on the pose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct General {
     axes: [Axis; 6],
     first: usize,
     origin: Vector3<f64>,
     scale: f64,
-    /// Of each equation, its numbers by 1, cos and sin of the third angle, then of the fourth and the fifth.
+    /// Numbers of each equation by 1, cos and sin of the third angle, then of the fourth and the fifth.
     left: [[Table; 3]; EQUATIONS],
     /// Cosines and sines of the angles at which the polynomial is sampled.
     turns: [(f64, f64); SAMPLES],
@@ -49,8 +49,8 @@ impl General {
     /// Axes at which the loop can be opened.
     pub(crate) const FIRST: [usize; 3] = [0, 5, 4];
 
-    /// The loop opened at an axis: `first` (0, 4, or 5) of the arm's comes first, so that the last four are fixed to each other whatever
-    /// the pose.
+    /// The loop opened at an axis: `first` (0, 4, or 5) of the arm's comes first, so that the last four are fixed to each other for all
+    /// poses.
     pub(crate) fn new(axes: &[Axis; 6], first: usize, reach_m: f64) -> Self {
         let mut axes = *axes;
         axes.rotate_left(first);
@@ -109,7 +109,7 @@ impl General {
         General { axes, first, origin, scale, left, turns }
     }
 
-    /// The right side by 1, cos and sin of the first two angles: eight unknown products, and what has none.
+    /// Right side by 1, cos and sin of the first two angles: eight unknown products, and the constant part.
     fn right(&self, axes: &[Axis; 6], motion: &Pose) -> ([[f64; UNKNOWN]; EQUATIONS], [f64; EQUATIONS]) {
         let [a1, a2, .., a6] = axes;
         let (p, l) = (motion.act(&a6.point), motion.rotation * a6.w);
@@ -202,7 +202,7 @@ impl General {
     pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6])) {
         let mut axes = self.axes;
         if self.first > 0 {
-            // Seen from the base, what comes after the pose is moved by it.
+            // From the base, axes after the pose are moved by it.
             for axis in axes.iter_mut().take(6 - self.first) {
                 *axis = Axis { w: motion.rotation * axis.w, point: motion.act(&axis.point) };
             }
@@ -248,14 +248,14 @@ impl General {
         }
     }
 
-    /// All six angles from the middle three: the first two bring the sixth axis to its place, the last turns about it.
+    /// All six angles from the middle three: the first two bring the sixth axis to its pose, the last turns about it.
     fn completed(&self, axes: &[Axis; 6], motion: &Pose, [q3, q4, q5]: [f64; 3]) -> [f64; 6] {
         let [a1, a2, a3, a4, a5, a6] = axes;
         let (t3, t4, t5) = (cosine_and_sine(q3), cosine_and_sine(q4), cosine_and_sine(q5));
         let p = a3.moved(t3, &a4.moved(t4, &a5.moved(t5, &a6.point)));
         let l = a3.turned(t3, &a4.turned(t4, &a5.turned(t5, &a6.w)));
         let (goal_p, goal_l) = (motion.act(&a6.point) - a1.point, motion.rotation * a6.w);
-        // What the first joint leaves as it is: heights along its axis, and the square of a length; linear in cos q₂ and sin q₂.
+        // Invariants of the first joint: heights along its axis, and the square of a length; linear in cos q₂ and sin q₂.
         let mut normal = [[0.0; 2]; 2];
         let mut right = [0.0; 2];
         let mut add = |a: f64, b: f64, d: f64| {
@@ -303,9 +303,9 @@ impl General {
 
 /// The equations at a third angle as a matrix of 6 unknowns, and the factor by which its determinant is that of the resultant.
 ///
-/// The resultant has the equations and the equations times the tangent t of half the fourth angle, as blocks of the powers of t:
-/// `[A B C 0; 0 A B C] (1, t, t², t³) = 0`, each block by 1, tan and tan² of half the fifth angle. Its first and its last columns have
-/// numbers in one half of the rows only: without them, `t` and `t²` times the powers of the fifth are left.
+/// The resultant has the equations and the equations times the tangent t of half the fourth angle, as blocks of the powers of t: `[A B
+/// C 0; 0 A B C] (1, t, t², t³) = 0`, each block by 1, tan and tan² of half the fifth angle. Its first and its last columns have
+/// numbers in one half of the rows only: without them, `t` and `t²` times the powers of the fifth remain.
 fn reduced(equations: &[[Table; 3]; 6], c: f64, s: f64) -> ([[f64; 6]; 6], f64) {
     let (mut first, mut last) = ([[0.0; 9]; 6], [[0.0; 9]; 6]);
     for (row, [one, cosine, sine]) in equations.iter().enumerate() {
@@ -327,7 +327,7 @@ fn reduced(equations: &[[Table; 3]; 6], c: f64, s: f64) -> ([[f64; 6]; 6], f64) 
     ([row(a), row(b), row(c), row(d), row(e), row(f)], factor)
 }
 
-/// Takes the first three columns out of the last three rows, with row pivots, whose product goes into the factor.
+/// Eliminates the first three columns from the last three rows, with row pivots, whose product goes into the factor.
 #[inline]
 fn eliminate(rows: &mut [[f64; 9]; 6], factor: &mut f64) {
     for k in 0..3 {

@@ -11,15 +11,15 @@ use crate::trig::wrapped;
 
 /// Values of the held joint (rad) at which its choice is judged.
 const VALUES: [f64; 3] = [0.5, -1.3, 2.1];
-/// A joint that moves less than this share of what the most moving one does leaves no choice: the elbow of a round shoulder and wrist.
+/// Share of the motion of the most moving joint below which a joint cannot be held: the elbow of a spherical shoulder and wrist.
 const IDLE: f64 = 0.1;
 /// Steps (rad) by which a held joint is moved in search of a configuration: a whole turn to each side.
 const STEP: f64 = 0.1;
 const MOST_MOVES: u32 = 63;
 
 /// All branches of an arm of seven revolute joints with one of them held at a value, the redundancy angle: those of the other six
-/// ([`AllBranches`](super::AllBranches)). The held joint is by default that one without which the arm is nearest to one with branches in closed
-/// form: the third of arms with a round shoulder and wrist, the last where only the shoulder is round.
+/// ([`AllBranches`](super::AllBranches)). By default the held joint is the one without which the arm is nearest to an arm with branches in
+/// closed form. It is the third for arms with a spherical shoulder and wrist, the last if only the shoulder is spherical.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -44,7 +44,7 @@ pub struct HeldBranches {
     ranking: Ranking,
 }
 
-/// The other six joints where one is held.
+/// Solver of the other six joints with one held.
 fn ways(arm: &Arm, joint: usize, value: f64, ranking: Option<Ranking>) -> Option<Ways> {
     let all: &[Screw; 7] = arm.screws().try_into().ok()?;
     let senses: &[f64; 7] = arm.senses()?.try_into().ok()?;
@@ -56,7 +56,7 @@ fn ways(arm: &Arm, joint: usize, value: f64, ranking: Option<Ranking>) -> Option
     Some(Ways::new(&screws, &(moved * *arm.home()), (arm.reach_m(), senses), ranking))
 }
 
-/// How much each joint moves, in a few configurations, where the arm moves and its tip does not: minors of the Jacobian.
+/// Self-motion of each joint, in a few configurations: minors of the Jacobian.
 fn moves(arm: &Arm) -> [f64; 7] {
     let mut sum = [0.0; 7];
     for value in VALUES {
@@ -70,14 +70,14 @@ fn moves(arm: &Arm) -> [f64; 7] {
 }
 
 impl HeldBranches {
-    /// What is computed once for an arm and the joint that is held (its index); `None` of an arm that has not seven revolute joints, each
-    /// with a reading of its own, or not this joint.
+    /// Precomputation for an arm and the held joint (its index). `None` if the arm has not seven revolute joints, each with a reading of
+    /// its own, or not this joint.
     #[must_use]
     pub fn new(arm: &Arm, joint: Option<usize>) -> Option<Self> {
         if arm.joints() != 7 || arm.senses().is_none() || arm.screws().iter().any(Screw::is_prismatic) {
             return None;
         }
-        // How far from closed branches where it is farthest.
+        // Largest distance from an arm with branches in closed form.
         let off = |joint: usize| {
             let at = |value: &f64| ways(arm, joint, *value, None).map_or(f64::INFINITY, |it| it.off());
             VALUES.iter().map(at).fold(0.0, f64::max)
@@ -88,7 +88,7 @@ impl HeldBranches {
             None => {
                 let moves = moves(arm);
                 let most = moves.iter().fold(0.0_f64, |most, it| most.max(*it));
-                // Of such as are all far, the third.
+                // If all are far, the third is taken.
                 let all = [2, 6, 0, 4, 1, 3, 5].into_iter().filter(|joint| moves[*joint] > IDLE * most);
                 all.min_by(|one, other| off(*one).total_cmp(&off(*other))).unwrap_or(2)
             }
@@ -98,13 +98,13 @@ impl HeldBranches {
         Some(HeldBranches { arm: arm.clone(), joint, ranking })
     }
 
-    /// Index of the joint that is held.
+    /// Index of the held joint.
     #[must_use]
     pub fn joint(&self) -> usize {
         self.joint
     }
 
-    /// The configurations that have the tip at a pose of the base where the held joint reads a value (rad); the others are in (-π, π].
+    /// Configurations with the tip at a pose of the base and the held joint at a value (rad); the others are in (-π, π].
     #[must_use]
     pub fn at(&self, target: &Pose, value: f64) -> Branches<7> {
         let mut found = Branches::EMPTY;
@@ -116,7 +116,7 @@ impl HeldBranches {
         found
     }
 
-    /// Those within the arm's limits, turned by whole turns to where they are nearest to `near`; sorted by the joint that has to move most.
+    /// Configurations within the arm's limits, turned by whole turns nearest to `near`; sorted by the joint that has to move most.
     #[must_use]
     pub fn within_limits(&self, target: &Pose, value: f64, near: &[f64; 7]) -> Branches<7> {
         let mut found = Branches::EMPTY;
@@ -133,7 +133,7 @@ impl HeldBranches {
         found
     }
 
-    /// Where gears have errors, a joint is not where it was a turn ago.
+    /// With gear errors, a joint changes its value after a whole turn.
     fn refined(&self, target: &Pose, q: &[f64; 7]) -> [f64; 7] {
         if self.arm.is_rigid() {
             return *q;
@@ -144,8 +144,8 @@ impl HeldBranches {
         Six::all(&six, held)
     }
 
-    /// As [`Arm::nearest`], the least motion; where its iteration does not reach the pose, the nearest branch at the redundancy angle that is
-    /// nearest to where it is, in steps of 0.1 rad.
+    /// As [`Arm::nearest`], the least motion. If its iteration does not reach the pose, it is the nearest branch at a value of the redundancy
+    /// angle. That value is the nearest to the current one, in steps of 0.1 rad.
     pub fn nearest(&self, target: &Pose, q: &mut [f64; 7]) -> f64 {
         let mut near = *q;
         let left = self.arm.nearest(target, &mut near);
@@ -168,8 +168,8 @@ impl HeldBranches {
         self.arm.nearest(target, q)
     }
 
-    /// The configuration within the arm's limits that has the tip at a pose at the redundancy angle nearest to that of `near`, in steps of
-    /// 0.1 rad, and of those the one whose joints are nearest to it.
+    /// Configuration within the arm's limits with the tip at a pose, at the redundancy angle nearest to that of `near`, in steps of 0.1
+    /// rad. Of several it is the one whose joints are nearest.
     #[must_use]
     pub fn nearest_within_limits(&self, target: &Pose, near: &[f64; 7]) -> Option<[f64; 7]> {
         let &(low, high) = self.arm.limits().get(self.joint)?;
@@ -179,7 +179,7 @@ impl HeldBranches {
         })
     }
 
-    /// The first that is found at values of the held joint ever farther from a start.
+    /// First result at values of the held joint with increasing distance from a start.
     fn search(&self, start: f64, find: impl Fn(f64) -> Option<[f64; 7]>) -> Option<[f64; 7]> {
         (0..=MOST_MOVES)
             .map(|it| STEP * f64::from(it))

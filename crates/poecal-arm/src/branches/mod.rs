@@ -1,7 +1,7 @@
-//! All configurations of an arm that have its tip at a pose.
+//! All configurations of an arm with its tip at a pose.
 //!
-//! Starts are found by closed forms, or, in doubt, by the roots of the arm's equations (`ways.rs`), and refined by `newton.rs`; `held.rs` is for
-//! seven joints.
+//! Starts come from closed forms, or, in doubt, from the roots of the arm's equations (`ways.rs`). They are refined by `newton.rs`; `held.rs` is
+//! for seven joints.
 
 mod axis;
 mod found;
@@ -27,11 +27,11 @@ use crate::lie::{Pose, Screw};
 use crate::newton::{REACHED, Six, newton};
 use crate::trig::wrapped;
 
-/// All branches of one arm of six revolute joints: those of the nearest arm that has them in closed form (its last or first three axes meet,
-/// or its second to fourth, or third to fifth, are parallel), each followed by Newton's iteration of the arm itself. Where two of them meet or
-/// almost do, where one leads far or nowhere, and for arms that are far from such ones, the starts are the roots of the arm's own equations
-/// (raghavan1993). These can be set up in six ways; the first is the one whose roots are nearest to the branches in a few configurations, and
-/// another one is asked where the number of branches is odd, as they come in pairs, and of arms without closed branches.
+/// All branches of one arm of six revolute joints. They begin with those of the nearest arm that has them in closed form: its last or first
+/// three axes meet, or its second to fourth, or third to fifth, are parallel. Newton's iteration of the arm itself follows. The starts are the
+/// roots of the arm's own equations (raghavan1993) in three cases: branches meet or almost do, an iteration leads far away or diverges, or the
+/// arm is far from such an arm. These equations can be set up in six orders; the first has the roots nearest to the branches in a few
+/// configurations. Another one is used if the number of branches is odd, as they come in pairs, and for arms without branches in closed form.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -55,7 +55,7 @@ pub struct AllBranches {
 }
 
 impl AllBranches {
-    /// What is computed once for an arm; `None` of an arm that has not six revolute joints, each with a reading of its own.
+    /// Precomputation for an arm; `None` if it has not six revolute joints, each with a reading of its own.
     #[must_use]
     pub fn new(arm: &Arm) -> Option<Self> {
         let screws: &[_; 6] = arm.screws().try_into().ok()?;
@@ -68,14 +68,14 @@ impl AllBranches {
         Some(AllBranches { arm: arm.clone(), ways })
     }
 
-    /// The configurations that have the tip at a pose of the base.
+    /// Configurations with the tip at a pose of the base.
     #[must_use]
     pub fn at(&self, target: &Pose) -> Branches {
         self.ways.branches(&Six::from_arm(&self.arm), target)
     }
 
-    /// The configurations within the arm's limits ([`Arm::limits`]) that have the tip at a pose: of each branch that one whose joints are nearest
-    /// to `near`, turned by whole turns where that keeps limits; sorted by the joint that has to move most.
+    /// Configurations within the arm's limits ([`Arm::limits`]) with the tip at a pose. For each branch it is the one whose joints are nearest to
+    /// `near`, turned by whole turns if that keeps limits; sorted by the joint that has to move most.
     #[must_use]
     pub fn within_limits(&self, target: &Pose, near: &[f64; 6]) -> Branches {
         let mut found = Branches::EMPTY;
@@ -90,7 +90,7 @@ impl AllBranches {
         found
     }
 
-    /// As [`Arm::nearest`]; where its iteration does not reach the pose, the branch of which the joint that has to move most moves least.
+    /// As [`Arm::nearest`]; if its iteration does not reach the pose, the branch with the least motion of the joint that moves most.
     pub fn nearest(&self, target: &Pose, q: &mut [f64; 6]) -> f64 {
         let mut near = *q;
         let left = self.arm.nearest(target, &mut near);
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// An arm with a round wrist.
+    /// An arm with a spherical wrist.
     fn arm() -> Arm {
         let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
         let (axes, heights) = ([z, y, y, x, y, x], [0.0, 0.0, 0.4, 0.4, 0.8, 0.8]);

@@ -16,14 +16,14 @@ use nalgebra::{ComplexField as _, RealField as _};
 pub(crate) struct Parallel {
     axes: [Axis; 6],
     care: Care,
-    /// Where the fifth axis meets the sixth.
+    /// Intersection of the fifth axis with the sixth.
     wrist: Vector3<f64>,
     /// Direction of the parallel axes.
     along: Vector3<f64>,
 }
 
 impl Parallel {
-    /// The arm of six axes, and how far it is from it: largest angle between the axes (rad), and distance of the last two (m).
+    /// The nearest arm of this kind, and the distance from it: largest angle between the axes (rad), and distance of the last two (m).
     pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64, f64)> {
         let first = axes[1].w;
         let signed = |axis: &Axis| if axis.w.dot(&first) < 0.0 { -axis.w } else { axis.w };
@@ -32,7 +32,7 @@ impl Parallel {
         let (wrist, apart) = axes[4].between(&axes[5])?;
         let mut axes = *axes;
         for axis in &mut axes[1..4] {
-            // Where it goes through the plane of the wrist, with its own sense.
+            // Intersection with the plane of the wrist, with the axis's own sense.
             let slope = axis.w.dot(&along);
             if slope.abs() < 0.5 {
                 return None;
@@ -52,7 +52,7 @@ impl Parallel {
     pub(crate) fn seeds(&self, motion: &Pose, push: &mut impl FnMut([f64; 6], bool)) {
         let [a1, a2, a3, a4, a5, a6] = &self.axes;
         let w = &self.along;
-        // The height of the wrist along the parallel axes is left to the first joint: w · exp(-ξ₁q₁) p = w · p₀.
+        // The first joint determines the height of the wrist along the parallel axes: w · exp(-ξ₁q₁) p = w · p₀.
         let p = motion.act(&self.wrist) - a1.point;
         let level = a1.w * a1.w.dot(&p);
         let (a, b) = (w.dot(&(p - level)), -w.dot(&a1.w.cross(&p)));
@@ -68,7 +68,7 @@ impl Parallel {
             for (q5, two) in linear(a, b, w6.dot(&turned) - a6.w.dot(&along), self.care.always()).each() {
                 let bent = a5.turned(back(q5), w);
                 let q6 = a6.angle(&goal, &bent);
-                // What the parallel axes have to do: a turn, and a place of the fourth.
+                // Motion of the parallel axes: a rotation, and a position of the fourth.
                 let undone = |v: &Vector3<f64>| {
                     let v = a5.turned(back(q5), v);
                     a1.turned(back(q1), &(motion.rotation * a6.turned(back(q6), &v)))

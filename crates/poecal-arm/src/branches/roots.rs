@@ -1,4 +1,4 @@
-//! Real roots of trigonometric polynomials, `Σ aₖ cos kθ + bₖ sin kθ`, with the places where two roots are about to meet.
+//! Real roots of trigonometric polynomials, `Σ aₖ cos kθ + bₖ sin kθ`, with the angles at which two roots are about to meet.
 
 use core::f64::consts::PI;
 
@@ -13,40 +13,40 @@ use nalgebra::{ComplexField as _, RealField as _};
 pub(crate) struct Angles<const N: usize> {
     pub(crate) values: [f64; N],
     pub(crate) count: usize,
-    /// Whether each is one of two that meet or almost do.
+    /// For each, true if it is one of two that meet or almost do.
     touching: [bool; N],
 }
 
-/// What counts as two angles that meet, or almost do: the farther an arm is from its relative, the more.
+/// Tolerances for two angles that meet, or almost do; they grow with the distance of an arm from its relative in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Care {
     /// Distance of two angles (rad) below which they almost meet.
     almost: f64,
-    /// Least distance that is given to two angles where they meet, rad.
+    /// Least distance of two angles that meet, rad.
     apart: f64,
     /// Imaginary part of a pair of solutions up to which a real pair of the arm itself may be near, rad.
     beyond: f64,
 }
 
 impl Care {
-    /// Nothing but what is real.
+    /// No tolerance: real roots alone.
     pub(crate) const NONE: Self = Care { almost: 0.0, apart: 0.0, beyond: 0.0 };
-    /// Of an arm as far from its relative as one is.
+    /// Largest tolerance, for an arm at the largest distance from its relative.
     const MOST: Self = Care { almost: 0.15, apart: 0.06, beyond: 1.6 };
 
-    /// For an arm that is so far (rad, lengths over reach) from its relative, which moves double roots by the square root of that.
+    /// Tolerance for an arm at this distance (rad, lengths over reach) from its relative, which moves double roots by its square root.
     pub(crate) fn from_deviation(off: f64) -> Self {
         let share = (60.0 * off.sqrt()).min(1.0);
         let Care { almost, apart, beyond } = Self::MOST;
         Care { almost: share * almost, apart: share * apart, beyond: share * beyond }
     }
 
-    /// The same, with a pair wherever none is real.
+    /// The same tolerance, with a pair wherever none is real.
     pub(crate) fn always(self) -> Self {
         Care { apart: 0.0, beyond: f64::INFINITY, ..self }
     }
 
-    /// For roots that are known but for rounding.
+    /// Tolerance for roots that are exact except for rounding.
     pub(crate) fn rounding(beyond: f64) -> Self {
         Care { beyond, ..Self::NONE }
     }
@@ -63,13 +63,13 @@ impl<const N: usize> Angles<N> {
         }
     }
 
-    /// Each with whether it is one of two that meet or almost do.
+    /// Angles, each with true if it is one of two that meet or almost do.
     pub(crate) fn each(&self) -> impl Iterator<Item = (f64, bool)> {
         let all = self.values.iter().zip(&self.touching).take(self.count);
         all.map(|(value, is_touching)| (*value, *is_touching))
     }
 
-    /// Whether two of them meet or almost do.
+    /// True if two of them meet or almost do.
     pub(crate) fn is_touching(&self) -> bool {
         self.touching.iter().take(self.count).any(|it| *it)
     }
@@ -88,8 +88,8 @@ impl<const N: usize> Angles<N> {
     }
 }
 
-/// Angles with `a cos θ + b sin θ = d`. Where there is none, or two are closer than `apart`, two that are `apart` (rad) on both sides of
-/// the place where they meet, if the imaginary part of the solutions is below `beyond`.
+/// Angles with `a cos θ + b sin θ = d`. If there is none, or two are closer than `apart`, there are two at a distance of `apart` (rad)
+/// about the place where they meet. The imaginary part of the solutions must be below `beyond`.
 pub(crate) fn linear(a: f64, b: f64, d: f64, care: Care) -> Angles<2> {
     let Care { almost, apart, beyond } = care;
     let mut found = Angles::EMPTY;
@@ -109,7 +109,7 @@ pub(crate) fn linear(a: f64, b: f64, d: f64, care: Care) -> Angles<2> {
     found
 }
 
-/// How often a part of the turn is halved.
+/// Largest number of bisections of a part of the turn.
 const DEPTH: u32 = 7;
 
 /// A trigonometric polynomial of degree `D`, `coefficients[k] = (aₖ, bₖ)`.
@@ -157,8 +157,8 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         at
     }
 
-    /// All real roots; where two are about to meet or have just left each other (imaginary part below `beyond`), two that are at least
-    /// `apart` from each other. The turn is searched in `grid` parts.
+    /// All real roots. If two are about to meet or have just separated (imaginary part below `beyond`), there are two at least `apart`
+    /// from each other. The turn is searched in `grid` parts.
     pub(crate) fn roots<const N: usize>(&self, grid: usize, care: Care) -> Angles<N> {
         let mut found = Angles::EMPTY;
         let half = PI / grid as f64;
@@ -170,8 +170,8 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         found
     }
 
-    /// The roots within half a width of an angle. Where Taylor's series says that the polynomial has no zero there are none, and where it
-    /// bends one way there are two at most, which values and slopes at the ends tell; else halves are searched.
+    /// Roots within half a width of an angle. If Taylor's series excludes a zero, there are none. If the second derivative keeps its
+    /// sign, there are two at most, determined by values and slopes at the ends; else halves are searched.
     fn roots_around<const N: usize>(
         &self,
         middle: f64,
@@ -182,7 +182,7 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
     ) {
         let Care { apart, beyond, .. } = care;
         let [value, slope, bend, third, fourth] = self.derivatives(middle).map(f64::abs);
-        // The fourth derivative is not constant, but almost.
+        // The fourth derivative is nearly constant.
         let (square, fourth) = (half * half, 2.0 * fourth);
         let change = half * third + square / 2.0 * fourth;
         let most = half * (slope + half / 2.0 * (bend + half / 3.0 * (third + half / 4.0 * fourth)));
@@ -235,7 +235,7 @@ impl<const TERMS: usize> Trigonometric<TERMS> {
         out
     }
 
-    /// The place between two angles where the slope is zero.
+    /// Angle between two others at which the slope is zero.
     fn extremum(&self, mut low: f64, mut high: f64, low_slope: f64) -> f64 {
         let mut at = 0.5 * (low + high);
         for _ in 0..40 {

@@ -6,13 +6,13 @@ use nalgebra::Vector3;
 
 use crate::trig::cosine_and_sine;
 
-/// Equations.
+/// Number of equations.
 pub(super) const EQUATIONS: usize = 14;
 
 /// Numbers of a function of two angles by 1, cos and sin of each.
 pub(super) type Table = [[f64; 3]; 3];
 
-/// What both ends see.
+/// Functions of the point and the direction that are equal from both ends.
 #[inline]
 pub(super) fn functions(p: &Vector3<f64>, l: &Vector3<f64>) -> [f64; EQUATIONS] {
     let (square, product) = (p.norm_squared(), p.dot(l));
@@ -32,7 +32,7 @@ pub(super) fn harmonics(samples: [f64; 3]) -> [f64; 3] {
     [(a + b + c) / 3.0, (2.0 * a - b - c) / 3.0, (b - c) * 2.0 * HALF_ROOT / 3.0]
 }
 
-/// Cosine and sine of a third of a turn, so many times.
+/// Cosine and sine of `k` thirds of a turn.
 #[inline]
 pub(super) fn third(k: usize) -> (f64, f64) {
     cosine_and_sine(TAU / 3.0 * k as f64)
@@ -41,7 +41,7 @@ pub(super) fn third(k: usize) -> (f64, f64) {
 /// 1, cos and sin of an angle as polynomials of the tangent of its half, times 1 + tan².
 const HALVES: [[f64; 3]; 3] = [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
 
-/// The same of a table.
+/// A table by the tangents of half the angles.
 #[inline]
 pub(super) fn by_halves(table: &Table) -> Table {
     let mut out = [[0.0; 3]; 3];

@@ -1,4 +1,4 @@
-//! Ways to starts of the iteration to all branches of six axes.
+//! Starts of the iteration to all branches of six axes.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -12,25 +12,26 @@ use crate::lie::{Pose, Screw};
 use crate::newton::{REACHED, Six, newton, newton_judged};
 use crate::trig::wrapped;
 
-/// Ratio of the first two steps from a start beyond which there may be other branches around, and way (rad) to a branch that is another's.
+/// Ratio of the first two steps from a start beyond which there may be other branches around; and distance (rad) to a branch that belongs
+/// to another start.
 const DOUBTFUL: f64 = 0.25;
 const ASTRAY: f64 = 0.6;
-/// So many of the six ways to set up the equations are asked where the number of branches is odd.
+/// Number of the six orders of the equations that are used if the number of branches is odd.
 const MOST_WAYS: usize = 3;
-/// Configurations in which the ways are compared.
+/// Number of configurations in which the orders are compared.
 const SAMPLES: usize = 8;
 /// Steps between them: 2π times the fractions of the roots of 2, 3, 5, 7, 11 and 13.
 const SPREAD: [f64; 6] = [2.602581, 4.599611, 1.483259, 4.057375, 1.989413, 3.804791];
-/// Distance (rad) of a root from a branch that was found from which it is taken for another one.
+/// Distance (rad) of a root from a known branch from which on it is taken for another one.
 const NEAR: f64 = 1e-4;
-/// Most starts of a way.
+/// Largest number of starts.
 const MOST_STARTS: usize = 24;
-/// Most steps from a start.
+/// Largest number of steps from a start.
 pub(super) const MOST_STEPS: u32 = 12;
-/// How far (rad, lengths over reach) an arm may be from one with closed branches.
+/// Largest distance (rad, lengths over reach) of an arm from one with branches in closed form.
 const FAR: f64 = 0.03;
 
-/// The nearest arm that has its branches in closed form.
+/// Nearest arm with branches in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Closed {
     /// Its last three axes meet.
@@ -39,22 +40,23 @@ enum Closed {
     Parallel(Parallel),
 }
 
-/// A way to set up the arm's own equations: the axis that comes first ([`General::FIRST`]), and whether the arm is seen from its tip.
+/// An order of the arm's own equations: the axis that comes first ([`General::FIRST`]), and true if the arm is taken from its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Order {
     first: usize,
     is_reversed: bool,
 }
 
-/// The order in which ways are asked, which takes long to find: that of an arm serves arms like it.
+/// Ranking of the orders, which is expensive to compute: that of an arm serves similar arms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ranking {
     orders: [Order; MOST_WAYS],
-    /// Whether the first of them found what the closed form found: not of an arm that is its own relative, whose equations have no roots.
+    /// True if the first of them found all branches of the closed form. This fails for an arm that is its own relative, whose equations
+    /// have no roots.
     is_whole: bool,
 }
 
-/// What is computed of six revolute axes before poses are.
+/// Precomputation for six revolute axes, independent of poses.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ways {
     axes: [Axis; 6],
@@ -62,14 +64,14 @@ pub(super) struct Ways {
     reach_m: f64,
     /// Joint values per reading.
     senses: [f64; 6],
-    /// How far the nearest relative is, that, and whether it is seen from the tip.
+    /// Distance of the nearest relative, the relative, and true if it is taken from the tip.
     closed: Option<(f64, Closed, bool)>,
     ranking: Ranking,
     /// Equations that are kept, in the order of the ranking.
     kept: Vec<General>,
 }
 
-/// The axes from the tip.
+/// Axes from the tip.
 fn reversed(axes: &[Axis; 6], is_reversed: bool) -> [Axis; 6] {
     let mut axes = *axes;
     if is_reversed {
@@ -79,7 +81,7 @@ fn reversed(axes: &[Axis; 6], is_reversed: bool) -> [Axis; 6] {
 }
 
 impl Ways {
-    /// Of six revolute axes: their screws and the tip where all readings are 0, and joint values per reading.
+    /// Precomputation from screws and the tip with all readings at 0, and joint values per reading.
     pub(super) fn new(
         screws: &[Screw; 6],
         home: &Pose,
@@ -105,12 +107,12 @@ impl Ways {
         Ways { axes, home: *home, reach_m, senses, closed, ranking, kept: Vec::new() }
     }
 
-    /// How far the arm is from one that has its branches in closed form; infinite if it is far.
+    /// Distance of the arm from one with branches in closed form; infinite if it is far.
     pub(super) fn off(&self) -> f64 {
         self.closed.as_ref().map_or(f64::INFINITY, |(off, ..)| *off)
     }
 
-    /// Compares the ways to set up the equations, for an arm with these axes.
+    /// Compares the orders of the equations, for an arm with these axes.
     pub(super) fn ranked(&self, arm: &Six<'_>) -> Ranking {
         let mut judged: Vec<(Judged, Order)> = Vec::new();
         for is_reversed in [false, true] {
@@ -137,7 +139,7 @@ impl Ways {
         General::new(&reversed(&self.axes, order.is_reversed), order.first, self.reach_m)
     }
 
-    /// The configurations that have the tip of an arm with (nearly) these axes at a pose.
+    /// Configurations with the tip of an arm with (nearly) these axes at a pose.
     pub(super) fn branches(&self, arm: &Six<'_>, target: &Pose) -> Branches {
         let mut found = Branches::EMPTY;
         let closed = self.closed_starts(target);
@@ -154,7 +156,7 @@ impl Ways {
                 None => self.starts_of_equations(&self.equations(order), order, target),
             };
             starts.follow(arm, target, &mut found, is_far_by(NEAR));
-            // Without a relative there is nothing else that would have found a branch which one way misses.
+            // Without a relative, nothing else would have found a branch that one order misses.
             if found.count.is_multiple_of(2) && (at > 0 || self.closed.is_some()) {
                 break;
             }
@@ -187,7 +189,7 @@ impl Ways {
         starts
     }
 
-    /// The motion from the arm at zero to a pose of its tip, of all axes in the order in which they are seen.
+    /// Motion from the arm at zero to a pose of its tip, for all axes in their order from base or tip.
     fn motion(&self, target: &Pose, is_reversed: bool) -> Pose {
         let motion = *target * self.home.inverse();
         if is_reversed { motion.inverse() } else { motion }
@@ -205,7 +207,7 @@ impl Ways {
     }
 }
 
-/// Whether a start is farther than this (rad) from all branches that were found.
+/// True if a start is farther than this (rad) from all branches that were found.
 fn is_far_by(distance: f64) -> impl Fn(&[f64; 6], &Branches) -> bool {
     move |start, found| !found.as_slice().iter().any(|it| apart(it, start) < distance)
 }
@@ -214,7 +216,7 @@ fn is_far_by(distance: f64) -> impl Fn(&[f64; 6], &Branches) -> bool {
 struct Starts {
     values: [[f64; 6]; MOST_STARTS],
     count: usize,
-    /// Whether two of them meet or almost do.
+    /// True if two of them meet or almost do.
     is_touching: bool,
 }
 
@@ -229,7 +231,7 @@ impl Starts {
         }
     }
 
-    /// Adds the branches that starts lead to, of those that are asked for; the most that one of them is to be doubted ([`newton_judged`]).
+    /// Adds the branches of the starts that `is_asked` selects; returns the largest doubt of one of them ([`newton_judged`]).
     fn follow(
         &self,
         arm: &Six<'_>,
@@ -247,7 +249,7 @@ impl Starts {
             if q.iter().any(|it| it.abs() > PI) {
                 q = q.map(wrapped);
                 if !arm.is_rigid() {
-                    // With an error of its gear, a joint is not where it was a turn ago.
+                    // With an error of its gear, a joint changes its value after a whole turn.
                     left = newton(arm, target, &mut q, MOST_STEPS);
                 }
             }
@@ -260,7 +262,7 @@ impl Starts {
     }
 }
 
-/// What a way finds in a few configurations of an arm.
+/// Result of an order in a few configurations of an arm.
 #[derive(Clone, Copy)]
 struct Judged {
     count: usize,
@@ -283,7 +285,7 @@ impl Judged {
         judged
     }
 
-    /// Roots are the nearer to branches, the better the equations serve the arm's geometry.
+    /// Value of an order: roots are nearer to branches if the equations suit the arm's geometry.
     fn worth(&self) -> f64 {
         self.count as f64 - self.doubt
     }

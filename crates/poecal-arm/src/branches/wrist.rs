@@ -14,7 +14,8 @@ use nalgebra::{ComplexField as _, RealField as _};
 /// Distance of the first two axes (lengths over reach), or sine of the angle between them, below which they are treated as meeting or parallel.
 const MET: f64 = 0.03;
 
-/// An arm of six axes, the last three of which meet (nearly) in a point: the first three bring it to its place (pieper1968), the others turn.
+/// An arm of six axes, the last three of which meet (nearly) in a point: the first three determine its position (pieper1968), the others
+/// the orientation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Wrist {
     axes: [Axis; 6],
@@ -43,12 +44,12 @@ fn meeting(axes: &[Axis]) -> Option<(Vector3<f64>, f64)> {
 }
 
 impl Wrist {
-    /// The wrist of six axes, and how far (m) the last three are from meeting.
+    /// The wrist of six axes, and the distance (m) of the last three from meeting.
     pub(crate) fn new(axes: &[Axis; 6], reach_m: f64) -> Option<(Self, f64)> {
         let (centre, apart) = meeting(&axes[3..])?;
         let mut axes = *axes;
         if let Some((middle, _)) = axes[0].between(&axes[1]) {
-            // From where it is nearest to the second, so that they are apart by a perpendicular.
+            // The point is nearest to the second axis, so that the two are apart by a perpendicular.
             axes[0].point += axes[0].w * axes[0].w.dot(&(middle - axes[0].point));
         }
         // Wrists whose axes are almost parallel turn in two directions only.
@@ -80,8 +81,8 @@ impl Wrist {
         });
     }
 
-    /// Angles of the first three joints that bring the centre to a place : its height along the first axis and its distance from a
-    /// point of it are what the first joint leaves as they are; both are linear in cos q₂ and sin q₂.
+    /// Angles of the first three joints that bring the centre to a position. The first joint does not change the height along its
+    /// axis and the distance from a point of it; both are linear in cos q₂ and sin q₂.
     fn regional(&self, place: &Vector3<f64>, push: &mut impl FnMut([f64; 3], bool)) {
         let [a1, a2, a3, ..] = &self.axes;
         let q = a2.point - a1.point;
@@ -117,7 +118,7 @@ impl Wrist {
             let u = a2.moved(cosine_and_sine(q2), &(a2.point + centre(cosine_and_sine(q3))));
             push([a1.angle(&(u - a1.point), &goal), q2, q3], is_touching);
         };
-        // Where the first axes (nearly) meet or are parallel, one equation has (nearly) no q₂: it gives q₃, the other q₂.
+        // If the first axes (nearly) meet or are parallel, one equation has (nearly) no q₂: it determines q₃, the other q₂.
         let size = goal.norm() + q.norm() + v0.norm() + v1.norm();
         let met = if bb < MET * MET * size * size * aa {
             Some(((bx, by, beta), (ax, ay, alpha)))

@@ -1,4 +1,4 @@
-//! Conventions of three numbers for an orientation, and whose they are.
+//! Conventions of three numbers for an orientation, and the makers that use them.
 
 use core::f64::consts::PI;
 use core::fmt;
@@ -57,9 +57,9 @@ const SEQUENCES: [[usize; 3]; 12] = [
 pub struct MakersAngles {
     /// The maker.
     pub maker: &'static str,
-    /// What it calls them.
+    /// Names of the angles by the maker.
     pub names: [&'static str; 3],
-    /// What they mean.
+    /// Convention.
     pub angles: Angles,
 }
 
@@ -120,7 +120,7 @@ impl Angles {
         }
     }
 
-    /// Three angles of a rotation, the middle one within ±90° (from 0 to 180° where the first axis is also the last).
+    /// Three angles of a rotation, the middle one within ±90° (from 0 to 180° if the first axis is also the last).
     #[must_use]
     pub fn decompose(self, r: &Matrix3<f64>) -> [f64; 3] {
         match self {
@@ -156,7 +156,7 @@ fn wrapped(angle: f64) -> f64 {
 /// Angles `a, b, c` with `R = R_i(a) R_j(b) R_k(c)`.
 fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
     let (repeated, third) = if i == k { (true, 3 - i - j) } else { (false, k) };
-    // Whether i, j, third are a cyclic permutation of x, y, z.
+    // The sign is positive if i, j, third are a cyclic permutation of x, y, z.
     let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
     let (a, b) = if repeated {
         let a = r[(j, i)].atan2(-sign * r[(third, i)]);
@@ -170,7 +170,7 @@ fn intrinsic([i, j, k]: [usize; 3], r: &Matrix3<f64>) -> [f64; 3] {
     [a, b, rest[(last, next)].atan2(rest[(next, next)])]
 }
 
-/// As the `form` of a mapping: `intrinsic_zyx`, `roll_pitch_yaw`, `rotation_vector`.
+/// Displays the `form` of a mapping: `intrinsic_zyx`, `roll_pitch_yaw`, `rotation_vector`.
 impl fmt::Display for Angles {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (word, axes) = match self {

@@ -1,7 +1,7 @@
-//! Which motions of a frame are seen.
+//! Observable motions of a frame.
 
-/// The motions of a frame, along and about its own axes, that some measurements show, a bit each; of the others nothing can be known, and a fit
-/// leaves them as they are (theory.md §5 (25a)).
+/// Motions of a frame, along and about its own axes, that some measurements determine, a bit each. The others are unobservable, and a fit does
+/// not change them (theory.md §5 (25a)).
 ///
 /// ```
 /// use poecal_arm::lie::Freedom;
@@ -11,7 +11,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Freedom(u8);
 
-/// The motions of every set of them.
+/// Motions of every set of them.
 const MOTIONS: [[usize; 6]; Freedom::SETS] = {
     let mut all = [[0; 6]; Freedom::SETS];
     let mut set = 0;
@@ -32,11 +32,11 @@ const MOTIONS: [[usize; 6]; Freedom::SETS] = {
 impl Freedom {
     /// Number of sets of motions.
     pub const SETS: usize = 64;
-    /// All six: a place and the axes there.
+    /// All six: a position and the axes there.
     pub const FRAME: Freedom = Freedom(0b11_1111);
-    /// Where it is: a point.
+    /// Position: a point.
     pub const PLACE: Freedom = Freedom(0b00_0111);
-    /// How it is turned.
+    /// Orientation.
     pub const TURN: Freedom = Freedom(0b11_1000);
 
     /// A face across an axis (0 to 2): its height along it, and its tilts about the other two.
@@ -51,13 +51,13 @@ impl Freedom {
         Freedom(Freedom::TURN.0 & !(1 << (3 + axis)))
     }
 
-    /// All but the place along an axis.
+    /// All motions except the translation along an axis.
     #[must_use]
     pub const fn across(axis: usize) -> Freedom {
         Freedom(Freedom::FRAME.0 & !(1 << axis))
     }
 
-    /// Of these motions.
+    /// The set of these motions.
     #[must_use]
     pub fn from_motions(motions: impl IntoIterator<Item = usize>) -> Freedom {
         Freedom(motions.into_iter().fold(0, |all, motion| all | 1 << motion))
@@ -69,19 +69,19 @@ impl Freedom {
         MOTIONS[self.index()].split_at(self.count()).0
     }
 
-    /// Its place among all sets of motions.
+    /// Index among all sets of motions.
     #[must_use]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// Their number.
+    /// Number of motions.
     #[must_use]
     pub const fn count(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Whether some are rotations.
+    /// True if some are rotations.
     #[must_use]
     pub const fn turns(self) -> bool {
         self.0 & Freedom::TURN.0 != 0

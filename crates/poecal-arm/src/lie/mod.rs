@@ -1,4 +1,4 @@
-//! Rigid motions: poses, twists, screws and their exponentials. No robots here, and no files.
+//! Rigid motions: poses, twists, screws and their exponentials. Robots and files are elsewhere.
 //!
 //! Conventions (docs/conventions.md): a twist is `ξ = (v; ω)`, linear part first; perturbations are on the left,
 //! `T ← exp(δ) T`; poses are named `a_from_b` and take coordinates in `b` to coordinates in `a`.
@@ -32,7 +32,7 @@ pub fn by_twist(point: &Vector3<f64>) -> Matrix3x6<f64> {
     derivative
 }
 
-/// `[0, scale · A]`: what depends on the rotation of a spatial twist only.
+/// `[0, scale · A]`: a derivative that depends on the rotation of a spatial twist only.
 #[must_use]
 pub fn by_turn(matrix: &Matrix3<f64>, scale: f64) -> Matrix3x6<f64> {
     let mut derivative = Matrix3x6::zeros();

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector4};
 
 use super::{Twist, hat, rotation, series};
 
-/// A rigid motion, named `a_from_b` where it stands: it takes coordinates in `b` to coordinates in `a`, `x_a = R x_b + p`
-/// (theory.md §1 (2) and (2a)).
+/// A rigid motion, named `a_from_b`: it takes coordinates in `b` to coordinates in `a`, `x_a = R x_b + p` (theory.md §1
+/// (2) and (2a)).
 ///
 /// | operation | symbol | code |
 /// |---|---|---|
@@ -46,7 +46,7 @@ impl Pose {
         Pose::new(Matrix3::identity(), Vector3::zeros())
     }
 
-    /// The pose of which `number` gives each row's three parts of directions and its part of the translation (metres).
+    /// Pose from numbers: `number` returns the three components of directions and the component of the translation (metres) of each row.
     pub fn from_rows(number: impl Fn(usize, usize) -> f64) -> Self {
         let translation = Vector3::from_fn(|row, _| number(row, 3));
         Pose::new(Matrix3::from_fn(number), translation)

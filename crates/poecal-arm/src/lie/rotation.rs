@@ -21,7 +21,7 @@ pub fn log(r: &Matrix3<f64>) -> Vector3<f64> {
     let q = to_quaternion_xyzw(r);
     let vector = Vector3::new(q.x, q.y, q.z);
     let sine = vector.norm();
-    // to_quaternion_xyzw gives w ≥ 0, so the half angle lies in [0, π/2].
+    // to_quaternion_xyzw returns w ≥ 0, so the half angle lies in [0, π/2].
     if sine < 1e-8 {
         // 2 asin(s)/s = 2 + s²/3 + …, the omitted term is below 1e-32.
         vector * (2.0 + sine * sine / 3.0)
@@ -86,7 +86,7 @@ pub fn from_rpy(roll: f64, pitch: f64, yaw: f64) -> Matrix3<f64> {
 }
 
 /// URDF angles `[roll, pitch, yaw]` of a rotation, the inverse of [`from_rpy`]. At and near `pitch = ±π/2`, where roll and yaw are not
-/// unique, the three still compose to `R` to rounding: roll is found after yaw has been undone.
+/// unique, the three still compose to `R` to rounding: roll is computed after yaw has been undone.
 #[must_use]
 pub fn to_rpy(r: &Matrix3<f64>) -> [f64; 3] {
     let horizontal = r[(0, 0)].hypot(r[(1, 0)]);
@@ -97,8 +97,9 @@ pub fn to_rpy(r: &Matrix3<f64>) -> [f64; 3] {
     [roll, pitch, yaw]
 }
 
-/// The rotation by the smallest angle that takes unit vector `from` to unit vector `to`: `I + â + â²/(1 + cos φ)` with `a = from × to` and
-/// `sin φ = |a|`, which is theory.md §1 (2a) for `ω = φ a/|a|`. For opposite vectors, half a turn about a perpendicular direction.
+/// Rotation by the smallest angle that takes unit vector `from` to unit vector `to`. It is `I + â + â²/(1 + cos φ)` with `a = from × to`
+/// and `sin φ = |a|`, which is theory.md §1 (2a) for `ω = φ a/|a|`. For opposite vectors it is half a turn about a perpendicular
+/// direction.
 #[must_use]
 pub fn shortest_arc(from: &Vector3<f64>, to: &Vector3<f64>) -> Matrix3<f64> {
     let cross = from.cross(to);
@@ -122,8 +123,8 @@ pub fn perpendicular(a: &Vector3<f64>) -> Vector3<f64> {
     a.cross(&other).normalize()
 }
 
-/// The nearest rotation to a matrix that is one but for rounding: `R (3I - RᵀR)/2`, one Newton-Schulz step of the polar decomposition
-/// (bjorck1971).
+/// Nearest rotation to a matrix that is a rotation except for rounding: `R (3I - RᵀR)/2`, one Newton-Schulz step of the polar
+/// decomposition (bjorck1971).
 #[must_use]
 pub fn orthonormalized(r: &Matrix3<f64>) -> Matrix3<f64> {
     r * (Matrix3::identity() * 1.5 - r.transpose() * r * 0.5)
@@ -169,7 +170,7 @@ mod tests {
         for r in [
             exp(&Vector3::new(0.0, 0.0, FRAC_PI_2)),
             shortest_arc(&Vector3::x(), &Vector3::y()),
-            // Twice as long as a unit quaternion.
+            // The quaternion is twice as long as a unit quaternion.
             from_quaternion_xyzw(&Vector4::new(0.0, 0.0, 2.0 * half.0, 2.0 * half.1)),
         ] {
             assert!((r * Vector3::x() - Vector3::y()).norm() < 1e-15);

@@ -33,14 +33,14 @@ impl Screw {
         Screw { v: -w.cross(point), w }
     }
 
-    /// The sliding direction `direction` (any length but zero): theory.md §2 (5).
+    /// The prismatic direction `direction` (any length but zero): theory.md §2 (5).
     #[must_use]
     pub fn prismatic(direction: &Vector3<f64>) -> Self {
         Screw { v: direction.normalize(), w: Vector3::zeros() }
     }
 
-    /// The screw that a twist is made by normalising, theory.md §5 (22c), as rounded tables need it: `ω/|ω|` and `(v - ω(ω·v))/|ω|` if `ω ≠ 0`, else `v/|v|`.
-    /// `None` if the twist is zero or not finite.
+    /// Screw of a normalised twist, theory.md §5 (22c), as rounded tables need it: `ω/|ω|` and `(v - ω(ω·v))/|ω|` if `ω ≠ 0`, else `v/|v|`. `None` if
+    /// the twist is zero or not finite.
     #[must_use]
     pub fn project(twist: &Twist) -> Option<Self> {
         let (angular, linear) = (twist.w.norm(), twist.v.norm());
@@ -73,19 +73,19 @@ impl Screw {
         Twist::new(self.v, self.w)
     }
 
-    /// Whether the screw is a sliding direction.
+    /// True if the screw is a prismatic direction.
     #[must_use]
     pub fn is_prismatic(&self) -> bool {
         self.w == Vector3::zeros()
     }
 
-    /// The unit direction: ω of an axis, v of a sliding direction.
+    /// Unit direction: ω of an axis, v of a prismatic direction.
     #[must_use]
     pub fn direction(&self) -> Vector3<f64> {
         if self.is_prismatic() { self.v } else { self.w }
     }
 
-    /// The point of the axis nearest to `point`, `ω × v + ω (ω·p)` by theory.md §2 (5); for a sliding direction, `point` itself.
+    /// Point of the axis nearest to `point`, `ω × v + ω (ω·p)` by theory.md §2 (5); for a prismatic direction, `point` itself.
     #[must_use]
     pub fn nearest_point(&self, point: &Vector3<f64>) -> Vector3<f64> {
         if self.is_prismatic() {
@@ -118,7 +118,7 @@ impl Screw {
         Screw::revolute(&(pose.rotation * self.w), &pose.act(&self.w.cross(&self.v)))
     }
 
-    /// The smallest rigid motion that takes this screw to `to`, seen from `near`: the shortest arc between the directions,
+    /// Smallest rigid motion that takes this screw to `to`, relative to `near`: the shortest arc between the directions,
     /// and for axes the shift from this axis's point nearest to `near` to the other's.
     #[must_use]
     pub fn smallest_motion_to(&self, to: &Screw, near: &Vector3<f64>) -> Pose {

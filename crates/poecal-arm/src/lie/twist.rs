@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::{hat, series};
 
 /// An infinitesimal motion of a target about its own origin, in the device's axes: `v` moves the origin (metres), `w` turns the
-/// target (radians). With `p` the target's place it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
+/// target (radians). With the target's position `p` it is `(v_s + ω_s × p; ω_s)` of the spatial twist `(v_s; ω_s)`: the factor
 /// `[I -p̂]` of lou2009 (23) is already applied (theory.md §4 (14)).
 ///
 /// ```
@@ -86,7 +86,7 @@ impl Twist {
         let (cosc, sincc) = (series::cosc(angle_squared), series::sincc(angle_squared));
         let ad = self.ad();
         let ad2 = ad * ad;
-        // On se(3) ad satisfies ad⁵ = -2θ² ad³ - θ⁴ ad; matching Σ adᵏ/(k+1)! gives the four coefficients.
+        // On se(3) ad satisfies ad⁵ = -2θ² ad³ - θ⁴ ad; matching Σ adᵏ/(k+1)! determines the four coefficients.
         let (c, d) = series::left_jacobian(angle_squared);
         let a = cosc + angle_squared * c;
         let b = sincc + angle_squared * d;

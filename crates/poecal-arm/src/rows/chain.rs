@@ -1,4 +1,4 @@
-//! Tips, and how they move, of several configurations side by side.
+//! Tips, and their motions, of several configurations side by side.
 
 use nalgebra::Vector3;
 
@@ -10,25 +10,25 @@ use crate::placed::{MOST_JOINTS, Placed};
 use crate::real::{Moment, Real, SMALL, Sum, is_plain, small};
 use crate::terms::Term;
 
-/// What is wanted of a pass.
+/// Output of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Wanted {
     /// Tips alone.
     Tips,
-    /// Tips without what weights add.
+    /// Tips without the deflection under weights.
     Unloaded,
-    /// Tips, and how they move with each reading.
+    /// Tips, and their motions with each reading.
     Motions,
-    /// The same but for what compliance under weights adds to the motions: enough for steps to a configuration.
+    /// The same without the part of compliance under weights in the motions: enough for steps to a configuration.
     Steps,
 }
 
-/// Several configurations of an arm of up to `J` readings, its tips there, and how these move.
+/// Several configurations of an arm of up to `J` readings, its tips there, and their motions.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows<const N: usize, const J: usize> {
     pub(crate) q: [Row<N>; J],
     pub(super) tip: Frames<N>,
-    /// Of each reading `velocity = v + w × tip` and `angular = w`, in the base.
+    /// For each reading `velocity = v + w × tip` and `angular = w`, in the base.
     v: [Vectors<N>; J],
     w: [Vectors<N>; J],
     found: [[Row<N>; 2]; J],
@@ -44,7 +44,7 @@ impl<const J: usize> Rows<1, J> {
         rows
     }
 
-    /// The tip and its motions, once the arm is there.
+    /// The tip and its motions, after `place` has moved the arm.
     #[inline(always)]
     pub(crate) fn placed(mut self, place: impl FnOnce(&mut Self)) -> Placed<J> {
         place(&mut self);
@@ -66,7 +66,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         }
     }
 
-    /// How the tips' points move with a reading, and how they turn.
+    /// Motions of the tips' points with a reading, and their rotations.
     #[inline(always)]
     pub(super) fn column(&self, reading: usize) -> [Vectors<N>; 2] {
         let w = self.w[reading];
@@ -79,7 +79,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         [moves, w]
     }
 
-    /// Takes an arm to these configurations: a chain of screws, or one whose joint values are more than their readings.
+    /// Moves an arm to these configurations: a chain of screws, or one whose joint values are more than their readings.
     #[inline(always)]
     pub(super) fn place(&mut self, (chain, real): (&Chain, Option<&Real>), wanted: Wanted) {
         if wanted == Wanted::Motions {
@@ -94,7 +94,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
 
     #[inline(always)]
     pub(crate) fn place_rigid(&mut self, chain: &Chain, wanted: Wanted) {
-        // Of one configuration those of all joints are made of vector instructions, as many as there may be.
+        // For one configuration, vector instructions compute those of all joints, as many as there may be.
         let count = if N == 1 { J } else { chain.len() };
         let mut angles = self.q;
         for (angle, link) in angles.iter_mut().zip(&chain.links) {
@@ -223,7 +223,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         slope
     }
 
-    /// Adds a joint's motion with the linear parts of a sum, of which it moves by a share, to that of their readings.
+    /// Adds a joint's motion with the linear parts of a sum, by a share, to that of their readings.
     #[inline(always)]
     fn linear_moves(&mut self, of: &Sum, motion: &[Vectors<N>; 2], share: &Row<N>) {
         for &(reading, factor) in &of.linear {
@@ -235,7 +235,7 @@ impl<const N: usize, const J: usize> Rows<N, J> {
         }
     }
 
-    /// The same with a moment.
+    /// The same addition with a moment.
     #[inline(always)]
     fn moment_moves(&mut self, of: &Moment, real: &Real, motion: &[Vectors<N>; 2], share: &Row<N>) {
         let (v, w) = (&mut self.v, &mut self.w);
@@ -287,7 +287,7 @@ fn doubled<const N: usize>([c, s]: &[Row<N>; 2]) -> [Row<N>; 2] {
     out
 }
 
-/// Cosines and sines, of small angles by fewer terms, as of one configuration alone.
+/// Cosines and sines; of small angles by fewer terms, as for one configuration alone.
 #[inline(always)]
 fn cosines_and_sines_of<const N: usize>(angles: &Row<N>) -> [Row<N>; 2] {
     let mut out = [[0.0; N]; 2];

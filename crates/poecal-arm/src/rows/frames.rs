@@ -1,15 +1,15 @@
-//! Frames and vectors of several configurations. Every loop is over configurations and without branches, so that it is made of vector
-//! instructions; no product is fused with a sum, so that the bits are those of one configuration alone, by all instructions.
+//! Frames and vectors of several configurations. Every loop is over configurations and without branches, so that it compiles to
+//! vector instructions. No product is fused with a sum, so that all instructions produce the bits of one configuration alone.
 
 use crate::lie::Pose;
 use crate::trig::cosine_and_sine;
 
-/// A number of each of several configurations.
+/// A number for each of several configurations.
 pub(crate) type Row<const N: usize> = [f64; N];
-/// A vector of each of several configurations.
+/// A vector for each of several configurations.
 pub(crate) type Vectors<const N: usize> = [Row<N>; 3];
 
-/// Their sum with others times a number of each.
+/// Adds other vectors times a number of each.
 #[inline(always)]
 pub(crate) fn add_times<const N: usize>(to: &mut Vectors<N>, of: &Vectors<N>, times: &Row<N>) {
     for l in 0..N {
@@ -75,7 +75,7 @@ impl<const N: usize> Frames<N> {
         Frames { x: column(0), y: column(1), z: column(2), at }
     }
 
-    /// Takes them to frames whose origin is given in them, and which are turned about x by an angle with this cosine and sine.
+    /// Changes them to frames whose origin is in their coordinates, and which are turned about x by an angle with this cosine and sine.
     #[inline(always)]
     pub(crate) fn tilt(&mut self, origin: &nalgebra::Vector3<f64>, (c, s): (f64, f64)) {
         for l in 0..N {
@@ -88,7 +88,7 @@ impl<const N: usize> Frames<N> {
         }
     }
 
-    /// Takes them to frames that are given in them.
+    /// Changes them to frames in their own coordinates.
     #[inline(always)]
     pub(crate) fn advance(&mut self, to: &Pose) {
         let (r, t) = (&to.rotation, &to.translation);
@@ -115,14 +115,14 @@ impl<const N: usize> Frames<N> {
         }
     }
 
-    /// Slides them along their own z.
+    /// Translates them along their own z.
     #[inline(always)]
     pub(crate) fn slide(&mut self, by: &Row<N>) {
         let z = self.z;
         add_times(&mut self.at, &z, by);
     }
 
-    /// Directions or, with a share of the origin, places that are given in them.
+    /// Directions or, with a share of the origin, positions in their coordinates.
     #[inline(always)]
     pub(crate) fn act(&self, place: [f64; 3], share: f64) -> Vectors<N> {
         let mut out = [[0.0; N]; 3];

@@ -17,8 +17,8 @@ use crate::placed::MOST_JOINTS;
 const WIDTH: usize = 8;
 
 impl Arm {
-    /// [`Arm::forward_kinematics`] of many configurations, their readings one after the other, as many as there are in both lists: the same
-    /// numbers, sooner, since eight configurations are computed side by side.
+    /// [`Arm::forward_kinematics`] of many configurations, their readings one after the other, as many as there are in both lists. The
+    /// numbers are the same; it is faster, since eight configurations are computed side by side.
     #[inline(always)]
     pub fn forward_kinematics_of(&self, readings: &[f64], tips: &mut [Pose]) {
         let mut rows = Rows::<WIDTH, MOST_JOINTS>::new();
@@ -30,8 +30,8 @@ impl Arm {
         }
     }
 
-    /// The Jacobians of many configurations, their readings one after the other: of each six rows of as many numbers as readings, the motion
-    /// of the tip's point (m/rad, or m/m) and its turn (rad/rad, or rad/m), base frame, as [`Arm::jacobian`].
+    /// Jacobians of many configurations, their readings one after the other. Each has six rows of as many numbers as readings: the motion of
+    /// the tip's point (m/rad, or m/m) and its rotation (rad/rad, or rad/m), base frame, as [`Arm::jacobian`].
     #[inline(always)]
     pub fn jacobians_of(&self, readings: &[f64], jacobians: &mut [f64]) {
         let n = self.joints();
@@ -50,9 +50,9 @@ impl Arm {
         }
     }
 
-    /// What weights move the tip in many configurations, their readings one after the other: how far its point is shifted (m), and how far it is
-    /// turned as a rotation vector (rad), base frame, from where it would be without what joints give under weights
-    /// ([`crate::Pull`]): `p − p₀` and `log(R R₀ᵀ)`.
+    /// Deflection of the tip under weights in many configurations, their readings one after the other: the shift of its point (m), and its
+    /// rotation as a rotation vector (rad), base frame. It is relative to the tip without compliance under weights ([`crate::Pull`]): `p − p₀`
+    /// and `log(R R₀ᵀ)`.
     #[inline(always)]
     pub fn sag_of(&self, readings: &[f64], sag: &mut [[f64; 6]]) {
         let (mut rows, mut bare) = (Rows::<WIDTH, MOST_JOINTS>::new(), Rows::<WIDTH, MOST_JOINTS>::new());
@@ -70,8 +70,8 @@ impl Arm {
         }
     }
 
-    /// How the tip moves with each reading: of its point (m/rad, or m/m) and its turn (rad/rad, or rad/m), base frame; for the point of the
-    /// tip, as the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of others. What weights add is in it.
+    /// Motion of the tip with each reading: of its point (m/rad, or m/m) and its rotation (rad/rad, or rad/m), base frame. It is for the
+    /// point of the tip, like the hybrid or `LOCAL_WORLD_ALIGNED` Jacobian of other libraries. The effect of weights is included.
     #[must_use]
     pub fn jacobian(&self, q: &[f64]) -> [(Vector3<f64>, Vector3<f64>); MOST_JOINTS] {
         let placed =
@@ -80,7 +80,7 @@ impl Arm {
     }
 }
 
-/// Readings of configurations, one after the other, side by side; places that are left keep what they had.
+/// Loads readings of configurations, one after the other, side by side; unused places keep their values.
 #[inline(always)]
 fn load(arm: &Arm, readings: &[f64], rows: &mut Rows<WIDTH, MOST_JOINTS>) {
     for (row, readings) in readings.chunks_exact(arm.joints()).enumerate() {

@@ -1,10 +1,10 @@
-//! What weights turn a joint in several configurations, and how that changes.
+//! Rotation of a joint under weights in several configurations, and its derivatives.
 
 use super::frames::{Frames, Row, Vectors, add_times, cross, dot};
 use crate::placed::MOST_JOINTS;
 use crate::real::{Moment, Real};
 
-/// Bodies of the drawing, from the base on.
+/// Bodies of the nominal arm, from the base on.
 pub(super) type Bodies<const N: usize> = [Frames<N>; MOST_JOINTS + 1];
 
 /// A vector that is the same in all configurations.
@@ -13,7 +13,7 @@ fn same<const N: usize>(of: &nalgebra::Vector3<f64>) -> Vectors<N> {
     [[of.x; N], [of.y; N], [of.z; N]]
 }
 
-/// Moves the bodies of a drawing to readings, whose cosines and sines are known.
+/// Moves the bodies of a nominal arm to readings, whose cosines and sines are known.
 #[inline(always)]
 pub(super) fn place<const N: usize>(
     real: &Real,
@@ -41,7 +41,7 @@ pub(super) fn place<const N: usize>(
 }
 
 impl Moment {
-    /// Sum of its weights, its axis, its origin, and the sum of weights times places less that of the origin.
+    /// Sum of its weights, its axis, its origin, and the sum of weights times positions less that of the origin.
     #[inline(always)]
     fn parts<const N: usize>(&self, bodies: &Bodies<N>) -> (f64, Vectors<N>, Vectors<N>, Vectors<N>) {
         let size: f64 = self.weights.iter().map(|(_, size, _)| size).sum();
@@ -60,7 +60,7 @@ impl Moment {
         (size, axis, origin, sum)
     }
 
-    /// The joint's value by its weights.
+    /// Value of the joint by its weights.
     #[inline(always)]
     pub(super) fn values<const N: usize>(&self, real: &Real, bodies: &Bodies<N>) -> Row<N> {
         let gravity = same(&real.gravity);
@@ -75,10 +75,11 @@ impl Moment {
         dot(&axis, &cross(&sum, &gravity))
     }
 
-    /// Tells how that changes with each reading.
+    /// Reports the derivative of the value by each reading.
     ///
-    /// With the sum S of sizes times places less that of the origin o, the moment is `m = z · (S × g)`. Turning about `a` through `p`, a joint of
-    /// the drawing changes S by `a × (S' − s' p)`, where S' and s' are sums over what it carries, and z by `a × z` if it carries the axis.
+    /// With the sum S of sizes times positions less that of the origin o, the moment is `m = z · (S × g)`. By a rotation about `a` through `p`, a
+    /// joint of the nominal arm changes S by `a × (S' − s' p)`. Here S' and s' are sums over the weights that it carries. It changes z by `a × z`
+    /// if it carries the axis.
     #[inline(always)]
     pub(super) fn slopes<const N: usize>(
         &self,
@@ -89,7 +90,7 @@ impl Moment {
         let gravity = same(&real.gravity);
         let (size, axis, origin, sum) = self.parts(bodies);
         let none = [[0.0; N]; 3];
-        // m changes by its product with a change of S, and by that of this with the direction of a turn of the axis.
+        // m changes by its product with a change of S, and by that of this with the direction of a rotation of the axis.
         let by_sum = if self.slides { none } else { cross(&gravity, &axis) };
         let mut along = none;
         if self.slides {
@@ -98,7 +99,7 @@ impl Moment {
             along = cross(&sum, &gravity);
         }
         let by_turn = cross(&axis, &along);
-        // Of what a joint carries, the sum of sizes, and of sizes times places.
+        // These are the sum of sizes, and of sizes times positions, of the weights that a joint carries.
         let (mut carried, mut moment) = (0.0, none);
         for (index, (_, drawn)) in real.drawing.iter().enumerate().rev() {
             for (_, size, place) in self.weights.iter().filter(|it| it.0 == index + 1) {
@@ -106,7 +107,7 @@ impl Moment {
                 add_times(&mut moment, &bodies[index + 1].act((*place).into(), *size), &[1.0; N]);
             }
             if index + 1 == self.after {
-                // The origin goes with the axis.
+                // The origin moves with the axis.
                 carried -= size;
                 add_times(&mut moment, &origin, &[-size; N]);
             }

@@ -1,8 +1,8 @@
-//! Terms of joint values: what a joint turns or slides beyond its reading.
+//! Terms of joint values: rotation or translation of a joint beyond its reading.
 //!
-//! `table.rs` is the table of what joints do beyond their readings, a row a kind of term: function and derivative, prior and group. Their arguments
-//! are put together in `poecal-model`'s `robot/term.rs` for rows and in `robot/arm.rs` for arms. Over the table go `--free`, corrections, files,
-//! exports and inverse kinematics; so kernels, covariance and the forms of files have no code for corrections.
+//! `table.rs` is the table of errors of joints beyond their readings, a row a kind of term: function and derivative, prior and group. Their
+//! arguments are put together in `poecal-model`'s `robot/term.rs` for rows and in `robot/arm.rs` for arms. `--free`, corrections, files, exports
+//! and inverse kinematics iterate over the table; so kernels, covariance and the forms of files have no code for corrections.
 
 mod table;
 
@@ -14,7 +14,7 @@ use core::str::FromStr;
 
 pub use table::{Argument, Function, GroupRow, TermGroup, TermKind, TermRow};
 
-/// Highest number of a harmonic, and of any other term.
+/// Largest number of a harmonic, and of any other term.
 const MOST: [usize; 2] = [u8::MAX as usize, u16::MAX as usize];
 
 /// A term of a joint's value, `θ ← θ + c b(x)` with a known function b and a coefficient c: a kind, a row of the table, and its number, if it
@@ -34,7 +34,7 @@ pub struct Term {
 }
 
 impl TermKind {
-    /// The term of this kind with a number: the order of a harmonic, or what it counts from 1. A kind without numbers has one term.
+    /// Term of this kind with a number: the order of a harmonic, or a count from 1. A kind without numbers has one term.
     #[must_use]
     pub fn numbered(self, number: usize) -> Term {
         Term { kind: self, number: if self.row().is_numbered() { number } else { 0 } }
@@ -53,13 +53,13 @@ impl Term {
     /// Error of a gear's ratio.
     pub const RATIO: Term = Term { kind: TermKind::Ratio, number: 0 };
 
-    /// Terms without a number that need nothing but a joint's value.
+    /// Terms without a number that need only a joint's value.
     pub fn plain() -> impl Iterator<Item = Term> {
         let plain = |it: &Term| it.kind.row().argument <= Argument::OwnValue && !it.kind.row().is_numbered();
         TermKind::ALL.into_iter().map(|kind| kind.numbered(0)).filter(plain)
     }
 
-    /// Its kind.
+    /// Kind.
     #[must_use]
     pub const fn kind(self) -> TermKind {
         self.kind
@@ -77,31 +77,31 @@ impl Term {
         self.number.saturating_sub(1)
     }
 
-    /// What its function is of.
+    /// Argument of its function.
     #[must_use]
     pub const fn argument(self) -> Argument {
         self.kind.row().argument
     }
 
-    /// Its function b of the argument, and the derivative.
+    /// Function b of the argument, and the derivative.
     #[must_use]
     pub fn function(self, x: f64) -> [f64; 2] {
         self.kind.row().function.at(x, self.number as f64)
     }
 
-    /// Its function in words and signs, with q for the joint's value.
+    /// Function in words and signs, with q for the joint's value.
     #[must_use]
     pub fn formula(self) -> String {
         self.kind.row().formula.replace("{}", &self.number.to_string())
     }
 
-    /// Standard deviation of its coefficient over robots, of a joint that slides or one that turns.
+    /// Standard deviation of its coefficient over robots, for a prismatic or a revolute joint.
     #[must_use]
     pub fn deviation(self, slides: bool) -> f64 {
         self.kind.row().deviation[usize::from(slides)]
     }
 
-    /// Whether its function is of the weights that the robot carries.
+    /// True if its function is of the weights that the robot carries.
     #[must_use]
     pub fn needs_gravity(self) -> bool {
         match self.argument() {
@@ -110,7 +110,7 @@ impl Term {
         }
     }
 
-    /// Whether it can be of a robot with so many joints and factors.
+    /// True if it can be of a robot with these numbers of joints and factors.
     #[must_use]
     pub fn is_of(self, joints: usize, factors: usize) -> bool {
         match self.argument() {
@@ -120,7 +120,7 @@ impl Term {
         }
     }
 
-    /// The same term where joints have other indices.
+    /// The same term with other indices of joints.
     #[must_use]
     pub fn moved(self, index: impl Fn(usize) -> usize) -> Self {
         if self.argument() == Argument::OtherJoint { self.kind.at(index(self.index())) } else { self }
@@ -164,7 +164,7 @@ impl PartialOrd for Term {
 }
 
 impl Ord for Term {
-    /// By what they are of, then by their numbers.
+    /// Order by argument, then by number.
     fn cmp(&self, other: &Self) -> Ordering {
         let key = |it: &Term| (it.argument(), it.number, it.kind);
         key(self).cmp(&key(other))

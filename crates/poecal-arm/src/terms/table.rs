@@ -1,4 +1,4 @@
-//! The tables: what terms are, and groups of them whose coefficients are of one size.
+//! Tables of terms, and of groups of them whose coefficients are of one size.
 
 // The functions of numbers, where there is no standard library.
 #[allow(unused_imports)]
@@ -16,10 +16,10 @@ macro_rules! table {
         }
 
         impl $Name {
-            /// All of them, in the order of every list.
+            /// All variants, in the order of every list.
             pub const ALL: [$Name; [$(stringify!($variant)),+].len()] = [$($Name::$variant),+];
 
-            /// Its row of the table.
+            /// Row of the table.
             #[must_use]
             pub const fn row(self) -> &'static $Row {
                 match self {
@@ -33,12 +33,12 @@ macro_rules! table {
     };
 }
 
-/// What the argument x of a term's function is, and what its number counts.
+/// Argument x of a term's function, and meaning of its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Argument {
     /// Nothing.
     Nothing,
-    /// The joint's own value, of a give that of the joint which gives (rad, m); a number is the order k of a harmonic.
+    /// The joint's own value, for a compliant joint that of the joint to which it belongs (rad, m); a number is the order k of a harmonic.
     OwnValue,
     /// The moment about the joint of all masses of the model, over the largest.
     Masses,
@@ -84,28 +84,28 @@ impl Function {
 /// A row of the table of terms.
 #[derive(Clone, Copy, Debug)]
 pub struct TermRow {
-    /// Its name in files, before its number if it has one.
+    /// Name in files, before its number if it has one.
     pub name: &'static str,
-    /// Its function in words and signs, with q for the joint's value and `{}` for the number.
+    /// Function in words and signs, with q for the joint's value and `{}` for the number.
     pub formula: &'static str,
-    /// What its function is of.
+    /// Argument of its function.
     pub argument: Argument,
-    /// Its function.
+    /// Function.
     pub function: Function,
-    /// Standard deviation of the coefficient over robots, its prior, of a joint that turns and of one that slides.
+    /// Standard deviation of the coefficient over robots, its prior, for a revolute joint and for a prismatic one.
     pub deviation: [f64; 2],
-    /// Its group among corrections: of a joint's own value, of a give that turns and of one that slides.
+    /// Group among corrections: of a joint's own value, of a revolute compliant joint and of a prismatic one.
     pub groups: [Option<TermGroup>; 3],
 }
 
 impl TermRow {
-    /// Whether it has a number.
+    /// True if it has a number.
     #[must_use]
     pub fn is_numbered(&self) -> bool {
         self.formula.contains("{}")
     }
 
-    /// Whether its coefficient is a share of a joint's value, without unit; others are in the unit of the joint's value, rad or m.
+    /// True if its coefficient is a share of a joint's value, without unit; others are in the unit of the joint's value, rad or m.
     #[must_use]
     pub fn is_share(&self) -> bool {
         matches!(self.argument, Argument::OwnValue | Argument::OtherJoint)
@@ -130,36 +130,36 @@ table! {
 /// assert_eq!((row.name, row.argument, row.function.at(0.0, 2.0)), ("sin", Argument::OwnValue, [0.0, 2.0]));
 /// ```
 pub enum TermKind: TermRow {
-    /// Joint offset: the reading at which the joint is at zero (lou2009: Δθ). Of an encoder that was mounted anew: 5° or 20 mm.
+    /// Joint offset: the reading at which the joint is at zero (lou2009: Δθ). The prior is that of a remounted encoder: 5° or 20 mm.
     Offset = TermRow { name: "offset", formula: "1",
         argument: Argument::Nothing, function: Function::One, deviation: [5f64.to_radians(), 0.02], groups: [None; 3] },
     /// Error of a gear's ratio. 0.5 %: a belt, or a tooth more or less of a gear with two hundred.
     Ratio = TermRow { name: "ratio", formula: "q",
         argument: Argument::OwnValue, function: Function::Identity, deviation: [5e-3; 2], groups: [Some(TermGroup::Ratio), None, None] },
-    /// A harmonic of the joint's value, k periods a turn: eccentric gears and encoders; of a give the wobble of its joint's bearing. 0.1° or
-    /// 0.2 mm are the largest that users of encoders report.
+    /// A harmonic of the joint's value, k periods a turn: eccentric gears and encoders; for a compliant joint the wobble of its joint's
+    /// bearing. 0.1° or 0.2 mm are the largest that users of encoders report.
     Sine = TermRow { name: "sin", formula: "sin({} q)",
         argument: Argument::OwnValue, function: Function::Sine, deviation: TENTH, groups: PERIODIC },
-    /// The same a quarter of a period later.
+    /// The same harmonic a quarter of a period later.
     Cosine = TermRow { name: "cos", formula: "cos({} q)",
         argument: Argument::OwnValue, function: Function::Cosine, deviation: TENTH, groups: PERIODIC },
     /// Compliance under the robot's own weight, `Σ m z·((p - o) × ĝ)/Σ m ℓ` with the masses m at p, the axis z through o and the longest
-    /// lever ℓ of each; of a joint that slides `z·ĝ`.
+    /// lever ℓ of each; for a prismatic joint `z·ĝ`.
     Masses = TermRow { name: "masses", formula: "the moment about the joint of the links' masses, over the largest",
         argument: Argument::Masses, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), None] },
     /// Compliance under one weight, `z·((p - o) × ĝ)/ℓ` with the weight at p, the axis z through o and the longest lever ℓ of all weights of
-    /// that joint; of a joint that slides `z·ĝ`. A weight that the joint does not carry has no moment.
+    /// that joint; for a prismatic joint `z·ĝ`. A weight that the joint does not carry has no moment.
     Sag = TermRow { name: "sag", formula: "the moment about the joint of weight {}, over the largest",
         argument: Argument::Weight, function: Function::Identity, deviation: TENTH, groups: [Some(TermGroup::Sag), Some(TermGroup::Tilt), Some(TermGroup::Shift)] },
-    /// Coupling: a joint that turns or slides with another one, as of wrists whose gears lie in one another, and of parallel links. 2 %: the
-    /// ratio of a last stage of gears.
+    /// Coupling: a joint that moves with another one, as in wrists with nested gears, and in parallel links. 2 %: the ratio of a last stage
+    /// of gears.
     Coupled = TermRow { name: "coupled", formula: "the value of joint {}, counted from the base",
         argument: Argument::OtherJoint, function: Function::Identity, deviation: [2e-2; 2], groups: [None; 3] },
-    /// What else is read: a temperature, or half the backlash where the factor is the side from which the joint came, +1 or -1.
+    /// Another reading: a temperature, or half the backlash if the factor is the side from which the joint came, +1 or -1.
     Factor = TermRow { name: "factor", formula: "factor {} from its reference",
         argument: Argument::Factor, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Factors), None, None] },
-    /// Compliance under a payload, `f z·((p - o) × ĝ)/ℓ` with the payload f at the place p of the last weight, axis and lever as of a sag: the
-    /// payload being known, the coefficient is an angle each kilogram at full lever.
+    /// Compliance under a payload, `f z·((p - o) × ĝ)/ℓ` with the payload f at the position p of the last weight, axis and lever as of a sag.
+    /// The payload is known, so the coefficient is an angle for each kilogram at full lever.
     Payload = TermRow { name: "payload", formula: "factor {} * the moment about the joint of a unit weight at the last link, over the largest",
         argument: Argument::Payload, function: Function::Identity, deviation: HUNDREDTH, groups: [Some(TermGroup::Payload), Some(TermGroup::Payload), None] },
 }
@@ -168,15 +168,15 @@ pub enum TermKind: TermRow {
 /// A row of the table of groups.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupRow {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Unit of a thousandth of its effects, in which people read them, and of its sizes.
+    /// Unit of a thousandth of its effects, as in reports, and of its sizes.
     pub symbols: [&'static str; 2],
-    /// Sizes: the usual one where it is not left out, the common one among industrial robots, and a small one; 0 leaves it out.
+    /// Sizes: the usual one if it is not left out, the common one among industrial robots, and a small one; 0 leaves it out.
     pub sizes: [f64; 3],
-    /// Sizes that are tried, in order; none of a group that has the size of the one before it.
+    /// Sizes that are tried, in order; empty for a group that has the size of the one before it.
     pub tried: &'static [f64],
-    /// Its effect in words.
+    /// Effect in words.
     pub effect: &'static str,
 }
 
@@ -190,10 +190,10 @@ const LENGTHS: [&str; 2] = ["mm"; 2];
 table! {
 /// A group of terms whose coefficients are of one size.
 pub enum TermGroup: GroupRow {
-    /// Gears that give about the joint's own axis under weight; radians at the largest moment.
+    /// Gears that are compliant about the joint's own axis under weight; radians at the largest moment.
     Sag = GroupRow { name: "sag", symbols: ANGLES, sizes: [1e-3, 1e-3, 3e-4], tried: OF_VALUES,
         effect: "{joint} sags by up to {much} under weight" },
-    /// Bearings and links that give across the axis under weight; radians at the largest moment.
+    /// Bearings and links that are compliant across the axis under weight; radians at the largest moment.
     Tilt = GroupRow { name: "tilt", symbols: ANGLES, sizes: [1e-3, 1e-3, 3e-4], tried: &[],
         effect: "the bearing or link of {joint} tilts by up to {much} under weight" },
     /// Ratios of gears; radians each radian.
@@ -202,16 +202,16 @@ pub enum TermGroup: GroupRow {
     /// First and second harmonic of the joint's own value; radians of amplitude.
     Harmonics = GroupRow { name: "harmonics", symbols: ANGLES, sizes: [1e-4, 1e-4, 3e-5], tried: OF_VALUES,
         effect: "gear or encoder of {joint} errs by up to {much} within a turn" },
-    /// Second harmonic across the axis, and first where bearings give in all directions; radians of amplitude.
+    /// Second harmonic across the axis, and first if bearings are compliant in all directions; radians of amplitude.
     Wobble = GroupRow { name: "wobble", symbols: ANGLES, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
         effect: "the axis of {joint} wobbles by up to {much} within a turn" },
     /// Half the play of gears: of factors whose names begin with `approach`, radians each unit.
     Backlash = GroupRow { name: "backlash", symbols: ANGLES, sizes: [1e-4, 0.0, 0.0], tried: OF_VALUES,
         effect: "{joint} stands off by {much} to the side from which it comes" },
-    /// Of all other factors, radians each unit.
+    /// All other factors, radians each unit.
     Factors = GroupRow { name: "factors", symbols: ANGLES, sizes: [1e-5, 0.0, 0.0], tried: OF_FACTORS,
         effect: "{joint} follows the factors by up to {much}" },
-    /// Gears, bearings and links that give under a payload: of the factor `payload`, radians each kilogram at full lever.
+    /// Gears, bearings and links that are compliant under a payload: of the factor `payload`, radians each kilogram at full lever.
     Payload = GroupRow { name: "payload", symbols: ["mrad", "mrad/kg"], sizes: [1e-4, 0.0, 0.0], tried: OF_LENGTHS,
         effect: "{joint} gives by up to {much} under the payload" },
     /// Bearings and links that shift under weight; metres.
@@ -224,13 +224,13 @@ pub enum TermGroup: GroupRow {
 }
 
 impl TermGroup {
-    /// Its name.
+    /// Name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// Whether its sizes are lengths, metres; others are radians.
+    /// True if its sizes are lengths, metres; others are radians.
     #[must_use]
     pub fn is_of_lengths(self) -> bool {
         self.row().symbols == LENGTHS

@@ -1,4 +1,4 @@
-//! All branches beside a search from many starts.
+//! All branches compared with a search from many starts.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::calibrated::{KINDS, arm};
 use crate::numbers::Numbers;
 use poecal_testing::trials::trials;
 
-/// Targets of each arm, weekly.
+/// Number of targets of each arm, weekly.
 const TARGETS: usize = 120;
 const STARTS: usize = 150;
 
@@ -19,8 +19,8 @@ fn is_same(one: &[f64; 6], other: &[f64; 6]) -> bool {
     one.iter().zip(other).all(|(one, other)| wrapped(one - other).abs() < 1e-6)
 }
 
-/// Branches that a search and the solver know together, those of the solver, and the same where the arm is far from singular; and the
-/// largest remainder (m, rad).
+/// Branches that a search and the solver know together, those of the solver, and the same numbers where the arm is far from singular;
+/// and the largest remainder (m, rad).
 fn compared(arm: &Arm, numbers: &mut Numbers) -> ([usize; 4], f64) {
     let all = AllBranches::new(arm).unwrap();
     let (mut counts, mut worst) = ([0; 4], 0.0_f64);
@@ -69,7 +69,7 @@ fn every_branch_that_a_search_finds_is_found() {
         }
     }
     assert!(largest < 1e-10);
-    // Where two branches meet, one of them may be lost; far from there, one in 10,000 at most.
+    // Near a meeting of two branches, one of them may be lost; far from there, one in 10,000 at most.
     assert!(sum[1] as f64 >= 0.9995 * sum[0] as f64, "{sum:?}");
     assert!(sum[3] as f64 >= 0.9999 * sum[2] as f64, "{sum:?}");
 }
@@ -91,7 +91,7 @@ fn all_branches_are_of_six_axes() {
         AllBranches::new(&Arm::new(&[axis, axis, axis, axis, axis, slide], &Pose::identity()).unwrap())
             .is_none()
     );
-    // Six times the same axis: nothing to be found, and no panic.
+    // Six equal axes: there is no solution, and no panic.
     let flat = AllBranches::new(&Arm::new(&[axis; 6], &Pose::identity()).unwrap()).unwrap();
     let _ = flat.at(&Pose::identity());
 }

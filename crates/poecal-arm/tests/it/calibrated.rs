@@ -1,4 +1,4 @@
-//! Arms as they are drawn, and as calibration finds them.
+//! Nominal arms, and calibrated ones.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 use poecal_arm::Arm;
@@ -66,7 +66,7 @@ fn drawing(kind: &str) -> Drawing {
     }
 }
 
-/// An arm whose axes are off by up to these about each direction (rad) and along it (m).
+/// An arm whose axes have errors up to these about each direction (rad) and along it (m).
 pub(crate) fn arm(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     let is_shoulder = kind == "shoulder";
     let (joints, tip) = drawing(if is_shoulder { "wrist" } else { kind });
@@ -88,8 +88,8 @@ pub(crate) fn arm(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
 
 pub(crate) const SEVEN: [&str; 2] = ["seven axes, round wrist", "seven axes, offset wrist"];
 
-/// The same of an arm of seven axes, as collaborative robots have them: with a round shoulder, and a round wrist or one whose last axis is
-/// beside the others.
+/// The same for an arm of seven axes, like collaborative robots: with a spherical shoulder, and a spherical wrist or one whose last axis
+/// is offset from the others.
 pub(crate) fn seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     let (y, z) = (Vector3::y(), Vector3::z());
     let is_round = kind == SEVEN[0];
@@ -109,7 +109,7 @@ pub(crate) fn seven(kind: &str, angle_rad: f64, length_m: f64) -> Arm {
     Arm::new(&screws.collect::<Vec<Screw>>(), &Pose::from_translation(tip)).unwrap()
 }
 
-/// The smallest singular value of the joints that are free, lengths over reach.
+/// Smallest singular value of the free joints, lengths over reach.
 pub(crate) fn smallest_free(arm: &Arm, q: &[f64], held: Option<usize>) -> f64 {
     let jacobian = arm.jacobian(q);
     let mut a = Matrix6::zeros();

@@ -1,4 +1,4 @@
-//! Arms beside the screws' own exponentials, and all branches beside a search.
+//! Arms compared with the screws' own exponentials, and all branches compared with a search.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

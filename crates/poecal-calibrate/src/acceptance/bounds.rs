@@ -10,7 +10,7 @@ use poecal_numerics::distributions::{
 const RISK: f64 = 0.05;
 /// Relative variance of the square of one normal number.
 const ONE_NUMBER: f64 = 2.0;
-/// Configurations that the belief counts for that errors lie along one line: with it few rows do not take chance for certainty.
+/// Weight, in configurations, of the prior belief that errors lie along one line: it keeps few rows from false certainty.
 const BELIEVED: f64 = 10.0;
 /// The share of the errors that the 95 % statistic keeps.
 const KEPT: f64 = 0.95;
@@ -27,16 +27,16 @@ pub(crate) struct Bounded {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeasuredError {
     pub(crate) error: f64,
-    /// Of the noise that may be there: it contains the model error where no noise is stated.
+    /// Bound of the noise that may be present: it contains the model error if no noise is stated.
     pub(crate) possible_noise: f64,
-    /// Of the noise that is shown: stated, or found by repeated measurements.
+    /// Bound of the noise that is shown: stated, or estimated from repeated measurements.
     pub(crate) shown_noise: f64,
 }
 
 /// Absolute errors of one quantity, rows of one configuration together.
 pub(crate) struct Errors {
     pub(crate) configurations: Vec<Vec<MeasuredError>>,
-    /// Numbers that a row measured.
+    /// Number of measured components of a row.
     pub(crate) components: usize,
 }
 
@@ -53,7 +53,8 @@ impl Errors {
         }
     }
 
-    /// (47): a mean square of as many degrees of freedom as its scatter over configurations shows, at most those of independent numbers.
+    /// Bounds of the root mean square by (47): its degrees of freedom are estimated from its scatter over configurations, at most those of
+    /// independent numbers.
     fn root_mean_square(&self) -> Option<Bounded> {
         let (count, groups) = (self.rows() as f64, self.configurations.len() as f64);
         let square = |rows: &[MeasuredError]| rows.iter().map(|row| row.error * row.error).sum::<f64>();
@@ -72,8 +73,8 @@ impl Errors {
         Some(mean_square(mean, freedom))
     }
 
-    /// (48): order statistics, whatever the distribution; a configuration counts by its largest error for the upper bound, and by that of
-    /// its first row for the lower one.
+    /// Bounds of the quantile by (48): order statistics, for any distribution. A configuration counts by its largest error for the upper bound, and
+    /// by the error of its first row for the lower one.
     fn quantile(&self) -> Option<Bounded> {
         let sorted = |of: fn(&Vec<MeasuredError>) -> Option<f64>| {
             let mut errors: Vec<f64> = self.configurations.iter().filter_map(of).collect();
@@ -97,15 +98,15 @@ impl Errors {
         };
         let at = |errors: &[f64], k: usize| k.checked_sub(1).and_then(|index| errors.get(index)).copied();
         let from = at(&first, first_with(RISK) - 1).unwrap_or(0.0);
-        // Further rows of a configuration count for what was found, but not for its lower bound.
+        // Further rows of a configuration count for the observed quantile, but not for its lower bound.
         Some(Bounded { found, from: from.min(found), to: at(&largest, first_with(1.0 - RISK)) })
     }
 
-    /// (49): the largest error that was found, and how far the noise of its measurement may be off.
+    /// Bounds of the largest error by (49): the observed maximum, widened by the noise of its measurement.
     fn largest(&self) -> Option<Bounded> {
         let rows = || self.configurations.iter().flatten();
         let most = |of: fn(&MeasuredError) -> f64| rows().map(of).max_by(f64::total_cmp);
-        // That noise alone exceeds its bound in none of the rows.
+        // Factor with which noise alone exceeds its bound in none of the rows.
         let of = |risk: f64| upper_quantile(risk, self.components).sqrt();
         let all = of(RISK / self.rows() as f64) / of(RISK);
         let from = rows().map(|row| row.error - all * row.shown_noise).max_by(f64::total_cmp)?.max(0.0);
@@ -113,7 +114,7 @@ impl Errors {
     }
 }
 
-/// (47) of a mean square with so many degrees of freedom.
+/// Bounds by (47) of a mean square with this number of degrees of freedom.
 pub(crate) fn mean_square(mean: f64, freedom: f64) -> Bounded {
     let of = |square: f64| (mean * square).sqrt();
     Bounded {
@@ -131,7 +132,7 @@ mod tests {
     use super::*;
     use crate::Decision;
 
-    /// An error whose noise is stated.
+    /// Error with a stated noise.
     fn measured(error: f64, noise: f64) -> MeasuredError {
         MeasuredError { error, possible_noise: noise, shown_noise: noise }
     }
@@ -150,8 +151,7 @@ mod tests {
         sigma.iter().map(|sigma| (sigma * normal(random)).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// An error of one kind, whose mean square is 1: white, in one direction, and of a robot whose error varies over its range by a factor
-    /// of three.
+    /// Error of one kind, whose mean square is 1: white, in one direction, or of a robot whose error varies over its range by a factor of three.
     fn error(kind: usize, random: &mut ChaCha8Rng) -> f64 {
         let third = (1.0f64 / 3.0).sqrt();
         match kind {
@@ -165,7 +165,7 @@ mod tests {
         }
     }
 
-    /// Of a true value exactly at the limit, no more than one trial in twenty may pass, and no more may fail.
+    /// If the true value is exactly at the limit, at most one trial in twenty passes, and at most one fails.
     #[test]
     fn what_lies_at_the_limit_passes_in_one_case_of_twenty() {
         const TRIALS: usize = 2000;
@@ -192,7 +192,7 @@ mod tests {
                     }
                     let [passed, failed] = [passed, failed].map(|it| it as f64 / TRIALS as f64);
                     println!("kind {kind}, {count} rows, {statistic:?}: {passed:.4} pass, {failed:.4} fail");
-                    // Of few rows the scatter is not known well: (47) is approximate there. Three standard errors of the trials are 0.015.
+                    // The scatter of few rows is poorly determined: (47) is approximate there. Three standard errors of the trials are 0.015.
                     let most = if statistic == AcceptedStatistic::Rms && count <= 30 { 0.065 } else { 0.05 };
                     assert!(passed <= most + 0.015 && failed <= most + 0.015);
                 }
@@ -221,7 +221,7 @@ mod tests {
         }
     }
 
-    /// No interval ends below what was found: of a maximum, below the largest error that was seen.
+    /// No interval ends below the observed figure: the upper bound of a maximum is at least the largest observed error.
     #[test]
     fn upper_bounds_are_not_below_what_was_found() {
         let mut random = ChaCha8Rng::seed_from_u64(10);
@@ -255,9 +255,9 @@ mod tests {
         };
         let found = errors.bounded(AcceptedStatistic::Max).unwrap();
         assert_eq!((found.found, found.to), (0.3, Some(0.2 + 0.25)));
-        // Of two rows: the roots of the 97.5 % and 95 % points of χ² of three numbers, 9.348 and 7.815.
+        // For two rows: the roots of the 97.5 % and 95 % points of χ² with three degrees of freedom, 9.348 and 7.815.
         assert!((found.from - (0.3 - 0.1 * (9.3484f64 / 7.8147).sqrt())).abs() < 1e-5, "{}", found.from);
-        // Noise that nothing shows widens the upper bound alone.
+        // Noise that is not shown widens the upper bound alone.
         let row = MeasuredError { error: 0.3, possible_noise: 0.4, shown_noise: 0.0 };
         let unknown = Errors { configurations: vec![vec![row]], components: 3 };
         let found = unknown.bounded(AcceptedStatistic::Max).unwrap();
@@ -289,7 +289,7 @@ mod tests {
             "the 95 % statistic exactly at the limit fails in {failed} of 400 sessions of three rows a configuration"
         );
         assert!(failed <= 35, "{failed}");
-        // Too few rows have no upper bound: 58 of the 95 % statistic, one of the RMS.
+        // Too few rows have no upper bound: 58 for the 95 % statistic, one for the RMS.
         let few = Errors { configurations: vec![vec![measured(1.0, 0.0)]; 58], components: 1 };
         assert_eq!(few.bounded(AcceptedStatistic::P95).unwrap().to, None);
         let one = Errors { configurations: vec![vec![measured(1.0, 0.0)]], components: 1 };

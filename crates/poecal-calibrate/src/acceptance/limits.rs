@@ -1,4 +1,4 @@
-//! The limits that are asked for.
+//! Requested limits of errors.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
-/// What of the errors is limited.
+/// Statistic of the errors that is limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AcceptedStatistic {
-    /// Root mean square over all configurations like those that decide.
+    /// Root mean square over all configurations of which those that decide are a sample.
     #[default]
     Rms,
-    /// The error that 95 % of them keep.
+    /// The error that 95 % of them do not exceed.
     P95,
     /// The largest error of the rows that decide.
     Max,
 }
 
 impl AcceptedStatistic {
-    /// All, in the order of tables.
+    /// All statistics, in the order of tables.
     pub const ALL: [AcceptedStatistic; 3] =
         [AcceptedStatistic::Rms, AcceptedStatistic::P95, AcceptedStatistic::Max];
 
@@ -34,7 +34,7 @@ impl AcceptedStatistic {
         }
     }
 
-    /// For people: `RMS`.
+    /// Words for people: `RMS`.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -49,7 +49,7 @@ impl AcceptedStatistic {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AcceptedModel {
-    /// The corrected model, with what joints do beyond geometry; the calibrated one if there is no other.
+    /// The corrected model, with joint effects beyond geometry; the calibrated one if there is no other.
     #[default]
     Corrected,
     /// The calibrated model: geometry alone, as a URDF holds it.
@@ -67,10 +67,10 @@ impl AcceptedModel {
     }
 }
 
-/// The most that an error may be.
+/// Largest permitted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// What of the errors.
+    /// Limited statistic.
     pub statistic: AcceptedStatistic,
     /// Unit: the limit is for all measured quantities of this unit.
     pub unit: Unit,

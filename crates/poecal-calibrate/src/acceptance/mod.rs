@@ -1,4 +1,4 @@
-//! Whether a calibration keeps limits that were agreed on, with the confidence that the rows give: theory.md §9, *Acceptance*.
+//! Decision whether a calibration keeps agreed limits, with the confidence that the rows support: theory.md §9, *Acceptance*.
 
 mod bounds;
 mod limits;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use poecal_model::measurement::Quantity;
 
-/// What measurements say of a limit.
+/// Decision on a limit by measurements.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
 )]
@@ -26,7 +26,7 @@ pub enum Decision {
 }
 
 impl Decision {
-    /// For people.
+    /// Words for people.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -46,7 +46,7 @@ impl Decision {
         }
     }
 
-    /// Of a limit and the bounds of what it is for; without an upper bound nothing is passed.
+    /// Decision by a limit and the bounds of its statistic; without an upper bound nothing passes.
     #[must_use]
     pub fn from_bounds(limit: f64, from: f64, to: Option<f64>) -> Self {
         if to.is_some_and(|to| to <= limit) {
@@ -59,20 +59,20 @@ impl Decision {
     }
 }
 
-/// Which rows decided.
+/// Rows that decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AcceptedRows {
-    /// Those held out.
+    /// Rows that were held out.
     HeldOut,
-    /// Since none was held out, the fitted ones, each predicted by a fit without it.
+    /// The fitted rows, each predicted by a fit without it, since none was held out.
     CrossValidation,
-    /// Measurements that the calibration is judged by.
+    /// Measurements that judge the calibration.
     Judged,
 }
 
 impl AcceptedRows {
-    /// For people: `rows held out`.
+    /// Words for people: `rows held out`.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -83,46 +83,46 @@ impl AcceptedRows {
     }
 }
 
-/// A limit, what was found, and the decision. Numbers are in millimetres or degrees.
+/// Limit, observed figure and decision. Numbers are in millimetres or degrees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AcceptedLimit {
     /// The measured quantity: `position`, `rotation` and so on.
     pub quantity: String,
     /// Unit of the numbers: `mm` or `deg`.
     pub unit: String,
-    /// What of the errors is limited.
+    /// Limited statistic of the errors.
     pub statistic: AcceptedStatistic,
     /// The limit.
     pub limit: f64,
-    /// What the rows have.
+    /// Figure observed on the rows.
     pub found: f64,
     /// Lower bound, with 95 % confidence.
     pub from: f64,
-    /// Upper bound, with 95 % confidence; null where the rows are too few for one.
+    /// Upper bound, with 95 % confidence; null if the rows are too few for one.
     pub to: Option<f64>,
-    /// What that says of the limit.
+    /// Decision by these bounds.
     pub decision: Decision,
     /// Number of rows that measured the quantity.
     pub rows: usize,
-    /// Number of different configurations among them, which are what counts.
+    /// Number of different configurations among them; these count as independent.
     pub configurations: usize,
 }
 
-/// Whether a calibration keeps the limits that were asked for.
+/// Decision whether a calibration keeps the requested limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Acceptance {
     /// The worst decision of all limits.
     pub decision: Decision,
-    /// Which model was judged.
+    /// Judged model.
     pub model: AcceptedModel,
-    /// By which rows.
+    /// Rows that decided.
     pub by: AcceptedRows,
     /// Each limit, by quantity.
     pub limits: Vec<AcceptedLimit>,
 }
 
 impl Acceptance {
-    /// Of limits that were decided; at least one.
+    /// Acceptance by decided limits; at least one.
     pub(crate) fn new(model: AcceptedModel, by: AcceptedRows, limits: Vec<AcceptedLimit>) -> Self {
         let decision = limits.iter().map(|it| it.decision).max().unwrap_or(Decision::NotShown);
         Acceptance { decision, model, by, limits }

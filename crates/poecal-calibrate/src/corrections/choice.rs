@@ -9,28 +9,28 @@ use poecal_model::robot::{Sizes, TermGroup};
 
 /// Rounds of choosing each group's size in turn.
 const SWEEPS: usize = 2;
-/// Weight of the squared distance of a size from the common one, in decades: the prior of the choice. The fewer configurations, the less they
-/// say of a size: it is at least so many times the inverse of their number.
+/// Weight of the squared distance of a size from the common one, in decades: the prior of the choice. Few configurations determine a size poorly: the
+/// weight is at least this multiple of the inverse of their number.
 const PULL: f64 = 0.1;
 const PULL_OF_FEW: f64 = 4.0;
-/// What leaving a group out counts at most, and what taking in one counts that is commonly left out.
+/// Largest cost of leaving a group out, and cost of taking in a group that is commonly left out.
 const LEFT_OUT: f64 = 0.1;
 const TAKEN_IN: f64 = 0.02;
-/// What geometry alone may lose and is taken still.
+/// Largest loss with which geometry alone is still preferred.
 const GEOMETRY: f64 = 0.07;
-/// Share of geometry's error below which what terms gain is no gain.
+/// Share of geometry's error below which the gain of terms is negligible.
 const GAIN: f64 = 0.02;
 /// Fewest configurations from which sizes are chosen.
 const FEWEST: usize = 8;
-/// Configurations of which the information of all counts half: what rows share beyond the terms does not average out.
+/// Number of configurations whose information counts half: errors that rows share beyond the terms do not average out.
 const HALF: f64 = 500.0;
 
-/// Weight of the priors of a fit of so many configurations: the data's information is divided by it.
+/// Weight of the priors of a fit of this number of configurations: the data's information is divided by it.
 pub(crate) fn weight_of_prior(configurations: usize) -> f64 {
     1.0 + configurations as f64 / HALF
 }
 
-/// Sizes that were tried.
+/// Tried sizes with their scores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriedSizes {
     /// The sizes.
@@ -41,25 +41,25 @@ pub struct TriedSizes {
     pub score: f64,
 }
 
-/// Why a corrected model has terms of its sizes.
+/// Reason for the sizes of a corrected model's terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SizesReason {
-    /// The sizes were given.
+    /// The sizes were stated.
     Given,
-    /// Terms predict rows better that are left out.
+    /// Terms predict left-out rows better.
     Predict,
     /// No terms predict them better.
     NoBetter,
-    /// Rows cannot be left out: the small sizes.
+    /// Rows cannot be left out; the small sizes are used.
     Small,
     /// Too few configurations to choose by.
     TooFew,
-    /// The rows say nothing of the terms.
+    /// The rows determine none of the terms.
     Undetermined,
     /// The fit of the terms explains the rows worse, or has no uncertainty.
     LedNowhere,
-    /// The fit of the terms predicts the rows worse that were held out.
+    /// The fit of the terms predicts the held-out rows worse.
     WorseHeldOut,
 }
 
@@ -80,7 +80,7 @@ impl SizesReason {
     }
 }
 
-/// The choice, and all that was tried.
+/// Choice of sizes, and all tried sizes.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice {
     pub(crate) sizes: Sizes,
@@ -88,7 +88,7 @@ pub(crate) struct Choice {
     pub(crate) tried: Vec<TriedSizes>,
 }
 
-/// Chooses sizes by leaving parts of the rows out; the common ones where nothing can be left out, none of very few configurations.
+/// Chooses sizes by leaving parts of the rows out. Without parts the small sizes are used, with very few configurations none.
 pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usize) -> Choice {
     if configurations < FEWEST {
         return Choice { sizes: Sizes::NONE, reason: SizesReason::TooFew, tried: Vec::new() };
@@ -125,10 +125,10 @@ pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
         }
     }
     let geometry = score(Sizes::NONE);
-    // Terms that visibly harm where nothing is to be found, and are not missed. Measurements without noise leave nothing to choose by.
+    // Geometry alone wins if terms visibly harm without a real effect, and are not missed. Measurements without noise leave nothing to choose by.
     let loses_little = geometry.left_out <= best.left_out + GEOMETRY.max(1.5 * few);
     let is_harmed = common.left_out > geometry.left_out + 3.0 * few;
-    // Logarithms are of squares.
+    // The logarithms are those of squares.
     let gains_nothing = 0.5 * (best.left_out - geometry.left_out) > (1.0 - GAIN).ln();
     if best.score.is_finite() && geometry.left_out.is_finite() && (loses_little && is_harmed || gains_nothing)
     {
@@ -138,14 +138,14 @@ pub(crate) fn choose(linear: &Linear, parts: &[LeftOutPart], configurations: usi
     Choice { sizes: best.sizes, reason, tried }
 }
 
-/// Groups whose sizes are chosen in turn, with the sizes that are tried; those of gravity are of one size.
+/// Groups whose sizes are chosen in turn, with the tried sizes; the groups of gravity share one size.
 pub(crate) fn chosen() -> impl Iterator<Item = (&'static [TermGroup], &'static [f64])> {
     static ALL: [TermGroup; TermGroup::ALL.len()] = TermGroup::ALL;
     let together = ALL.chunk_by(|_, next| next.row().tried.is_empty());
     together.map(|groups| (groups, groups.first().map_or(&[][..], |it| it.row().tried)))
 }
 
-/// Prior of the choice by so many configurations, of which `few` is the inverse.
+/// Prior of the choice; `few` is the inverse of the number of configurations.
 fn distance(sizes: &Sizes, few: f64) -> f64 {
     let pull = PULL.max(PULL_OF_FEW * few);
     let of = |group: TermGroup| match (sizes[group], Sizes::COMMON[group]) {

@@ -17,7 +17,7 @@ use poecal_model::robot::{CorrectionModel, Extent, JointTerm, Robot, Sizes, Term
 /// Most measured numbers from which sizes are chosen.
 const NUMBERS: usize = 6000;
 
-/// Geometry with what a fit of terms needs beside it.
+/// Geometry with the inputs of a fit of terms.
 pub(crate) struct CorrectionContext<'a> {
     pub(crate) geometry: &'a CalibratedFit<'a>,
     pub(crate) session: Session<'a>,
@@ -39,7 +39,7 @@ pub(crate) struct Sampled {
 impl<'g> CorrectionContext<'g> {
     pub(crate) fn new(geometry: &'g CalibratedFit<'g>) -> Self {
         let (session, rows, weights) = (geometry.session(), geometry.weighted_rows(), geometry.weights());
-        // Terms that geometry has are of no group.
+        // Terms of geometry itself belong to no group.
         let mut nominal = session.robot.clone();
         for &(joint, term) in &session.unknowns.terms {
             if !nominal.terms.iter().any(|it| (it.joint, it.term) == (joint, term)) {
@@ -54,7 +54,7 @@ impl<'g> CorrectionContext<'g> {
         self.weights.as_ref().and_then(|it| it.get(row as usize)).copied().unwrap_or(1.0)
     }
 
-    /// How far the model reaches; for terms of these sizes as far as they do.
+    /// Extent of the model; with sizes, the extent of terms of these sizes.
     pub(crate) fn extent(&self, sizes: Option<Sizes>) -> Extent {
         let options = &self.geometry.run.options;
         let gives = sizes.map_or(options.corrections.gives(), |sizes| sizes.gives());
@@ -75,7 +75,7 @@ impl<'g> CorrectionContext<'g> {
         Task { session, rows, weights: weights.as_deref(), prior: Some(prior), options }
     }
 
-    /// A sample of the rows, linear about the calibrated model; none if that determines nothing.
+    /// A sample of the rows, linear about the calibrated model; `None` if it determines nothing.
     pub(crate) fn sampled(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> Option<Sampled> {
         let (of_geometry, noise) = (self.session, self.geometry.noise());
         let (calibrated, options) = (&self.geometry.estimate, &self.geometry.run.options);
@@ -94,7 +94,7 @@ impl<'g> CorrectionContext<'g> {
         let all: usize = self.rows.iter().map(numbers).sum();
         let most = self.rows.len() * NUMBERS / all.max(NUMBERS);
         let (sample, parts) = parts_to_leave_out(&view, most, options.seed);
-        // The rows of the sample alone, so that terms are evaluated at no others.
+        // Only the rows of the sample, so that terms are evaluated at no others.
         let data = of_geometry.data.only(&sample);
         let rows = data.all_rows();
         let among = |row: &u32| sample.binary_search(row).ok().and_then(|at| u32::try_from(at).ok());

@@ -2,20 +2,20 @@
 
 use poecal_model::robot::TermGroup;
 
-/// What one group of terms does at one joint.
+/// Effect of one group of terms at one joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEffect {
     /// Name of the joint.
     pub joint: String,
     /// The group.
     pub group: TermGroup,
-    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::is_of_lengths`]); of a ratio the change each radian.
+    /// Largest deviation in the fitted rows, radians or metres ([`TermGroup::is_of_lengths`]); for a ratio the change per radian.
     pub amplitude: f64,
     /// Its standard deviation.
     pub sigma: f64,
-    /// Share of its prior variance that the measurements took away, 0 to 1.
+    /// Determined share: the part of its prior variance that the measurements removed, 0 to 1.
     pub told: f64,
-    /// Root mean square distance by which it moves the target in the fitted rows, but for the mean of all, metres.
+    /// Root mean square displacement of the target by this effect in the fitted rows, without its mean, metres.
     pub effect_m: f64,
 }
 
@@ -31,7 +31,7 @@ impl JointEffect {
         words.into_iter().fold(effect, |effect, (of, word)| effect.replace(of, word))
     }
 
-    /// Whether it is more than chance and the prior make.
+    /// True if the effect is more than chance and the prior explain.
     #[must_use]
     pub fn is_found(&self) -> bool {
         self.amplitude.abs() > 2.0 * self.sigma && self.told > 0.5
@@ -42,13 +42,13 @@ impl JointEffect {
 /// residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointErrorPart {
-    /// From and to, values of the joint.
+    /// Lower and upper end, values of the joint.
     pub range: [f64; 2],
     /// Number of rows.
     pub rows: usize,
-    /// By the calibrated model.
+    /// Error of the calibrated model.
     pub before: f64,
-    /// By the corrected model.
+    /// Error of the corrected model.
     pub after: f64,
     /// Mean deviation by the joint's own terms, and its standard deviation.
     pub terms: (f64, f64),
@@ -59,20 +59,20 @@ pub struct JointErrorPart {
 pub struct JointErrors {
     /// Name of the joint.
     pub joint: String,
-    /// Whether it slides.
+    /// True if the joint slides.
     pub slides: bool,
-    /// The parts that have rows enough.
+    /// Parts with enough rows.
     pub parts: Vec<JointErrorPart>,
 }
 
-/// What the terms do.
+/// Effects of the terms.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects {
-    /// Of each joint and group, the one that moves the target most first.
+    /// Effects by joint and group, the largest displacement of the target first.
     pub each: Vec<JointEffect>,
-    /// Of each joint over its range.
+    /// Errors of each joint over its range.
     pub errors: Vec<JointErrors>,
-    /// Effects that the measurements do not tell apart, a sentence each.
+    /// Indistinguishable effects, a sentence each.
     pub confused: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What the terms of a corrected model do at each joint: how much, how well it is determined, and over the joint's range.
+//! Effects of the terms of a corrected model at each joint: their size, their uncertainty, and their course over the joint's range.
 
 use std::collections::BTreeMap;
 
@@ -16,12 +16,12 @@ const ROWS: usize = 400;
 /// Parts of a joint's sampled range, and fewest rows of a part.
 const PARTS: usize = 12;
 const FEWEST: usize = 3;
-/// Standard deviation of a joint's error above which it is not told, radians or metres.
+/// Standard deviation of a joint's error above which it counts as undetermined, radians or metres.
 const VAGUE: f64 = 1e-3;
-/// Correlation of two effects above which the measurements do not tell them apart.
+/// Correlation above which the measurements do not distinguish two effects.
 const CONFUSED: f64 = 0.8;
 
-/// A term at one row: its place among the unknowns of the covariance with the scale there, its coefficient and its function.
+/// A term at one row: its index among the unknowns of the covariance with the scale there, its coefficient and its function.
 struct TermAt {
     place: Option<(usize, f64)>,
     coefficient: f64,
@@ -29,7 +29,7 @@ struct TermAt {
     deviation: f64,
 }
 
-/// Effects of the terms of a model. `calibrated` are session and estimate of geometry alone, of the same rows.
+/// Effects of the terms of a model. `calibrated` holds session and estimate of geometry alone, for the same rows.
 pub(crate) fn effects(
     model: &CorrectionModel,
     (session, estimate): (&Session<'_>, &Estimate),
@@ -63,10 +63,10 @@ pub(crate) fn effects(
     Effects { each, errors, confused }
 }
 
-/// Motion of the target by a joint, in the device's axes: of its place, and of its orientation.
+/// Motion of the target by a joint, in the device's axes: of its position and of its orientation.
 type Motion = (Vector3<f64>, Vector3<f64>);
 
-/// Motion of the target by each joint and each give, row after row.
+/// Motion of the target by each joint and each compliant joint, row by row.
 fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Vec<Motion>> {
     let robot: &Robot = session.robot;
     let linkage = Linkage::new(estimate);
@@ -89,7 +89,7 @@ fn joint_motions(session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Ve
     motions
 }
 
-/// Terms of factors as of their difference from the mean of all rows: what is the same everywhere is geometry.
+/// Refers the functions of factors to their mean over all rows: a constant part belongs to geometry.
 fn about_their_mean(of_rows: &mut [Vec<Vec<TermAt>>]) {
     let count = of_rows.len().max(1) as f64;
     let mut mean: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -109,7 +109,7 @@ fn about_their_mean(of_rows: &mut [Vec<Vec<TermAt>>]) {
     }
 }
 
-/// The motion of a joint that explains most of the residuals of some rows, and its standard deviation.
+/// Motion of a joint that explains most of the residuals of some rows, and its standard deviation.
 fn explained(some: &[usize], errors: &[RowError], motions: &[Motion], noise: Noise) -> (f64, f64) {
     let weigh = [Quantity::Position, Quantity::Rotation].map(|it| noise[it].powi(-2));
     let (mut along, mut information) = (0.0, 0.0);
@@ -157,7 +157,7 @@ impl<'a> Gatherer<'a> {
         Gatherer { model, session, estimate, uncertainty, deviations, places: terms.collect() }
     }
 
-    /// The terms of a group at a joint, those of each of its gives apart.
+    /// Terms of a group at a joint, grouped by each of its compliant joints.
     fn terms_of_joint(&self, joint: usize, group: TermGroup) -> Vec<Vec<(usize, Term, f64)>> {
         let all = self.model.terms().zip(self.model.groups.iter().zip(self.deviations));
         let mut found: BTreeMap<usize, Vec<(usize, Term, f64)>> = BTreeMap::new();
@@ -180,7 +180,7 @@ impl<'a> Gatherer<'a> {
         terms.iter().map(term).collect()
     }
 
-    /// The effect of a group, and the quantity that stands for it as a combination of unknowns.
+    /// Effect of a group, and the quantity that represents it as a combination of unknowns.
     fn effect(
         &self,
         (joint, group): (&str, TermGroup),
@@ -189,7 +189,7 @@ impl<'a> Gatherer<'a> {
         motions: &[Vec<Motion>],
     ) -> Option<(JointEffect, Vec<(usize, f64)>)> {
         let value = |terms: &[TermAt]| terms.iter().map(|it| it.coefficient * it.basis).sum::<f64>();
-        // Of gives the vector of both turns; a row where it is largest stands for the effect.
+        // For compliant joints the vector of both turns is evaluated; the row with the largest one represents the effect.
         let mut of_rows: Vec<Vec<Vec<TermAt>>> =
             rows.iter().map(|&row| terms.iter().map(|terms| self.at(terms, row)).collect()).collect();
         if group == TermGroup::Factors {
@@ -204,7 +204,7 @@ impl<'a> Gatherer<'a> {
         if most == 0.0 {
             return None;
         }
-        // Along the vector at that row.
+        // Component along the vector at that row.
         let mut along: Vec<(usize, f64)> = Vec::new();
         let mut believed = 0.0;
         for (terms, share) in of_rows[largest].iter().zip(&vectors[largest]) {
@@ -252,7 +252,7 @@ impl<'a> Gatherer<'a> {
         noise: Noise,
     ) -> Vec<JointErrorPart> {
         let value = |row: u32| self.session.packed.joint_values(row as usize)[joint];
-        // The terms of its gives are at other joints.
+        // The terms of its compliant joints belong to other joints.
         let own: Vec<(usize, Term, f64)> = TermGroup::ALL
             .into_iter()
             .flat_map(|group| self.terms_of_joint(joint, group).concat())
@@ -275,7 +275,7 @@ impl<'a> Gatherer<'a> {
             let terms = self.mean_of(&own, some.iter().map(|&at| rows[at]));
             let [(before, sigma), (after, _)] =
                 residuals.each_ref().map(|it| explained(&some, it, motions, noise));
-            // What the target does not show of a joint is no error of it.
+            // A joint error that the target does not show is not reported.
             let shows = !sigma.is_nan() && sigma <= VAGUE;
             shows.then_some(JointErrorPart { range, rows: some.len(), before, after, terms })
         };
@@ -297,13 +297,13 @@ impl<'a> Gatherer<'a> {
         (mean, self.covariance(&along, &along).max(0.0).sqrt())
     }
 
-    /// Pairs of effects that the measurements do not tell apart.
+    /// Pairs of effects that the measurements do not distinguish.
     fn confused(&self, found: &[(JointEffect, Vec<(usize, f64)>)]) -> Vec<String> {
         let mut confused = Vec::new();
         for (k, (one, a)) in found.iter().enumerate() {
             for (other, b) in &found[k + 1..] {
                 let correlation = self.covariance(a, b) / (one.sigma * other.sigma);
-                // Of what the measurements say nothing there is nothing to tell apart.
+                // Undetermined effects cannot be distinguished anyway.
                 let is_told = one.told.max(other.told) > 0.2;
                 if is_told && correlation.abs() > CONFUSED {
                     confused.push(format!(

@@ -25,11 +25,11 @@ const ROUNDS: usize = 4;
 const SETTLED: f64 = 0.02;
 /// Factor of the first trust region.
 const UNDAMPED: f64 = 1e3;
-/// The fit stops within a tenth of a standard deviation: what the priors hold is not known better.
+/// The fit stops within a tenth of a standard deviation: the priors determine directions no better.
 const DECREMENT: f64 = 1e-2;
 
-/// Fits screws and terms together (theory.md §6, *Corrections*), with these sizes or with those that cross-validation chooses; geometry alone
-/// where terms lead nowhere.
+/// Fits screws and terms together (theory.md §6, *Corrections*), with these sizes or with those that cross-validation chooses. Returns geometry alone
+/// if the fit of terms fails.
 pub(crate) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> CorrectedFit {
     let context = CorrectionContext::new(geometry);
     let moves = moving(&context.session, &context.rows);
@@ -41,7 +41,7 @@ pub(crate) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> C
     let all = CorrectionModel::new(&context.nominal, gravity, &moves, context.extent(sizes));
     let all = sizes.map_or_else(|| all.clone(), |sizes| all.with_sizes(&sizes));
     let choice = context.choose_sizes(&all, sizes);
-    // Terms that may be there keep their part of the uncertainty.
+    // Terms that may be present keep their part of the uncertainty.
     let possible = if sizes.is_some() { choice.sizes } else { choice.sizes.max(&Sizes::COMMON) };
     let model = all.with_sizes(&possible);
     let found = context.with_terms(&model, &possible, &choice).unwrap_or_else(|reason| {
@@ -52,7 +52,7 @@ pub(crate) fn corrected(geometry: &CalibratedFit<'_>, sizes: Option<Sizes>) -> C
     CorrectedFit { doubt: doubt.or_else(|| is_of_no_use.then(of_no_use)), ..found }
 }
 
-/// Sizes, and the optimum with them as far as rows are linear.
+/// Sizes, and the optimum with them in the linear approximation of the rows.
 #[derive(Clone)]
 struct SizeChoice {
     sizes: Sizes,
@@ -60,14 +60,14 @@ struct SizeChoice {
     tried: Vec<TriedSizes>,
     estimate: Estimate,
     noise: Noise,
-    /// Variance of the residuals whitened by stated noise, at least 1; 1 where the noise is estimated.
+    /// Variance of the residuals whitened by stated noise, at least 1; 1 if the noise is estimated.
     variance: f64,
-    /// Mean squared error of parts that were left out, over what their fits let expect (theory.md (43a)).
+    /// Mean squared error of left-out parts, relative to the expectation by their fits (theory.md (43a)).
     growth: f64,
 }
 
 impl CorrectionContext<'_> {
-    /// Chooses sizes, unless they are given.
+    /// Chooses sizes, unless they are stated.
     fn choose_sizes(&self, model: &CorrectionModel, sizes: Option<Sizes>) -> SizeChoice {
         let (mut noise, source) = (self.geometry.noise(), self.geometry.robust.fitted.noise_source);
         let Some(Sampled { mut linear, parts, configurations }) = self.sampled(model, sizes) else {
@@ -105,7 +105,7 @@ impl CorrectionContext<'_> {
         SizeChoice { sizes, reason, tried, estimate, noise, variance, growth }
     }
 
-    /// The fit with the sizes of a choice; the reason where it is worse than geometry alone.
+    /// The fit with the chosen sizes; the reason if it is worse than geometry alone.
     fn with_terms(
         &self,
         model: &CorrectionModel,
@@ -124,7 +124,7 @@ impl CorrectionContext<'_> {
         let terms = self.start(model).terms.into_iter();
         let terms = terms.map(|it| JointTerm { coefficient: coefficient(it), ..it }).collect();
         let start = Estimate { terms, ..estimate.clone() };
-        // The start is the optimum as far as rows are linear: no damping.
+        // The start is the optimum of the linear approximation: no damping.
         let mut near = options.clone();
         near.solver.trust *= UNDAMPED;
         near.solver.decrement = near.solver.decrement.max(DECREMENT);
@@ -133,7 +133,7 @@ impl CorrectionContext<'_> {
         let task = Task { options: &near, ..self.task(session, (&prior, weight)) };
         let (found, noise) = fitted(&task, start, noise, self.geometry);
         let predicted = Predicted::new(self, &session, &found, noise);
-        // Where rows are far from linear, terms may lead nowhere.
+        // If rows are far from linear, the fit of terms may fail.
         if !self.is_no_worse(&predicted.training) {
             return Err(SizesReason::LedNowhere);
         }
@@ -144,7 +144,7 @@ impl CorrectionContext<'_> {
         if found.uncertainty.is_none() { Err(SizesReason::LedNowhere) } else { Ok(found) }
     }
 
-    /// Geometry alone, with the uncertainty that terms which may be there leave.
+    /// Geometry alone, with the uncertainty due to terms that may be present.
     fn without_terms(&self, model: &CorrectionModel, possible: &Sizes, choice: SizeChoice) -> CorrectedFit {
         let (of_geometry, noise) = (self.session, self.geometry.noise());
         let packed = Packed::from_dataset(&model.robot, of_geometry.data);
@@ -200,7 +200,7 @@ impl CorrectionContext<'_> {
     }
 }
 
-/// What a fit predicts: its model with the frames of all stations, and its errors.
+/// Predictions of a fit: its model with the frames of all stations, and its errors.
 struct Predicted {
     estimate: Estimate,
     training: Vec<RowError>,
@@ -226,7 +226,7 @@ fn numbers(task: &Task<'_>) -> ByQuantity<f64> {
     counts
 }
 
-/// The optimum with the noise estimated anew.
+/// The optimum with the noise re-estimated.
 fn fitted(task: &Task<'_>, start: Estimate, noise: Noise, of: &CalibratedFit<'_>) -> (Estimate, Noise) {
     let (mut estimate, mut noise) = (start, noise);
     let counts = numbers(task);

@@ -1,4 +1,4 @@
-//! A fit of screws and terms, and what it is worth.
+//! Fits of screws and terms, with their accuracy and uncertainty.
 
 use std::ops::Deref;
 
@@ -23,17 +23,17 @@ use poecal_model::robot::{CorrectionModel, Robot, Sizes};
 /// A fit of screws and terms together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedFit {
-    /// The robot with its gives and terms, as in the model.
+    /// The robot with its compliant joints and terms, as in the model.
     pub model: CorrectionModel,
     /// Prior sizes of the groups of terms.
     pub sizes: Sizes,
-    /// Why it has terms of these sizes.
+    /// Reason for the sizes of its terms.
     pub reason: SizesReason,
     /// Sizes that cross-validation tried, if it chose.
     pub tried: Vec<TriedSizes>,
-    /// What was fitted.
+    /// Fitted unknowns.
     pub unknowns: Unknowns,
-    /// What was found.
+    /// Fitted estimate.
     pub estimate: Estimate,
     /// Noise of the fit.
     pub noise: Noise,
@@ -41,11 +41,11 @@ pub struct CorrectedFit {
     pub training: ModelAccuracy,
     /// Errors on the held-out rows.
     pub held_out: Option<ModelAccuracy>,
-    /// Covariance of the unknowns and of terms that may be there, and model error.
+    /// Covariance of the unknowns and of terms that may be present, and model error.
     pub uncertainty: Option<Uncertainty>,
-    /// What is said of a direction of gravity that was not found.
+    /// Doubt about a direction of gravity that was not found, a sentence.
     pub doubt: Option<String>,
-    /// Sizes of all terms that may be there.
+    /// Sizes of all terms that may be present.
     pub(crate) possible: Sizes,
     /// Weight of the priors in the fit.
     pub(crate) prior_weight: f64,
@@ -53,7 +53,7 @@ pub struct CorrectedFit {
 }
 
 impl CorrectedFit {
-    /// Whether it has terms at all, rather than geometry alone.
+    /// True if the fit has terms, rather than geometry alone.
     #[must_use]
     pub fn has_terms(&self) -> bool {
         self.sizes != Sizes::NONE
@@ -65,7 +65,7 @@ impl CorrectedFit {
         Session { robot: &model.robot, packed, unknowns, ..geometry.session() }
     }
 
-    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave on rows that are left out.
+    /// Error of positions in cross-validation (metres, RMS): the error of geometry alone times the share that terms leave on left-out rows.
     pub(crate) fn left_out_m(&self, of_geometry: Option<&CrossValidation>) -> Option<f64> {
         let of = |sizes: &Sizes| self.tried.iter().find(|it| it.sizes == *sizes).map(|it| it.left_out);
         let geometry_m = of_geometry?.random.rms.get(Quantity::Position)?;
@@ -73,7 +73,7 @@ impl CorrectedFit {
         Some(geometry_m * left).filter(|it| it.is_finite())
     }
 
-    /// The fit with what it is worth, beside the cross-validation of geometry, in the base frame of geometry.
+    /// The fit with its accuracy and uncertainty, compared with the cross-validation of geometry, in the base frame of geometry.
     pub(crate) fn judged(
         mut self,
         geometry: &CalibratedFit<'_>,
@@ -108,7 +108,7 @@ impl CorrectedFit {
             Model { session: geometry.session(), estimate: &geometry.estimate },
         ];
         let (mut estimate, mut tip) = (estimate.clone(), Tip::Nominal);
-        // Without terms both models are one.
+        // Without terms both models are the same.
         if self.has_terms() {
             let (base, at) = frames(models, rows, options.move_tip);
             (estimate, tip) = (estimate.rebased(&base), Tip::At(at));
@@ -133,25 +133,25 @@ impl CorrectedFit {
     }
 }
 
-/// A fit of screws and terms: the robot that it found, with all that predicts rows.
+/// Result of a fit of screws and terms: the fitted robot, with everything that predicts rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Correction {
     /// The fit.
     pub fit: CorrectedFit,
-    /// The robot that was found, with its gives and its terms, and its tip as that of [`Calibration::robot`](crate::Calibration).
-    /// It predicts as the fit does.
+    /// The fitted robot, with its compliant joints and its terms, and its tip as that of [`Calibration::robot`](crate::Calibration). It predicts as
+    /// the fit does.
     pub robot: Robot,
     /// The targets.
     pub targets: Vec<CalibratedTarget>,
     /// All stations.
     pub stations: Vec<CalibratedStation>,
-    /// What was known of the device's frame.
+    /// Prior knowledge of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// What the terms do; nothing without any.
+    /// Effects of the terms; empty without terms.
     pub effects: Effects,
     /// Expected errors.
     pub expected: Expectations,
-    /// Error of positions in cross-validation (metres, RMS): that of geometry alone times the share that terms leave; `None` if no sizes were
+    /// Error of positions in cross-validation (metres, RMS): the error of geometry alone times the share that terms leave. `None` if no sizes were
     /// tried.
     pub left_out_m: Option<f64>,
     /// Coverage on the held-out rows.
@@ -173,7 +173,8 @@ impl Correction {
         Session::new(&self.model.robot, data, &self.packed, true).errors(rows, &self.estimate)
     }
 
-    /// By what it is judged on so many rows: those held out, or where there are none those fitted, as cross-validation predicts their positions.
+    /// Error that judges the fit on this number of rows: on the held-out rows, or if there are none on the fitted rows as cross-validation predicts
+    /// their positions.
     pub(crate) fn judging(&self, rows: usize) -> JudgingError {
         if let Some(errors) = &self.held_out {
             return errors.judging(rows);

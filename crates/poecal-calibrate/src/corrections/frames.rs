@@ -1,5 +1,5 @@
-//! Base and tip of a corrected model in those of the calibrated one: both are a choice wherever they were not measured, and both models of a
-//! session make the same (theory.md §8 (38f)).
+//! Base and tip of a corrected model in those of the calibrated one. Both are a choice unless they were measured, and both models of a session make
+//! the same (theory.md §8 (38f)).
 
 use nalgebra::Vector3;
 
@@ -12,10 +12,10 @@ use poecal_model::robot::{Body, Robot};
 /// Pairs of points that decide, and the fewest configurations.
 const POINTS: usize = 3000;
 const FEWEST: usize = 100;
-/// Metres that a radian of the tip counts: turns decide what positions do not.
+/// Weight of a radian of the tip in metres: rotations decide what positions leave undetermined.
 const RADIAN_M: f64 = 0.01;
 
-/// A model of a session: the nominal robot of its kind, with what was found.
+/// A model of a session: the nominal robot of its kind, with the fitted estimate.
 #[derive(Clone, Copy)]
 pub(crate) struct Model<'a> {
     pub(crate) session: Session<'a>,
@@ -35,16 +35,15 @@ impl Model<'_> {
         targets.chain(instruments).filter(|(body, _)| body.joint().is_some()).collect()
     }
 
-    /// The robot with its tip where that was measured, or else where the nominal model has it.
+    /// The robot with its tip as measured, or else as in the nominal model.
     fn robot(&self, frames: &[bool], move_tip: bool) -> Robot {
         let Session { robot, data, .. } = self.session;
         place_tip(robot, data, frames, self.estimate, move_tip, Tip::Nominal).0
     }
 }
 
-/// The motion of the base (none where it is known) that takes a model's predictions in the base frame nearest to the calibrated model's, least
-/// squares over the rows' configurations of all measured points and of the tip; and the model's `base_from_tip` at zero, with that base and the
-/// tool with which the tip comes nearest.
+/// Motion of the base that brings a model's predictions in the base frame nearest to the calibrated model's, by least squares over all measured
+/// points and the tip; none if the base is known. Also returns the model's `base_from_tip` at zero, with that base and the best tool.
 pub(crate) fn frames([model, calibrated]: [Model<'_>; 2], rows: &[u32], move_tip: bool) -> (Pose, Pose) {
     let data = calibrated.session.data;
     let frames = data.frames(rows);

@@ -1,4 +1,4 @@
-//! The direction of gravity, where it is not known.
+//! Estimate of an unknown direction of gravity.
 
 use nalgebra::Vector3;
 
@@ -6,20 +6,20 @@ use super::context::{CorrectionContext, Sampled};
 use poecal_arm::lie::rotation;
 use poecal_model::robot::{CorrectionModel, Sizes};
 
-/// Angles by which a direction of gravity is tilted in turn, radians, and how often by each at most.
+/// Tilts of the direction of gravity that are tried in turn, radians, and the most steps with each.
 const TILTS: [f64; 6] = [0.35, 0.17, 0.09, 0.04, 0.02, 0.01];
 const MOST_TILTS: usize = 8;
-/// Gain of the logarithm of the likelihood with which a direction is evidently another than -z: where nothing sags, the best of all directions
-/// gains up to 9.
+/// Gain of the logarithm of the likelihood from which a direction is evidently another than -z. Without sag, the best of all directions gains up to
+/// 9.
 const EVIDENT: f64 = 12.0;
-/// Numbers of a configuration that count.
+/// Numbers of a configuration that count as independent.
 const NUMBERS_OF_A_CONFIGURATION: f64 = 3.0;
-/// Least share by which the noise becomes less.
+/// Least share by which the noise must decrease.
 const LEAST_GAIN: f64 = 0.005;
 
 impl CorrectionContext<'_> {
-    /// The direction of gravity with which terms leave the least noise: the best of three, tilted until it gets no better.
-    /// Where that is not evidently better than -z of the base, -z, and a sentence of it.
+    /// Direction of gravity with which terms leave the least noise: the best of three, tilted until it no longer improves. If it is not evidently
+    /// better than -z of the base, returns -z with a sentence about it.
     pub(crate) fn gravity(&self, moves: &[bool], sizes: Sizes) -> (Vector3<f64>, Option<String>) {
         let along = |direction: &Vector3<f64>| {
             let model = CorrectionModel::new(&self.nominal, *direction, moves, self.extent(Some(sizes)));
@@ -55,14 +55,15 @@ impl CorrectionContext<'_> {
             }
         }
         let Some(Sampled { linear, configurations, .. }) = along(&best) else { return (down, None) };
-        // What rows of a configuration share counts once.
+        // Errors shared by the rows of a configuration count once.
         let numbers = linear.numbers();
         let counted = numbers.min(NUMBERS_OF_A_CONFIGURATION * configurations as f64);
         let gained = if of_down.is_finite() { (of_down - least) / numbers } else { f64::INFINITY };
         if gained * counted < EVIDENT || gained < LEAST_GAIN {
             return (down, Some(not_found(&best, gained)));
         }
-        // Against gravity all coefficients have the other sign and the fit is the same; but joints give the way they are pulled.
+        // The opposite direction leads to the same fit with all coefficients negated; joints deflect in the direction of their torque, so the sum of
+        // coefficients is positive.
         let given = linear.solution(&sizes, &linear.whole()).map(|found| {
             let sags = found.terms.iter().filter(|it| it.term.needs_gravity());
             sags.map(|it| it.coefficient).sum::<f64>()
@@ -71,14 +72,14 @@ impl CorrectionContext<'_> {
     }
 }
 
-/// What is said where terms are of no use, whatever the direction.
+/// Statement for a session in which terms are useless for any direction.
 pub(crate) fn of_no_use() -> String {
     "the direction of gravity was not found: no joint terms predict other rows clearly better; if the robot does not stand upright, state it (--gravity \
      X,Y,Z)"
         .to_owned()
 }
 
-/// What is said of a direction that is not taken.
+/// Statement about a direction that is not adopted.
 fn not_found(best: &Vector3<f64>, gained: f64) -> String {
     let [x, y, z] = [best.x, best.y, best.z].map(|it| format!("{it:.2}").replace("-0.00", "0.00"));
     let percent = 100.0 * (1.0 - (-gained.max(0.0)).exp());

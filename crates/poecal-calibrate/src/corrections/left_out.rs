@@ -1,4 +1,4 @@
-//! Parts of the rows that are left out in turn: the errors of the fits of the others on them.
+//! Parts of the rows that are left out in turn, and their errors by the fits of the others.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,7 +9,7 @@ use poecal_numerics::linalg::{self, Factor};
 use poecal_numerics::threads;
 use poecal_numerics::unit::Unit;
 
-/// `|e - E t|²` as a function of the modes t: by the rows, or of many rows by their products.
+/// `|e - E t|²` as a function of the modes t: by the rows, or for many rows by their products.
 enum Squares {
     Rows(DMatrix<f64>, DVector<f64>),
     Products { constant: f64, gradient: DVector<f64>, gram: DMatrix<f64>, numbers: usize },
@@ -17,16 +17,16 @@ enum Squares {
 
 /// A part of the rows, and the fit of the others.
 pub(crate) struct LeftOutPart {
-    /// Of the modes, with all else at its optimum.
+    /// Information of the modes, with all else at its optimum.
     information: DMatrix<f64>,
     pull: DVector<f64>,
     /// Squared residuals of the part with its device frames fitted to it.
     fitted: Squares,
-    /// Numbers of the part, how all else follows each mode, and where it is without.
+    /// Numbers of the part, derivative of the other unknowns by each mode, and their values without modes.
     places: Vec<usize>,
     follow: DMatrix<f64>,
     still: DVector<f64>,
-    /// Covariance of geometry where the modes are known.
+    /// Covariance of geometry if the modes are known.
     covariance: DMatrix<f64>,
 }
 
@@ -51,7 +51,7 @@ impl Linear {
         };
         let places: Vec<usize> = rows.iter().filter_map(of_row).flatten().collect();
         let own = self.jacobian.select_rows(&places);
-        // A part that its own device frames explain whatever it is says nothing.
+        // A part that its own device frames explain entirely is uninformative.
         let frames = self.devices.iter().filter(|&&column| own.column(column).amax() > 0.0).count();
         if places.len() <= frames {
             return None;
@@ -62,7 +62,7 @@ impl Linear {
         let pull = gradient - fitted.tr_mul(&residuals);
         let factor = of_geometry(rest.view((0, 0), (k, k)).into_owned())?;
         let mixed = rest.view((0, k), (k, m)).into_owned();
-        // How the other unknowns follow each mode, and where they are without.
+        // Derivative of the other unknowns by each mode, and their values without modes.
         let covariance = DMatrix::from_column_slice(k, k, &linalg::inverse(&factor));
         let follow = &covariance * &mixed;
         let still = DVector::from_vec(linalg::cholesky_solve(&factor, pull.rows(0, k).as_slice()));
@@ -84,7 +84,7 @@ impl Linear {
         Some(LeftOutPart { information, pull, fitted, places, follow, still, covariance })
     }
 
-    /// The modes of these sizes by the fit without a part; none if that is not positive definite.
+    /// The modes of these sizes by the fit without a part; `None` if its information is not positive definite.
     fn without(&self, part: &LeftOutPart, used: &[(usize, f64)]) -> Option<DVector<f64>> {
         let mut modes = DVector::zeros(self.modes.len());
         if used.is_empty() {
@@ -112,7 +112,7 @@ impl Linear {
         Some((linalg::cholesky(&gram, n, 1.0 + ROUNDING_OF_TERMS * largest)?, unit))
     }
 
-    /// Variance of what the fit without a part predicts for some of its numbers, mean over them, by its information alone.
+    /// Mean predicted variance of some numbers of a part by the fit without it, by its information alone.
     fn predicted_without(
         &self,
         part: &LeftOutPart,
@@ -142,8 +142,8 @@ impl Linear {
         mean_logarithm(parts, |part| Some(part.fitted.mean(&self.without(part, &used)?)))
     }
 
-    /// Mean squared error of the lengths of the parts, by the fits of the others and their device frames, over what the residuals of all rows
-    /// and the uncertainty of these fits let expect, at least 1; without lengths that of all numbers.
+    /// Mean squared error of the lengths of the parts by the fits of the others and their device frames, relative to its expectation; at least 1. The
+    /// residuals of all rows and the uncertainty of these fits determine the expectation. Without lengths it is that of all numbers.
     pub(crate) fn growth(
         &self,
         parts: &[LeftOutPart],
@@ -173,7 +173,7 @@ impl Linear {
             });
             let (sum, count) = left.fold((0.0, 0), |(sum, count), it| (sum + it * it, count + 1));
             let expected = fitted + self.weight * self.predicted_without(part, &used, counts)?;
-            // Half of what the fit's own uncertainty explains: other sessions err by more than its model knows.
+            // Half of the growth by the fit's own uncertainty is allowed: other sessions err by more than its model predicts.
             let allowed = (fitted * expected).sqrt();
             Some(sum / count.max(1) as f64 / allowed.max(f64::MIN_POSITIVE))
         });
@@ -182,7 +182,7 @@ impl Linear {
     }
 }
 
-/// Mean over parts of the logarithm of a square; infinite if one has none, since a system that is not positive definite is no choice.
+/// Mean over parts of the logarithm of a square; infinite if one has none, since a system that is not positive definite is not eligible.
 fn mean_logarithm(parts: &[LeftOutPart], square: impl Fn(&LeftOutPart) -> Option<f64> + Sync) -> f64 {
     let logs =
         threads::map_parts(parts.len(), |at| Some(square(parts.get(at)?)?.max(f64::MIN_POSITIVE).ln()));
@@ -203,7 +203,7 @@ impl Squares {
         }
     }
 
-    /// Their mean.
+    /// Mean of the squares.
     fn mean(&self, modes: &DVector<f64>) -> f64 {
         let (sum, numbers) = match self {
             Squares::Rows(columns, residuals) => {

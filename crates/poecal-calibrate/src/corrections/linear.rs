@@ -20,20 +20,19 @@ const CHUNK: usize = 128;
 const ROUNDS: usize = 3;
 /// Least share of the numbers that is left as degrees of freedom.
 pub(crate) const LEAST_FREEDOM: f64 = 0.2;
-/// Degrees of freedom for which the noise of geometry alone counts: with few rows beyond the unknowns terms explain noise too.
+/// Degrees of freedom with which the noise of geometry alone counts: with few rows beyond the unknowns terms explain noise too.
 const FREEDOM_OF_GEOMETRY: f64 = 6.0;
 
-/// Rows as linear functions of the unknowns. Columns: what geometry alone has, then the modes, then device frames that are held in the
-/// fit.
+/// Rows as linear functions of the unknowns. Columns: the unknowns of geometry alone, then the modes, then device frames that are held in the fit.
 pub(crate) struct Linear {
     pub(crate) estimate: Estimate,
     pub(crate) layout: Layout,
-    /// Number of columns of geometry, and the place of each in the layout.
+    /// Number of columns of geometry, and the index of each in the layout.
     pub(crate) known: Vec<usize>,
     pub(crate) modes: Vec<Mode>,
     /// Columns of device frames.
     pub(crate) devices: Vec<usize>,
-    /// Step of each term's scaled unknown along each mode, and the places of the terms.
+    /// Step of each term's scaled unknown along each mode, and the indices of the terms.
     pub(crate) turn: DMatrix<f64>,
     pub(crate) own: Vec<usize>,
     /// Numbers of each row of the sample, as a range.
@@ -44,12 +43,12 @@ pub(crate) struct Linear {
     pub(crate) quantities: Vec<Quantity>,
     /// Prior of the screws.
     pub(crate) prior: Normal,
-    /// Its weight, and that of the modes' priors.
+    /// Weight of this prior and of the modes' priors.
     pub(crate) weight: f64,
 }
 
 impl Linear {
-    /// The rows of a sample about an estimate. `weight` is that of the priors.
+    /// The rows of a sample about an estimate. `weight` is the weight of the priors.
     pub(crate) fn new(
         task: &Task<'_>,
         model: &CorrectionModel,
@@ -110,7 +109,7 @@ impl Linear {
         })
     }
 
-    /// Whether the rows say anything of terms of some groups.
+    /// True if the rows are informative about terms of some groups.
     pub(crate) fn has_any(&self, groups: &[TermGroup]) -> bool {
         self.modes.iter().any(|mode| groups.contains(&mode.group))
     }
@@ -120,7 +119,7 @@ impl Linear {
         self.known.len() + self.modes.len()
     }
 
-    /// Prior information of each mode of a size above 0 that the rows say something of.
+    /// Prior information of each mode of a size above 0 about which the rows are informative.
     pub(crate) fn used(&self, sizes: &Sizes) -> Vec<(usize, f64)> {
         let size = |mode: &Mode| sizes[mode.group];
         let is_used = |mode: &Mode| mode.information * size(mode).powi(2) >= NEGLIGIBLE * self.weight;
@@ -128,7 +127,7 @@ impl Linear {
         all.map(|(at, mode)| (at, size(mode).powi(-2))).collect()
     }
 
-    /// Whitens the rows by the noise that the residuals of a fit with terms of these sizes show. Returns the factor of each quantity.
+    /// Whitens the rows by the noise estimated from the residuals of a fit with terms of these sizes. Returns the factor of each quantity.
     pub(crate) fn whiten(&mut self, sizes: &Sizes) -> Vec<(Quantity, f64)> {
         let found = self.noise_factors(sizes, true);
         let of = |quantity: Quantity| found.iter().find(|it| it.0 == quantity).map_or(1.0, |it| it.1);
@@ -142,8 +141,8 @@ impl Linear {
         found
     }
 
-    /// Weighs the priors by the variance of the whitened residuals, if that is above 1: what stated noise does not explain is the robot's.
-    /// Returns it.
+    /// Weights the priors by the variance of the whitened residuals if it is above 1, and returns it: the robot causes the errors that stated noise
+    /// does not explain.
     pub(crate) fn weigh_priors(&mut self, sizes: &Sizes) -> f64 {
         let found = self.noise_factors(sizes, false);
         let squares: f64 =
@@ -153,17 +152,17 @@ impl Linear {
         variance
     }
 
-    /// Number of the numbers of a quantity.
+    /// Number of measured components of a quantity.
     fn count(&self, quantity: Quantity) -> f64 {
         self.quantities.iter().filter(|it| **it == quantity).count() as f64
     }
 
-    /// Numbers of all rows.
+    /// Number of measured components of all rows.
     pub(crate) fn numbers(&self) -> f64 {
         self.quantities.len() as f64
     }
 
-    /// Noise of each quantity in units of that by which rows are whitened, from the residuals of a fit with terms of these sizes; drawn to
+    /// Noise of each quantity relative to the noise by which rows are whitened, from the residuals of a fit with terms of these sizes; shrunk towards
     /// those units if they are the noise of geometry alone.
     fn noise_factors(&self, sizes: &Sizes, is_of_geometry: bool) -> Vec<(Quantity, f64)> {
         let mut present = self.quantities.clone();
@@ -272,7 +271,7 @@ impl Linear {
     }
 }
 
-/// Where the numbers of each row of a problem begin, and the whitened Jacobian and residuals of all.
+/// Start index of each row's numbers, and the whitened Jacobian and residuals of all rows of a problem.
 pub fn whitened_rows(
     problem: &Problem<'_>,
     estimate: &Estimate,
@@ -283,7 +282,7 @@ pub fn whitened_rows(
     (starts, jacobian, residuals)
 }
 
-/// Where the numbers of each row begin, and the quantity of each number.
+/// Start index of each row's numbers, and the quantity of each number.
 fn numbers(problem: &Problem<'_>, sample: &[u32]) -> (Vec<usize>, Vec<Quantity>) {
     let (mut starts, mut quantities) = (vec![0], Vec::new());
     for &row in sample {
@@ -329,7 +328,7 @@ fn rows(
     (jacobian, residuals)
 }
 
-/// Standard deviation from a sum of squares with so many degrees of freedom, drawn in logarithms to that of geometry alone.
+/// Standard deviation from a sum of squares with these degrees of freedom, shrunk in logarithms towards that of geometry alone.
 pub(crate) fn between(of_geometry: f64, squares: f64, freedom: f64) -> f64 {
     let freedom = freedom.max(f64::MIN_POSITIVE);
     let found = (squares / freedom).sqrt().max(f64::MIN_POSITIVE);

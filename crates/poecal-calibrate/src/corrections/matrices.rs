@@ -7,9 +7,9 @@ use poecal_numerics::solve::Normal;
 
 /// Rounding of a matrix, as a share of its largest diagonal element.
 const ROUNDING: f64 = 1e-16;
-/// The same where columns of terms and screws may be one.
+/// Rounding if columns of terms and screws may coincide.
 pub(crate) const ROUNDING_OF_TERMS: f64 = 1e-13;
-/// Information that is added to each unknown of geometry where the rows do not determine them all, as a share of the largest.
+/// Information added to each unknown of geometry if the rows do not determine them all, as a share of the largest.
 const RIDGE: f64 = 1e-10;
 
 /// Normal information of some of the unknowns.
@@ -36,7 +36,7 @@ pub(crate) fn cholesky(matrix: &DMatrix<f64>, rounding: f64) -> Option<Factor> {
     linalg::cholesky(matrix.as_slice(), matrix.nrows(), rounding * largest)
 }
 
-/// Factor of the information of geometry, which may leave unknowns open.
+/// Factor of the information of geometry, which may leave unknowns undetermined.
 pub(crate) fn of_geometry(mut matrix: DMatrix<f64>) -> Option<Factor> {
     cholesky(&matrix, ROUNDING).or_else(|| {
         let largest = matrix.diagonal().iter().copied().fold(0.0, f64::max);

@@ -1,8 +1,8 @@
-//! What joints really do beyond geometry: terms of their values and of their bearings, fitted beside the screws with priors (theory.md §6).
+//! Real joint effects beyond geometry: terms of joint values and of bearings, fitted together with the screws under priors (theory.md §6).
 //!
-//! `context.rs` is what they begin with, `linear.rs` has the rows as linear functions of all unknowns, `choice.rs` chooses sizes of priors from them,
-//! `fit.rs` is the fit with these, `frames.rs` its base and tip, `worse.rs` gives them up where they predict rows worse, `promise.rs` is their uncertainty, `effects.rs` what they
-//! do at each joint.
+//! `context.rs` holds their inputs, `linear.rs` the rows as linear functions of all unknowns, and `choice.rs` chooses the sizes of priors from them.
+//! `fit.rs` is the fit with these, `frames.rs` its base and tip; `worse.rs` drops the terms if they predict rows worse. `promise.rs` is their
+//! uncertainty, `effects.rs` their effects at each joint.
 
 mod choice;
 mod context;

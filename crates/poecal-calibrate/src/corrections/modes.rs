@@ -1,4 +1,4 @@
-//! Columns of the linear rows, and combinations of terms of which the rows say something.
+//! Columns of the linear rows, and combinations of terms that the rows determine.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,22 +9,22 @@ use poecal_model::robot::{CorrectionModel, TermGroup};
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// Information of a mode, as a share of its prior's, below which it stays where the prior has it.
+/// Information of a mode, as a share of its prior's, below which it stays at its prior value.
 pub(crate) const NEGLIGIBLE: f64 = 0.1;
 
-/// Groups of one size, and the largest that it may be.
+/// Groups that share one size, and its largest value.
 pub(crate) type Class = (&'static [TermGroup], f64);
 
-/// A combination of terms of groups whose sizes are one: its coefficient has their prior.
+/// A combination of terms of groups with one size: its coefficient has their prior.
 #[derive(Clone, Copy)]
 pub(crate) struct Mode {
     /// A group of its class.
     pub(crate) group: TermGroup,
-    /// What all rows say of it, with geometry free.
+    /// Information of all rows about it, with geometry free.
     pub(crate) information: f64,
 }
 
-/// Which columns of a layout are of what.
+/// Subjects of the columns of a layout.
 pub(crate) struct Columns {
     pub(crate) known: Vec<usize>,
     /// Indices among the known ones.
@@ -77,8 +77,8 @@ impl Columns {
     }
 }
 
-/// Turns the terms of each class, whose coefficients have one size, so that what the rows say of them is told apart: the prior stays what
-/// it is, and what nothing is said of is left out.
+/// Rotates the terms of each class, whose coefficients share one size, into directions of independent information. The prior is unchanged by it, and
+/// directions without information are left out.
 pub(crate) fn modes(
     columns: &Columns,
     classes: &[Class],

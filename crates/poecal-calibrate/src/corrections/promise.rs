@@ -1,5 +1,4 @@
-//! Uncertainty of what screws and terms predict: the priors' part, and the errors of the parts that were left out (theory.md §9,
-//! *Corrected models*).
+//! Uncertainty of predictions by screws and terms: the priors' part, and the errors of the left-out parts (theory.md §9, *Corrected models*).
 
 use std::collections::BTreeMap;
 
@@ -12,15 +11,15 @@ use poecal_fit::uncertainty::{PriorInformation, Uncertainty, View, discrepancy};
 use poecal_model::measurement::{Dataset, Noise};
 use poecal_numerics::solve::LeastSquares as _;
 
-/// Rows of which residuals are searched for structure.
+/// Rows whose residuals are searched for structure.
 const MANY: usize = 4000;
 /// Most rows that are summed for the information of all.
 const SUMMED: usize = 8000;
 /// Fewest rows of each target seen from each station among them.
 const FEWEST: usize = 200;
 
-/// Uncertainty of a fit with all terms that may be there. The priors' weight is that of the number of configurations times the variance of
-/// the whitened residuals; `growth` is the mean squared error of parts that were left out over what their fits let expect. `None` with no more
+/// Uncertainty of a fit with all terms that may be present. The priors' weight is that of the number of configurations times the variance of the
+/// whitened residuals. `growth` is the mean squared error of left-out parts relative to its expectation by their fits. `None` if there are no more
 /// numbers than unknowns that they determine.
 pub(crate) fn uncertainty(
     task: &Task<'_>,
@@ -47,14 +46,14 @@ pub(crate) fn uncertainty(
         return None;
     }
     let mut found = if view.rows.len() > MANY {
-        // Of many rows the priors' weight decides: a sample tells whether their residuals have structure.
+        // With many rows the priors' weight decides: a sample shows whether their residuals have structure.
         let few = sample_rows(view.rows, MANY);
         let of_few = Problem::new(task.session, few.clone(), view.free.to_vec(), noise).normal(estimate);
         discrepancy(&View { rows: &few, ..view }, &of_few, remainder, None)
     } else {
         discrepancy(&view, normal, remainder, None)
     };
-    // What rows share beyond the terms: as the weight of the priors and the parts that were left out have it, or as it scatters.
+    // Errors that rows share beyond the terms: estimated by the weight of the priors and the left-out parts, or by their scatter.
     view.variance = remainder.variance * (weight * growth).max(found.scatter);
     (found.scatter, found.extrapolation) = (1.0, 1.0);
     let root = growth.sqrt();
@@ -62,8 +61,8 @@ pub(crate) fn uncertainty(
     Uncertainty::new(&view, summary.layout.clone(), normal, &found)
 }
 
-/// Rows of every target seen from every station that stand for all of them, and the weights of all rows with which their information is that of
-/// all; `None` of few.
+/// Representative rows of every target seen from every station, and weights of all rows with which their information equals that of all; `None` for
+/// few rows.
 fn representative(data: &Dataset, rows: &[u32], weights: Option<&[f64]>) -> Option<(Vec<u32>, Vec<f64>)> {
     if rows.len() <= SUMMED {
         return None;

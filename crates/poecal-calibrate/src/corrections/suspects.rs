@@ -11,7 +11,7 @@ use poecal_model::robot::Sizes;
 use poecal_numerics::solve::{LeastSquares as _, Normal};
 
 impl CorrectedFit {
-    /// Whether each row is suspected of a gross error; `None` if they are the rows that geometry suspects. Without terms they are.
+    /// Marks each row suspected of a gross error; `None` if they are the rows that geometry suspects, as they always are without terms.
     pub(crate) fn other_suspects(&self, geometry: &CalibratedFit<'_>) -> Option<Vec<bool>> {
         if self.sizes == Sizes::NONE {
             return None;

@@ -1,4 +1,4 @@
-//! What a fit of a model with gives and terms changes, where it starts, and what is known before.
+//! Unknowns, start and priors of a fit of a model with compliant joints and terms.
 
 use poecal_fit::analysis::ranges;
 use poecal_fit::problem::TermPrior;
@@ -6,7 +6,7 @@ use poecal_fit::state::{Estimate, Session, Tree, Unknowns};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{CorrectionModel, Sizes};
 
-/// Range of a joint's values in the fitted rows below which it has no term of its own value: encoders' jitter, radians.
+/// Range of a joint's values in the fitted rows below which it has no term of its own value: jitter of encoders, radians.
 const LEAST_RANGE_RAD: f64 = 0.02;
 
 /// Prior standard deviation of each term of the groups.
@@ -15,7 +15,7 @@ pub(crate) fn priors(model: &CorrectionModel, sizes: &Sizes) -> Vec<TermPrior> {
     each.map(|((joint, term), deviation)| TermPrior { joint, term, deviation }).collect()
 }
 
-/// What a fit changes: what it changes of the robot without gives, and the terms of a size above 0.
+/// Unknowns of a fit: those of the robot without compliant joints, and the terms of a size above 0.
 pub fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) -> Unknowns {
     let place = |joint: usize| model.places.get(joint).copied().unwrap_or(joint);
     let own = of_geometry.terms.iter().map(|&(joint, term)| (place(joint), term.moved(place)));
@@ -27,7 +27,7 @@ pub fn unknowns(model: &CorrectionModel, of_geometry: &Unknowns, sizes: &Sizes) 
     }
 }
 
-/// The estimate of a robot without gives, as one of this model.
+/// The estimate of a robot without compliant joints, as an estimate of this model.
 pub(crate) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset) -> Estimate {
     let tree = Tree::from_robot(&model.robot, data);
     let targets = found.base_from_target.clone();
@@ -45,7 +45,7 @@ pub(crate) fn estimate(model: &CorrectionModel, found: &Estimate, data: &Dataset
     estimate
 }
 
-/// Whether each joint's value changes among some rows.
+/// Marks each joint whose value changes among some rows.
 pub(crate) fn moving(session: &Session<'_>, rows: &[u32]) -> Vec<bool> {
     ranges(session, rows).into_iter().map(|(least, most)| most - least > LEAST_RANGE_RAD).collect()
 }

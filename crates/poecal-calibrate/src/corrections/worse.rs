@@ -1,15 +1,15 @@
-//! Whether terms are worse than geometry alone, after their fit.
+//! Comparison of terms with geometry alone, after their fit.
 
 use super::context::CorrectionContext;
 use poecal_fit::state::RowError;
 
 /// Ratio of errors above which a fit is worse on held-out rows.
 const WORSE: f64 = 1.02;
-/// Fewest held-out configurations that say so.
+/// Fewest held-out configurations that decide it.
 const FEWEST_HELD_OUT: usize = 4;
 
 impl CorrectionContext<'_> {
-    /// Whether a fit with terms explains the fitted rows no worse than geometry alone, by its errors on these.
+    /// True if a fit with terms explains the fitted rows no worse than geometry alone, by its errors on these.
     pub(crate) fn is_no_worse(&self, training: &[RowError]) -> bool {
         let rows = &self.geometry.run.fit_rows;
         let without = self.session.errors(rows, &self.geometry.estimate);
@@ -20,8 +20,8 @@ impl CorrectionContext<'_> {
         squares(training) <= squares(&without)
     }
 
-    /// Whether a fit with terms is worse than geometry alone on the rows that were held out, by its errors on these: by more than [`WORSE`],
-    /// and by more than the standard error of the mean over their configurations.
+    /// True if a fit with terms is worse than geometry alone on the held-out rows, by its errors on these: by more than [`WORSE`], and by more than
+    /// the standard error of the mean over their configurations.
     pub(crate) fn is_worse_held_out(&self, with: &[RowError]) -> bool {
         let rows = &self.geometry.run.held_out_rows;
         let configurations = self.session.data.configurations(rows);

@@ -1,5 +1,5 @@
-//! The joint that alone explains most of how the axes deviate from nominal: its zero, or the tilt or shift of its axis. Base and tool are free
-//! where they are a choice, so that no way to write the screws matters (theory.md §9, *Suspicious joints*).
+//! The joint that alone explains most of the axes' deviations from nominal: by its zero, or by the tilt or shift of its axis. Base and tool are free
+//! if they are a choice, so that the result does not depend on how the screws are written (theory.md §9, *Suspicious joints*).
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3, Vector6};
 
@@ -8,21 +8,21 @@ use poecal_fit::uncertainty::{Uncertainty, View};
 use poecal_model::robot::{Joint, JointKind};
 use poecal_numerics::linalg;
 
-/// How many times the usual deviation of an axis, and of a zero, one that is off may deviate (prior standard deviations).
+/// Largest deviation of a faulty axis, and of a faulty zero, as a multiple of the usual deviation (prior standard deviations).
 const OFF_AXIS: f64 = 5.0;
 const OFF_ZERO: f64 = 10.0;
 /// Usual deviations that are tried, from the root mean square of all downward, and the ratio of each to the next.
 const TRIED: usize = 9;
 const RATIO: f64 = 1.4;
-/// How many times the usual tilt (as an arc at the length) the usual shift is; of many axes, which take longer, 1 alone.
+/// Ratios of the usual shift to the usual tilt (as an arc at the length); for many axes, which take longer, 1 alone.
 const SHIFTS: [f64; 5] = [1.0, 0.25, 0.5, 2.0, 4.0];
-/// Prior standard deviation of that, octaves.
+/// Prior standard deviation of this ratio, octaves.
 const OCTAVES: f64 = 0.8;
 const MANY: usize = 64;
 /// Eigenvalues below this share of the largest are null.
 const NULL: f64 = 1e-10;
 
-/// What of a joint may be off.
+/// Possibly faulty part of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     Zero,
@@ -37,21 +37,21 @@ pub(crate) struct Blame {
     pub(crate) part: Part,
     /// Twice the logarithm of how much more probable the deviations are with it than without.
     pub(crate) evidence: f64,
-    /// How far the part is off, radians or metres.
+    /// Size of the fault, radians or metres.
     pub(crate) size: f64,
     /// Usual deviation of the other axes in each direction, radians.
     pub(crate) usual_rad: f64,
 }
 
-/// Deviations of all axes from nominal in directions across them (metres, angles times a length), and what moves them.
+/// Deviations of all axes from nominal in directions across them (metres, angles times a length), and the motions that change them.
 struct Axes {
     deviations: DVector<f64>,
-    /// Place and joint of the first of each joint's tilts, and of its shifts.
+    /// Index and joint of the first of each joint's tilts, and of its shifts.
     tilts: Vec<(usize, usize)>,
     shifts: Vec<(usize, usize)>,
     is_shift: Vec<bool>,
     by_base: DMatrix<f64>,
-    /// Of each joint by its zero, in metres of arc of a turning joint.
+    /// Effect of each joint's zero, in metres of arc for a turning joint.
     by_zero: DMatrix<f64>,
     covariance: DMatrix<f64>,
 }
@@ -123,8 +123,8 @@ impl Axes {
         }
     }
 
-    /// The weights of deviations with everything that moves the base projected out, and the logarithm of their density but for a constant,
-    /// times -2, if each deviates by so much as usual.
+    /// Weights of the deviations with all motions of the base projected out, and -2 times the logarithm of their density up to a constant, if each
+    /// deviates by the usual amount.
     fn weights(&self, usual_m: f64, shifts: f64) -> Option<(DMatrix<f64>, f64)> {
         let mut spread = &self.by_zero * self.by_zero.transpose();
         for (at, own) in self.is_shift.iter().enumerate() {
@@ -177,8 +177,8 @@ fn eigen(matrix: &DMatrix<f64>) -> (Vec<f64>, DMatrix<f64>) {
     linalg::symmetric_eigen(&upper, n)
 }
 
-/// Every part of every joint as the only one that is off, the most probable first. Deviations are normal: those of all axes and zeros by a usual
-/// amount, which is found from them, and by the covariance of the fit; that of the part by several times as much.
+/// Each part of each joint as the only faulty one, the most probable first. Deviations are normal: those of all axes and zeros with a usual amount,
+/// which is estimated from them, and with the covariance of the fit; that of the part with several times as much.
 pub(crate) fn blame(view: &View<'_>, uncertainty: &Uncertainty) -> Vec<Blame> {
     let axes = Axes::new(view, uncertainty);
     let length_m = view.session.length_m;

@@ -8,13 +8,13 @@ use poecal_model::measurement::Quantity;
 
 /// Contradiction between residuals and stated noise.
 pub(crate) struct NoiseDoubt {
-    /// As a sentence.
+    /// Statement as a sentence.
     pub(crate) statement: String,
-    /// Whether the ratio is so large or small that the noise must be in another unit.
+    /// True if the ratio is so large or small that the noise must be in another unit.
     pub(crate) is_absurd: bool,
 }
 
-/// Largest ratio of residuals to stated noise: robots explain that. Largest ratio of stated noise to residuals: data sheets are cautious.
+/// Largest ratio of residuals to stated noise that robots explain, and of stated noise to residuals that cautious data sheets explain.
 const MORE: f64 = 30.0;
 const LESS: f64 = 4.0;
 /// Correlation of residuals of consecutive rows above which it is reported.
@@ -40,7 +40,7 @@ fn of_part(quantity: Quantity, part: &Part) -> Option<NoiseDoubt> {
     let (what, name) = (quantity.name(), quantity.unit().symbol());
     let (variance, square) = part.stated?;
     let (stated, ratio) = (variance.sqrt(), square.sqrt());
-    // Exact data with a stated noise are a test, not a mistake; a noise of 100 m is one.
+    // Exact data with a stated noise are a test, not a mistake; a noise of 100 m is a mistake.
     if ratio * stated < ROUNDING {
         return None;
     }

@@ -1,4 +1,4 @@
-//! One zero of a joint that explains about as much as a whole calibration.
+//! Search for a single zero of a joint that explains about as much as a whole calibration.
 
 use crate::steps::calibrated::CalibratedFit;
 use poecal_fit::parameters::{Parameter, ValueTerm};
@@ -11,33 +11,32 @@ use poecal_numerics::solve::LeastSquares as _;
 
 /// Steps of the fit of one zero, which is nearly linear.
 const STEPS: usize = 5;
-/// Largest share of the squared errors of held-out rows that one zero leaves of those of the nominal robot.
+/// Largest share of the nominal robot's squared errors on held-out rows that remains with one zero.
 const LEAVES: f64 = 0.5;
-/// How many times more any other zero leaves.
+/// Factor by which the remaining error with any other zero is larger.
 const OTHERS: f64 = 1.3;
-/// Largest ratio to what the whole calibration leaves.
+/// Largest ratio to the remaining error of the whole calibration.
 const WORSE: f64 = 1.6;
 /// Most rows that are fitted, and that judge.
 const MOST: usize = 500;
 /// Fewest held-out rows that show it.
 const FEWEST: usize = 5;
 
-/// A zero with what it leaves of the squared errors of held-out rows.
+/// A zero with the remaining share of the squared errors of held-out rows.
 struct Zero {
     joint: usize,
     value: f64,
     leaves: f64,
 }
 
-/// Proposes to find the zero of one joint alone, where that predicts the held-out rows about as well as all unknowns: of few rows it is the
-/// better model.
+/// Proposes to fit the zero of one joint alone if it predicts the held-out rows about as well as all unknowns: with few rows it is the better model.
 pub(crate) fn one_zero(fit: &CalibratedFit<'_>) -> Option<String> {
     let (run, session) = (&fit.run, fit.session());
     let is_usual = run.unknowns.are_usual() && session.device_free;
     if !is_usual || run.held_out_rows.len() < FEWEST {
         return None;
     }
-    // Thousands of rows show it no better, and this is not worth their time.
+    // Thousands of rows determine it no better, and would cost time.
     let rows = sample_rows(&fit.weighted_rows(), MOST);
     let held_out = sample_rows(&run.held_out_rows, MOST);
     let registration = run.registration(session, &rows, fit.noise(), true);
@@ -68,7 +67,7 @@ pub(crate) fn one_zero(fit: &CalibratedFit<'_>) -> Option<String> {
     ))
 }
 
-/// The zero of a joint, fitted with what a registration fits.
+/// The zero of a joint, fitted together with the unknowns of a registration.
 fn zero(
     fit: &CalibratedFit<'_>,
     (session, rows, free): (&Session<'_>, &[u32], &[Parameter]),

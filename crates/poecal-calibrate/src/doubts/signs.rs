@@ -1,4 +1,4 @@
-//! What residuals show beside the fit: mistakes in the input, changes during the session, noise that does not fit.
+//! Signs in the residuals: mistakes in the input, changes during the session, noise that contradicts its statement.
 
 use super::noise_doubts::{NoiseDoubt, noise_doubts};
 use crate::doubts::doubts;
@@ -15,10 +15,10 @@ use poecal_model::measurement::Dataset;
 
 /// Distance of a target from the tip, in reaches, that no tool has.
 const FAR_TARGET: f64 = 3.0;
-/// Share of the error with the zero of distances freed below which the terms of joints explain more than it.
+/// Share of the error with freed zeros of distances below which joint terms explain more than these zeros.
 const MORE: f64 = 0.8;
 
-/// What residuals show beside the fit.
+/// Signs in the residuals.
 pub(crate) struct Signs {
     /// Mistakes found in all rows.
     pub(crate) diagnosis: Vec<Diagnosis>,
@@ -57,7 +57,7 @@ impl CalibratedFit<'_> {
             Some(apart) => self.diagnosis(&apart.data, &apart.estimate, None),
             None => self.diagnosed(summary),
         };
-        // What one more unknown explains of distances may be what joints do.
+        // Distance errors that one more unknown explains may be joint effects.
         let corrected = figures.correction.as_ref().filter(|it| it.has_terms());
         let left_mm = corrected.map_or(f64::INFINITY, |it| it.training.lead().rms);
         diagnosis.retain(|it| it.kind != DiagnosisKind::DistanceZero || left_mm > MORE * it.after_mm);
@@ -77,7 +77,7 @@ impl CalibratedFit<'_> {
         self.diagnosis(&self.run.data, &self.estimate, believed)
     }
 
-    /// Mistakes in all rows, held-out ones too: shifted rows show best in an unbroken series. After a robust fit first in the kept rows,
+    /// Mistakes in all rows, held-out ones too: shifted rows show best in an unbroken series. After a robust fit it looks first in the kept rows,
     /// since single wrong ones hide mistakes in all.
     fn diagnosis(&self, data: &Dataset, calibrated: &Estimate, believed: Option<&[u32]>) -> Vec<Diagnosis> {
         if !self.run.options.diagnose {
@@ -89,7 +89,7 @@ impl CalibratedFit<'_> {
         let Some(believed) = believed else { return in_all() };
         let mut found = diagnose(robot, data, believed, &options);
         if !found.iter().any(Diagnosis::is_of_input) {
-            // Shifted rows or exchanged names may be why the fit rejected rows.
+            // Shifted rows or exchanged names may explain the rows that the fit rejected.
             let known: Vec<DiagnosisKind> = found.iter().map(|it| it.kind).collect();
             found.extend(in_all().into_iter().filter(|it| !known.contains(&it.kind)));
         }
@@ -114,7 +114,7 @@ impl CalibratedFit<'_> {
         doubts(&self.run.data, &rows, &errors.registered, self.run.options.frame)
     }
 
-    /// Different device frames, if a fit with one has larger errors than a robot's own.
+    /// Different device frames, if a fit with one frame has larger errors than a robot's own.
     fn frames_apart(&self, accuracy: &Accuracy) -> Option<FramesApart> {
         let left_m = accuracy.training.calibrated.leading_m();
         let search = self.frame_search(left_m);
@@ -127,7 +127,7 @@ impl CalibratedFit<'_> {
         FrameSearch { session, rows: fit_rows, noise, options, left_m }
     }
 
-    /// Change point or drift of the session. Rows held out by chance belong to it as well; rows with a stated set may belong to another.
+    /// Change point or drift of the session. Rows held out by chance belong to the session as well; rows with a stated set may belong to another.
     fn moved(&self) -> Option<Moved> {
         let search = self.frame_search(f64::INFINITY);
         let is_stated = self.run.data.observations.iter().any(|row| row.set.is_some());

@@ -1,4 +1,4 @@
-//! Corrections of joints, and suspicious joints: the correction alone explains most deviations, or the residuals follow the joint's position.
+//! Corrections of joints, and suspicious joints: one whose correction alone explains most deviations, or whose position the residuals follow.
 
 use super::blame::{Blame, Part, blame};
 use poecal_fit::uncertainty::{Pattern, Uncertainty, View, strongest_pattern};
@@ -14,32 +14,32 @@ pub struct JointCorrection {
     pub tilt_rad: f64,
     /// Distance of the calibrated axis from the nominal joint's origin, metres.
     pub shift_m: f64,
-    /// Expected root mean square error of the direction, radians; `None` where it is not determined.
+    /// Expected root mean square error of the direction, radians; `None` if it is not determined.
     pub sigma_tilt_rad: Option<f64>,
-    /// Expected root mean square error of the axis' place at the joint, metres; `None` where it is not determined.
+    /// Expected root mean square error of the axis' position at the joint, metres; `None` if it is not determined.
     pub sigma_shift_m: Option<f64>,
-    /// The measurements' share in what is known of the tilt, the rest being the tolerance's: from 0 to 1 (theory.md §9 (39a)); `None` without
-    /// a tolerance.
+    /// Determined share of the tilt: the part of its information that the measurements supply, the rest being the tolerance's, from 0 to 1
+    /// (theory.md §9 (39a)); `None` without a tolerance.
     pub tilt_from_data: Option<f64>,
-    /// The same of the shift; `None` of a joint that slides.
+    /// Determined share of the shift; `None` for a joint that slides.
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, tool and device frame refitted, metres.
     pub left_nominal_rms_m: f64,
-    /// Standard deviations of tilt (radians) and shift (metres) if the axes of all other joints were known; `None` where they are not
-    /// determined even then, or the axis was held.
+    /// Standard deviations of tilt (radians) and shift (metres) if the axes of all other joints were known; `None` if they are not determined even
+    /// then, or the axis was held.
     pub held: Option<(f64, f64)>,
-    /// The correction in parts, with directions: joint offset, and what of tilt and shift offsets and base do not explain.
+    /// The correction in parts, with directions: joint offset, and the part of tilt and shift that offsets and base do not explain.
     pub change: JointChange,
-    /// Why the joint is suspicious, if it is.
+    /// Reason for suspicion of the joint, if there is one.
     pub suspicious: Option<String>,
 }
 
-/// Evidence (twice a logarithm of probabilities) from which a part of a joint is named, where the other axes are as those of usual robots, and
-/// where they are worse: of these one or another often deviates by more.
+/// Evidence (twice a logarithm of probabilities) from which a part of a joint is named: if the other axes are as accurate as those of usual robots,
+/// and if they are worse, since then one or another often deviates by more.
 const NAMED: [f64; 2] = [1.0, 12.0];
-/// Deviations of the other axes (each direction, radians) from which the one counts, and the other.
+/// Deviations of the other axes (each direction, radians) from which each of the two thresholds applies.
 const USUAL_RAD: [f64; 2] = [4e-4, 1.2e-3];
-/// Difference of evidence up to which measurements do not tell two explanations apart.
+/// Difference of evidence up to which measurements do not distinguish two explanations.
 const ALIKE: f64 = 3.0;
 /// Corrections that are of no concern: a twentieth of a degree, half a millimetre.
 const LEAST_RAD: f64 = 1e-3;
@@ -80,7 +80,7 @@ pub(crate) fn suspicions(
     words.into_iter().map(|parts| (!parts.is_empty()).then(|| parts.join("; "))).collect()
 }
 
-/// The part that is off, if one is, and one of another joint that explains the deviations about as well.
+/// The faulty part, if there is one, and a part of another joint that explains the deviations about as well.
 fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
     let counts = |it: &&Blame| {
         let Some(JointChange { kind, sigma_offset, sigma_tilt, sigma_shift, .. }) =
@@ -108,7 +108,7 @@ fn off(all: &[Blame], joints: &[JointCorrection]) -> Vec<Blame> {
     [Some(best), other].into_iter().flatten().copied().collect()
 }
 
-/// A part that is off in the words of the joint's correction.
+/// Description of a faulty part, with the joint's correction.
 fn part_words(found: &Blame, correction: &JointCorrection) -> String {
     let change = &correction.change;
     let (what, own, words) = match found.part {
@@ -116,7 +116,7 @@ fn part_words(found: &Blame, correction: &JointCorrection) -> String {
         Part::Tilt => ("axis is tilted", change.tilt.norm(), change.tilt_words()),
         Part::Shift => ("axis is shifted", change.shift.norm(), change.shift_words()),
     };
-    // Whatever offsets can explain counts as offset, of other joints too.
+    // A part that offsets can explain counts as offset, of other joints too.
     if own < 0.5 * found.size {
         return format!("its {what} by more than others are, counted as corrections of its neighbours");
     }

@@ -1,4 +1,4 @@
-//! Readings that were taken before the arm had come to rest, in every configuration alike (theory.md §9, *Events*).
+//! Readings that were taken before the arm came to rest, in every configuration alike (theory.md §9, *Events*).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,14 +7,14 @@ use super::rows::{Optimum, Rows};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{JointKind, Robot};
 
-/// Least gain of an evident one, times the variance of a number.
+/// Least gain from which the effect is evident, as a multiple of the variance of a number.
 const EVIDENT: f64 = 30.0;
-/// Least ratio of that to the gain of the motion to the configuration after, which no reading follows.
+/// Least ratio of this gain to the gain by the motion to the configuration after, which no reading follows.
 const OF_BEFORE: f64 = 4.0;
 /// Least turn of the joint that turns most from one configuration to the next, radians.
 const LEAST_TURN: f64 = 0.02;
 
-/// What the residuals have of the motion from the configuration before, a sentence; `None` where that is little, or the other way round.
+/// Statement about residuals that follow the motion from the configuration before; `None` if they hardly do, or follow the motion to the one after.
 pub(crate) fn early(
     rows: &Rows,
     optimum: &Optimum,
@@ -36,14 +36,14 @@ pub(crate) fn early(
     })
 }
 
-/// A part of the residuals.
+/// Part of the residuals that follows a motion.
 struct Part {
     /// Angle of the joint that turns most.
     angle_rad: f64,
     gain: f64,
 }
 
-/// What residuals have of the motion of the joints from the row before, or to the one after, over its largest turn.
+/// Part of the residuals that follows the joints' motion from the row before, or to the row after, relative to its largest turn.
 fn part(
     rows: &Rows,
     optimum: &Optimum,

@@ -1,4 +1,4 @@
-//! What a session's search ended with, and the sentences of it.
+//! Results of a session's search, and sentences about them.
 
 use std::collections::BTreeSet;
 
@@ -11,26 +11,26 @@ use crate::steps::calibrated::CalibratedFit;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{MEASURED, Robot};
 
-/// Share of the residuals that a step leaves above which its repair cannot gain as much.
+/// Share of the residuals that remains after a step, above which its repair cannot gain as much.
 const LITTLE: f64 = 0.8;
 /// Files and lines that a sentence lists.
 const LISTED: usize = 3;
-/// Ratio of the gain of the next best explanation to that of the best above which it is named too.
+/// Ratio of the gain of the second-best explanation to that of the best, above which both are named.
 const NEARLY: f64 = 0.9;
 
-/// What a session's search ended with.
+/// Result of a session's search.
 pub(crate) enum Happened {
     Wrong(Vec<u32>),
     Step(Step),
 }
 
 impl Happened {
-    /// Whether all rows of it are suspected as outliers anyway.
+    /// True if all its rows are suspected as outliers anyway.
     pub(crate) fn is_suspected(&self, best: &CalibratedFit<'_>) -> bool {
         matches!(self, Happened::Wrong(rows) if rows.iter().all(|row| best.robust.robustness.suspects_row(*row)))
     }
 
-    /// Whether it leaves much out of what the residuals are.
+    /// True if the event explains much of the residuals.
     pub(crate) fn matters(&self) -> bool {
         match self {
             Happened::Wrong(_) => true,
@@ -39,7 +39,7 @@ impl Happened {
     }
 }
 
-/// An event with the sentence of it where it is repaired, and where it is only suspected.
+/// An event, with its sentence if it is repaired and if it is only suspected.
 pub(crate) struct Said(Event, String);
 
 impl Said {
@@ -47,12 +47,12 @@ impl Said {
         Event { error_before_mm: Some(before), error_after_mm: Some(after), residuals, ..self.0 }
     }
 
-    /// That it is too large for a repair.
+    /// Adds the statement that the event is too large for a repair.
     pub(crate) fn beyond(self, limit: &str) -> Self {
         Said(self.0, format!("{}; it is {limit}: look for a mistake in the input, or raise it", self.1))
     }
 
-    /// The limit that it is beyond, in words; `radian_m` metres count for a radian. None of a device that stood elsewhere for another file.
+    /// The exceeded limit in words; `radian_m` metres count for a radian. `None` for a device that had another position for another file.
     pub(crate) fn exceeded(&self, limits: &RepairLimits, data: &Dataset, radian_m: f64) -> Option<String> {
         let Event { kind, size_mm, size_deg, from_row, .. } = &self.0;
         let first = u32::try_from(*from_row).ok()?.checked_sub(1)?;
@@ -69,7 +69,7 @@ impl Said {
     }
 }
 
-/// What happened, in words.
+/// Description of the event.
 pub(crate) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said {
     let step = match happened {
         Happened::Wrong(rows) => return wrong_words(data, rows),
@@ -106,7 +106,7 @@ pub(crate) fn event(happened: &Happened, data: &Dataset, robot: &Robot) -> Said 
     Said(event, format!("{is}: {remedy}"))
 }
 
-/// What a step is of, in words: what happened, and what it is taken as where it is repaired.
+/// Subject of a step in words: the event, and its interpretation in a repair.
 struct Statement {
     kind: EventKind,
     name: String,
@@ -210,7 +210,7 @@ fn wrong_words(data: &Dataset, rows: &[u32]) -> Said {
     Said(event, format!("{is}: measure {it} again, or leave {it} out"))
 }
 
-/// What else explains a step nearly as well.
+/// Another explanation of a step that is nearly as good.
 fn other_words(step: &Step, robot: &Robot, data: &Dataset) -> Option<String> {
     let (moved, less) = step.other?;
     if less > (1.0 - NEARLY) * step.gain {

@@ -1,4 +1,4 @@
-//! What may have happened during a session, as derivatives of its rows.
+//! Hypotheses about events during a session, as derivatives of its rows.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -8,7 +8,7 @@ use poecal_fit::start::device_parameter;
 use poecal_fit::state::Session;
 use poecal_model::robot::Term;
 
-/// What was moved.
+/// Moved object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Moved {
     /// The device at a station.
@@ -23,20 +23,20 @@ pub(crate) enum Moved {
     Drift(usize),
 }
 
-/// A hypothesis with the parameters that it is made of.
+/// A hypothesis with its parameters.
 pub(crate) struct Hypothesis {
     moved: Moved,
-    /// Index of each parameter, and what a step of each of the hypothesis' unknowns is of its own.
+    /// Index of each parameter, and its dependence on the unknowns of the hypothesis.
     parts: Vec<(usize, Part)>,
     unknowns: usize,
 }
 
-/// How a parameter follows.
+/// Dependence of a parameter on the unknowns.
 enum Part {
-    /// Its unknowns are those of the hypothesis.
+    /// Its unknowns are the unknowns of the hypothesis.
     Own,
-    /// A target that follows a motion of the tool: its orientation with all joints at zero, where it is from the middle, and what motions
-    /// its unknowns are.
+    /// A target that follows a motion of the tool: its orientation with all joints at zero, its offset from the middle, and the motions that are its
+    /// unknowns.
     Carried(Matrix3<f64>, Vector3<f64>, &'static [usize]),
 }
 
@@ -44,9 +44,9 @@ enum Part {
 pub(crate) struct Columns {
     pub(crate) moved: Moved,
     pub(crate) of: DMatrix<f64>,
-    /// Of each unknown, whether it is an angle.
+    /// Marks each unknown that is an angle.
     pub(crate) turns: Vec<bool>,
-    /// Whether a row says something of it.
+    /// Marks each row that depends on the unknowns.
     pub(crate) sees: Vec<bool>,
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn hypotheses(
 }
 
 impl Hypothesis {
-    /// The derivatives of rows by its unknowns.
+    /// Derivatives of rows by the unknowns of the hypothesis.
     pub(crate) fn columns(
         &self,
         jacobian: &DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! The largest sizes that a repair takes as something that happened: beyond, a mistake in the input is likelier.
+//! Largest sizes that a repair accepts as an event: beyond them a mistake in the input is likelier.
 
 use std::str::FromStr;
 
@@ -7,10 +7,11 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
-/// What a limit is of, and the unit that it has.
+/// Subject of each limit, and its unit.
 const THINGS: [(&str, Unit); 3] = [("device", Unit::Metre), ("tool", Unit::Metre), ("zero", Unit::Radian)];
 
-/// The largest sizes that are repaired. Turns of devices and targets count as arcs at a third of the robot's reach, slides as such arcs of a zero.
+/// Largest sizes of repairs. Turns of devices and targets count as arcs at a third of the robot's reach; offsets of sliding joints count as such arcs
+/// of a zero.
 ///
 /// ```
 /// use poecal_calibrate::RepairLimits;
@@ -20,11 +21,11 @@ const THINGS: [(&str, Unit); 3] = [("device", Unit::Metre), ("tool", Unit::Metre
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepairLimits {
-    /// Of a device that was moved or drifts, metres.
+    /// Largest motion of a device that was moved or drifts, metres.
     pub device_m: f64,
-    /// Of a target, a nest or the tool with all targets, metres.
+    /// Largest motion of a target, a nest or the tool with all targets, metres.
     pub tool_m: f64,
-    /// Of the zero of a joint, radians.
+    /// Largest error of the zero of a joint, radians.
     pub zero_rad: f64,
 }
 
@@ -34,7 +35,7 @@ impl Default for RepairLimits {
     }
 }
 
-/// One of them as it is typed: `device=100mm`.
+/// One limit in text form: `device=100mm`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepairLimit {
     thing: &'static str,
@@ -72,7 +73,7 @@ impl FromStr for RepairLimits {
 }
 
 impl RepairLimits {
-    /// The usual ones, with these in their place.
+    /// The default limits, with these in their place.
     #[must_use]
     pub fn with(others: &[RepairLimit]) -> Self {
         let mut limits = Self::default();
@@ -86,7 +87,7 @@ impl RepairLimits {
         limits
     }
 
-    /// The limit of a kind, in words, where a size is beyond it: metres, and radians with the metres that a radian counts.
+    /// The limit of this kind in words, if the size (metres and radians) exceeds it; `radian_m` metres count for a radian.
     pub(crate) fn exceeded(
         &self,
         kind: EventKind,

@@ -1,5 +1,5 @@
-//! What happened during a session: a device or a target that was moved, a joint's zero that slipped, configurations that are wrong as a
-//! whole; and the session as it would have been without (theory.md §9, *Events*).
+//! Events during a session: a moved device or target, a slipped zero of a joint, or configurations that are wrong as a whole. A repaired session is
+//! the session as it would have been without them (theory.md §9, *Events*).
 
 mod early;
 mod happened;

@@ -1,4 +1,4 @@
-//! The search of a session for what happened in it, and the repair of what evidently did.
+//! Search of a session for events, and repair of the evident ones.
 
 use super::happened::{Happened, event};
 use super::repaired::without;
@@ -15,26 +15,26 @@ use poecal_numerics::error::Result;
 const MOST: usize = 4;
 /// Largest share of the error before that a repair leaves.
 const BETTER: f64 = 0.8;
-/// The same of the error of the other rows, where some are left out.
+/// Largest share of the error of the other rows, if some are left out.
 const OTHERS_BETTER: f64 = 0.95;
-/// Rows of the picture of a repair.
+/// Rows of the plot of a repair.
 const DRAWN: usize = 200;
 
-/// What happened in a session.
+/// Events of a session.
 #[derive(Default)]
 pub(crate) struct Events {
-    /// What was repaired.
+    /// Repaired events.
     pub(crate) repairs: Vec<Event>,
-    /// What seems to have happened and was not.
+    /// Suspected events that were not repaired.
     pub(crate) suspicions: Vec<Event>,
-    /// That readings were early in every configuration.
+    /// Statement about readings that were early in every configuration.
     pub(crate) early: Option<String>,
-    /// Why the session is not to be used.
+    /// Reason against use of the session.
     pub(crate) against: Option<String>,
 }
 
-/// Searches a session by its corrected model, and repairs what evidently happened where the repaired session predicts rows better that are left
-/// out, and no mistake in the input explains more.
+/// Searches a session by its corrected model, and repairs evident events. A repair is kept if the repaired session predicts left-out rows better, and
+/// no mistake in the input explains more.
 pub(crate) fn repair(best: &mut Found<'_>) -> Events {
     let mut events = Events::default();
     for _ in 0..MOST {
@@ -55,7 +55,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
             events.suspicions.push(event);
             break;
         };
-        // Where the other session cannot be fitted, that is no reason to have no calibration of this one.
+        // A repaired session that cannot be fitted is no reason against a calibration of this one.
         let Ok(other) = repaired.and_then(fitted) else {
             events.suspicions.push(said.suspected(before, None));
             break;
@@ -63,7 +63,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
         let after = error_of(&other);
         let left_out = &other.fit.run.left_out;
         let is_better = match happened {
-            // Rows that are wrong have errors of their own in any case: they matter by what they do to the others.
+            // Wrong rows have errors of their own in any case: their effect on the other rows decides.
             Happened::Wrong(_) => kept_error(&other, left_out) <= OTHERS_BETTER * kept_error(best, left_out),
             Happened::Step(_) => {
                 let [before, after] = compared(best, &other);
@@ -76,7 +76,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
             }
             break;
         }
-        // What is named at the end, since it stays in the session.
+        // The mistake is named at the end, since it stays in the session.
         if explains_more(best, &other, after) {
             break;
         }
@@ -86,7 +86,7 @@ pub(crate) fn repair(best: &mut Found<'_>) -> Events {
     events
 }
 
-/// Whether a mistake in the input explains a session better than what a repair takes out of it, or stays in what is repaired.
+/// True if a mistake in the input explains a session better than the repair does, or remains in the repaired session.
 fn explains_more(session: &Found<'_>, repaired: &Found<'_>, after: f64) -> bool {
     let mistake = |found: &Found<'_>| found.fit.mistake(&found.summary);
     mistake(session).is_some_and(|it| it.after_mm <= after || mistake(repaired).is_some())
@@ -98,7 +98,7 @@ fn fitted(run: Run<'_>) -> Result<Found<'_>> {
     run.fit(start)?.correct()
 }
 
-/// What happened that is not repaired yet, and a doubt about all readings where nothing did.
+/// Next event that is not repaired yet, or else a doubt about all readings.
 fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
     let Found { fit, corrected: Some(corrected), .. } = found else { return (None, None) };
     let run = &fit.run;
@@ -111,7 +111,7 @@ fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
         return (None, None);
     };
     let is_fitted = |row: &u32| run.fit_rows.binary_search(row).is_ok();
-    // Rows that are suspected already and have no part in the fit need no other one.
+    // Rows that are suspected already and have no part in the fit need no further fit.
     let is_done = wrong.iter().all(|row| fit.robust.robustness.suspects_row(*row))
         && (!wrong.iter().any(is_fitted)
             || fit.robust.robustness.loss.is_some()
@@ -122,24 +122,24 @@ fn next(found: &Found<'_>) -> (Option<Happened>, Option<String>) {
     (step.map(Happened::Step), early)
 }
 
-/// Errors of two sessions in cross-validation by models of one kind: terms that one of them alone has are no merit of a repair.
+/// Errors of two sessions in cross-validation by models of one kind: terms that only one of them has are no merit of a repair.
 fn compared(best: &Found<'_>, other: &Found<'_>) -> [f64; 2] {
     let of = if has_terms(best) == has_terms(other) { error_of } else { of_geometry };
     [of(best), of(other)]
 }
 
-/// Whether the model of a session has terms.
+/// True if the model of a session has terms.
 fn has_terms(found: &Found<'_>) -> bool {
     found.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
 
-/// Error of geometry alone in cross-validation, millimetres or degrees; not a number without one.
+/// Error of geometry alone in cross-validation, millimetres or degrees; NaN without cross-validation.
 fn of_geometry(found: &Found<'_>) -> f64 {
     let random = found.cross_validation.as_ref().and_then(|it| it.random.rms.leading());
     random.map_or(f64::NAN, |(_, rms)| rms)
 }
 
-/// Error of the delivered model in cross-validation, millimetres or degrees; at least that of the fitted rows that are not left out.
+/// Error of the delivered model in cross-validation, millimetres or degrees; at least its error on the fitted rows that are not left out.
 fn error_of(found: &Found<'_>) -> f64 {
     let validated = found.cross_validation.as_ref();
     let corrected = found.corrected.as_ref().filter(|it| it.has_terms());
@@ -149,7 +149,7 @@ fn error_of(found: &Found<'_>) -> f64 {
     left_out.unwrap_or(0.0).max(kept_error(found, &found.fit.run.left_out))
 }
 
-/// Root mean square error of the delivered model on the fitted rows but for some, millimetres or degrees.
+/// Root mean square error of the delivered model on the fitted rows except some, millimetres or degrees.
 fn kept_error(found: &Found<'_>, left_out: &[u32]) -> f64 {
     let kept = found.fit.run.fit_rows.iter().copied().filter(|row| left_out.binary_search(row).is_err());
     let errors = errors_of(found, &kept.collect::<Vec<u32>>());
@@ -169,7 +169,7 @@ fn errors_of(found: &Found<'_>, rows: &[u32]) -> Vec<f64> {
     errors.iter().map(shown).collect()
 }
 
-/// Row numbers with the errors of two models, of some rows.
+/// Numbers of some rows with the errors of two models.
 fn picture(before: &Found<'_>, after: &Found<'_>) -> Vec<[f64; 3]> {
     let rows: Vec<u32> = after.fit.run.data.all_rows();
     let step = rows.len().div_ceil(DRAWN).max(1);

@@ -1,5 +1,5 @@
-//! A session as it would have been without what happened: rows left out, another device frame, another target, readings of before as those
-//! of after.
+//! A session as it would have been without an event: rows left out, another device frame, another target, or earlier readings converted to those
+//! after the event.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Body, MEASURED, Robot};
 use poecal_numerics::error::Result;
 
-/// The session without what happened; `None` where that is not possible.
+/// The session without the event; `None` if that is not possible.
 pub(crate) fn without<'a>(run: &Run<'a>, happened: &Happened) -> Option<Result<Run<'a>>> {
     let Run { robot, options, .. } = run;
     let mut left_out = run.left_out.clone();
@@ -43,7 +43,7 @@ pub(crate) fn without<'a>(run: &Run<'a>, happened: &Happened) -> Option<Result<R
     Some(Run::new(robot, Cow::Owned(data), options, left_out))
 }
 
-/// Gives a device another name from a row on; `None` where its frame is known, or is not all that is unknown of it.
+/// Renames a device from a row on; `None` if its frame is known, or is not its only unknown.
 fn move_device(
     data: &mut Dataset,
     station: usize,
@@ -71,8 +71,8 @@ fn move_device(
     Some(())
 }
 
-/// The robot is what it is now: readings of before the zero of a joint slipped are as those of after would have been. `None` where that zero is
-/// not all that its readings make.
+/// Converts the readings before a joint's zero slipped to those after it: the robot is calibrated in its present state. `None` if the zero does not
+/// explain its readings alone.
 fn shift_readings(data: &mut Dataset, step: &Step, joint: usize, robot: &Robot) -> Option<()> {
     let own = &robot.joints.get(joint)?.reading;
     let at = data.reading_names().iter().position(|it| *it == own.name)?;
@@ -90,13 +90,13 @@ fn shift_readings(data: &mut Dataset, step: &Step, joint: usize, robot: &Robot) 
     Some(())
 }
 
-/// Whether all rows of a station measured places.
+/// True if all rows of a station measured positions.
 fn sees_places(data: &Dataset, station: usize) -> bool {
     let mut own = data.observations.iter().filter(|row| row.station == station);
     own.all(|row| row.measurement.is_place())
 }
 
-/// Gives targets another name from a row on; `None` where they are of the model.
+/// Renames targets from a row on; `None` if they belong to the model.
 fn move_targets(
     data: &mut Dataset,
     targets: &[usize],
@@ -125,7 +125,7 @@ fn move_targets(
     Some(())
 }
 
-/// Takes a drift of a device out of its measurements.
+/// Removes a device's drift from its measurements.
 fn still(data: &mut Dataset, step: &Step, station: usize) -> Option<()> {
     let [x, y, z, rx, ry, rz] = *<&[f64; 6]>::try_from(step.size.as_slice()).ok()?;
     if !sees_places(data, station) {

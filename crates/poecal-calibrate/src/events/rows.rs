@@ -1,4 +1,4 @@
-//! All rows of a session as linear functions of what a corrected model has, about its optimum.
+//! All rows of a session as linear functions of the unknowns of a corrected model, about its optimum.
 
 use std::ops::Range;
 
@@ -16,29 +16,29 @@ use poecal_model::robot::Sizes;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// Most measured numbers: with fewer an event still shows, and its place is known to a few rows.
+/// Most measured numbers: with fewer an event still shows, and its position is determined to a few rows.
 const MOST_NUMBERS: usize = 6000;
 /// Largest difference of readings within one run of rows, radians or metres.
 const SAME: f64 = 1e-3;
-/// Least share of the numbers that counts as left beyond what is fitted.
+/// Least share of the numbers that counts as redundant.
 const LEAST_FREEDOM: f64 = 0.2;
-/// Information that is added to each unknown, as a share of the largest.
+/// Information added to each unknown, as a share of the largest.
 const RIDGE: f64 = 1e-12;
 
 /// Rows of a session about the optimum of a corrected model.
 pub(crate) struct Rows {
     pub(crate) rows: Vec<u32>,
-    /// Where the numbers of each row begin.
+    /// Start index of each row's numbers.
     pub(crate) starts: Vec<usize>,
     /// Consecutive rows of one configuration, as indices of `rows`.
     pub(crate) runs: Vec<Range<usize>>,
-    /// Whitened derivatives by all that is fitted.
+    /// Whitened derivatives by all fitted unknowns.
     fitted: DMatrix<f64>,
     /// Whitened residuals at the estimate.
     residual: DVector<f64>,
-    /// Information and pull of the priors.
+    /// Information and gradient of the priors.
     prior: (DMatrix<f64>, DVector<f64>),
-    /// What may have happened, with the derivatives by it.
+    /// Hypotheses, with their derivatives.
     pub(crate) columns: Vec<Columns>,
 }
 
@@ -46,15 +46,15 @@ pub(crate) struct Rows {
 pub(crate) struct Optimum {
     /// Residuals.
     pub(crate) residual: DVector<f64>,
-    /// Derivatives in units in which the covariance of what is fitted is 1.
+    /// Derivatives in units in which the covariance of the fitted unknowns is 1.
     pub(crate) whitened: DMatrix<f64>,
-    /// Variance of a number, and how many numbers there are beyond what they determine.
+    /// Variance of a number, and the redundancy of the numbers.
     pub(crate) variance: f64,
     pub(crate) freedom: f64,
 }
 
 impl Rows {
-    /// The rows of a session with its corrected model; `None` if that determines nothing.
+    /// The rows of a session with its corrected model; `None` if this determines nothing.
     pub(crate) fn new(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]) -> Option<Self> {
         let (session, options) = (fit.session(), &fit.run.options);
         let data = session.data;
@@ -121,13 +121,13 @@ impl Rows {
         (variance > 0.0).then_some(Optimum { residual, whitened, variance, freedom })
     }
 
-    /// How much the numbers of a run share along a step: the variance of its size by runs, over that by numbers; at least 1.
+    /// Correlation of the numbers of a run along a step: the variance of its size by runs, over that by numbers; at least 1.
     pub(crate) fn shared(&self, optimum: &Optimum, weights: &[f64], moved: &DVector<f64>) -> f64 {
         let mut weighted = moved.clone();
         for (run, weight) in self.runs.iter().zip(weights) {
             self.numbers(run).for_each(|at| weighted[at] *= *weight);
         }
-        // What is left of the step beside all that is fitted, and of the residuals beside the step.
+        // Part of the step that the fitted unknowns do not explain, and part of the residuals that the step does not explain.
         let left = moved - &optimum.whitened * optimum.whitened.tr_mul(&weighted);
         let residual = &optimum.residual - &left;
         let (mut scatter, mut information) = (0.0, 0.0);

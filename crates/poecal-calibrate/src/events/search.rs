@@ -14,45 +14,45 @@ use poecal_numerics::linalg;
 /// Fewest runs of a search, and on each side of a step.
 const FEWEST: usize = 12;
 const FEWEST_BESIDE: usize = 3;
-/// Numbers beyond the unknowns that a search needs.
+/// Redundant numbers that a search needs.
 const FREEDOM: f64 = 12.0;
-/// How far a step may be at all, metres and radians: one standard deviation.
+/// Prior standard deviation of a step, metres and radians.
 const FAR_M: f64 = 0.3;
 const FAR_RAD: f64 = 0.3;
-/// Least gain of an evident step, times the variance of a number: clean sessions have up to 40.
+/// Least gain of an evident step, as a multiple of the variance of a number: clean sessions have up to 40.
 const EVIDENT: f64 = 60.0;
-/// Least ratio of that to the gain of any step along the order of a joint's values: what the model lacks makes such steps.
+/// Least ratio of this gain to the gain of any step along the order of a joint's values: deficiencies of the model cause such steps.
 const OF_TIME: f64 = 2.0;
-/// Fewest consecutive runs that may be wrong because of a step.
+/// Fewest consecutive runs that a step may have made appear wrong.
 const BLOCK: usize = 3;
 
 /// A step.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
     pub(crate) moved: Moved,
-    /// First row after it; of a drift the first of all.
+    /// First row after the step; for a drift the first row of all.
     pub(crate) first: u32,
-    /// Its unknowns, metres and radians, and which of them are angles.
+    /// Its unknowns, metres and radians, and marks of those that are angles.
     pub(crate) size: Vec<f64>,
     pub(crate) turns: Vec<bool>,
-    /// How many variances of a number it explains, in units of how much the numbers of a configuration share.
+    /// Explained squares over the variance of a number, in units of the correlation of the numbers of a configuration.
     pub(crate) gain: f64,
-    /// Share of the residuals (RMS) that it leaves.
+    /// Remaining share of the residuals (RMS).
     pub(crate) leaves: f64,
-    /// Its gain less what its unknowns explain of any rows: hypotheses compare by it.
+    /// Gain less the gain that its unknowns have on any rows: hypotheses are compared by it.
     score: f64,
-    /// The same of the next best hypothesis of another kind at most, and which it is.
+    /// Subject and relative gain of the second-best hypothesis of another kind.
     pub(crate) other: Option<(Moved, f64)>,
 }
 
-/// What was found.
+/// Findings of a search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shown {
-    /// Rows of configurations that are wrong.
+    /// Rows of wrong configurations.
     pub(crate) wrong: Vec<u32>,
     /// An evident step.
     pub(crate) step: Option<Step>,
-    /// That readings were early in every configuration, where nothing else was found.
+    /// Statement about readings that were early in every configuration, if nothing else was found.
     pub(crate) early: Option<String>,
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]
         return None;
     }
     let is_wrong: Vec<bool> = weights.iter().map(|weight| *weight == 0.0).collect();
-    // Several in a row may be right, and something before or after them moved.
+    // Several in a row may be right, and an object before or after them moved.
     let single: Vec<f64> = isolated(&is_wrong).into_iter().map(|it| f64::from(u8::from(!it))).collect();
     let optimum = if single == weights { optimum } else { rows.optimum(&single)? };
     let step = evident(&rows, &optimum, &single, data);
@@ -82,7 +82,7 @@ pub(crate) fn search(fit: &CalibratedFit<'_>, found: &CorrectedFit, rows: &[u32]
     Some(Shown { wrong, step, early })
 }
 
-/// Those that are wrong without being one of several in a row.
+/// Wrong runs that are not part of a series of wrong runs.
 fn isolated(wrong: &[bool]) -> Vec<bool> {
     let mut found = wrong.to_vec();
     let mut at = 0;
@@ -109,7 +109,7 @@ fn evident(rows: &Rows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> O
     if step.gain < EVIDENT {
         return None;
     }
-    // What the model lacks looks like a step in the order of some joint's values too.
+    // Deficiencies of the model look like a step in the order of some joint's values too.
     let reading = |at: usize, joint: usize| data.readings(rows.rows[rows.runs[at].start] as usize)[joint];
     let of_joint = |joint: usize| {
         let mut order = time.clone();
@@ -125,7 +125,7 @@ fn evident(rows: &Rows, optimum: &Optimum, weights: &[f64], data: &Dataset) -> O
     Some(Step { other, ..step.clone() })
 }
 
-/// The runs that see a hypothesis, in an order, with how much of its step each has: of a drift its place, from -1/2 to 1/2.
+/// The runs that see a hypothesis, in an order, with their shares of its step; for a drift the position in time, from -1/2 to 1/2.
 fn shares(rows: &Rows, weights: &[f64], columns: &Columns, order: &[usize]) -> Vec<(usize, f64)> {
     let sees = |at: usize| weights[at] > 0.0 && rows.runs[at].clone().any(|row| columns.sees[row]);
     let seen: Vec<usize> = order.iter().copied().filter(|&at| sees(at)).collect();
@@ -135,7 +135,7 @@ fn shares(rows: &Rows, weights: &[f64], columns: &Columns, order: &[usize]) -> V
     seen.into_iter().enumerate().map(|(place, at)| (at, share(place))).collect()
 }
 
-/// The step along an order of the runs that explains most; of a drift, the drift.
+/// The step along an order of the runs that explains most; for a drift, the drift.
 fn strongest(
     rows: &Rows,
     optimum: &Optimum,

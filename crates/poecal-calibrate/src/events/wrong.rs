@@ -1,4 +1,4 @@
-//! Configurations that are wrong as a whole: read before the arm had settled, paired with another row.
+//! Configurations that are wrong as a whole: read before the arm settled, or paired with another row.
 
 use std::ops::Range;
 
@@ -8,19 +8,19 @@ use super::rows::{Optimum, Rows};
 use poecal_numerics::distributions::median;
 use poecal_numerics::linalg;
 
-/// Errors beyond so many times their median are wrong; a configuration of several rows if most of them are beyond half of that. Of fewer numbers
-/// than a pose has, twice as many times: single ones are far off more often, and are judged as rows too.
+/// Factor on the median beyond which errors are wrong; a configuration of several rows is wrong if most of them exceed half of that. With fewer
+/// numbers than a pose has, the factor is doubled: single large errors are more common, and are judged as rows too.
 const WRONG: f64 = 5.0;
 const FEW_NUMBERS: usize = 6;
-/// Share of that bound below which all errors are where nothing is wrong.
+/// Share of that bound below which all errors stay if nothing is wrong.
 const NEAR: f64 = 0.6;
-/// Rounds of weighing configurations, and how many of them only draw the weights down.
+/// Rounds of weighting configurations, and the number of them that only reduce weights gradually.
 const ROUNDS: usize = 12;
 const GENTLE: usize = 4;
 /// Largest share of the configurations that may be wrong.
 const MOST: f64 = 0.2;
 
-/// Weights of the runs without those that are wrong, and the optimum with them. None is left out where too many would be.
+/// Weights of the runs without the wrong ones, and the optimum with them. None is left out if too many would be.
 pub(crate) fn without_wrong(rows: &Rows) -> Option<(Vec<f64>, Optimum)> {
     let all = vec![1.0; rows.runs.len()];
     let whole = rows.optimum(&all)?;
@@ -32,7 +32,7 @@ pub(crate) fn without_wrong(rows: &Rows) -> Option<(Vec<f64>, Optimum)> {
             |run: &Range<usize>| if rows.numbers(run).len() < FEW_NUMBERS { 2.0 * WRONG } else { WRONG };
         let ratios: Vec<f64> =
             sizes.iter().zip(&rows.runs).map(|(size, run)| size / usual / bound(run)).collect();
-        // Where nothing comes near the bound, nothing is wrong.
+        // If no error comes near the bound, nothing is wrong.
         if round == 0 && ratios.iter().all(|ratio| *ratio < NEAR) {
             return Some((all, whole));
         }
@@ -73,7 +73,7 @@ fn lengths(rows: &Rows, optimum: &Optimum) -> Vec<f64> {
     (0..rows.rows.len()).map(of).collect()
 }
 
-/// Root mean square of each run's residuals by the fit of the others, in units of what that lets expect.
+/// Root mean square of each run's residuals by the fit of the others, relative to its expectation.
 fn sizes(rows: &Rows, optimum: &Optimum, weights: &[f64]) -> Vec<f64> {
     let each = rows.runs.iter().zip(weights).map(|(run, weight)| {
         let numbers = rows.numbers(run);
@@ -81,7 +81,7 @@ fn sizes(rows: &Rows, optimum: &Optimum, weights: &[f64]) -> Vec<f64> {
         let own = optimum.residual.rows(numbers.start, n).into_owned();
         let whitened = optimum.whitened.rows(numbers.start, n);
         let fitted = whitened * whitened.transpose();
-        // Of a run that was fitted, what is left of its variance; of another, what the fit adds.
+        // Variance of a fitted run, reduced by the fit; for another run, increased by the uncertainty of the fit.
         let expected = if *weight > 0.0 {
             DMatrix::identity(n, n) - fitted * *weight
         } else {

@@ -1,4 +1,4 @@
-//! Device frames that differ so much that no single model describes the rows: of files measured from different stations and fitted as from
+//! Device frames so different that no single model describes the rows: frames of files that were measured from different stations and fitted as from
 //! one, and of two parts of a session.
 
 use super::super::{CalibrationOptions, delivered, fit_screws};
@@ -10,7 +10,7 @@ use poecal_model::measurement::{Dataset, Noise};
 /// Most files whose frames are compared, and fewest rows of each.
 const MOST_FILES: usize = 20;
 const FEWEST_ROWS: usize = 4;
-/// Fewest rows of a session in two parts; the first and the last of so many parts are assumed to have one frame each.
+/// Fewest rows of a session in two parts, and the number of its parts: the first and the last are assumed to have one frame each.
 const FEWEST_TO_PART: usize = 32;
 const PARTS: usize = 4;
 /// Least ratio by which a fit with separate frames must reduce the error.
@@ -27,7 +27,7 @@ pub(crate) struct FramesApart {
 }
 
 impl FramesApart {
-    /// As a warning.
+    /// The result as a warning.
     pub(crate) fn moved(&self) -> Moved {
         Moved { statement: self.statement.clone(), is_grave: true, kind: ChangeKind::Frames }
     }
@@ -41,7 +41,7 @@ pub(crate) struct FrameSearch<'a> {
     pub(crate) rows: &'a [u32],
     pub(crate) noise: Noise,
     pub(crate) options: &'a CalibrationOptions,
-    /// Its root mean square position error, metres.
+    /// Root mean square position error of the fit, metres.
     pub(crate) left_m: f64,
 }
 

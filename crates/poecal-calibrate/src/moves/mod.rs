@@ -12,16 +12,16 @@ use poecal_fit::state::{Chain, Estimate, Linkage, Packed, Session, sample_rows};
 use poecal_model::measurement::Quantity;
 use series::{Series, SeriesChange};
 
-/// Most rows of the search: with fewer a change still shows, and its place is known to a few rows.
+/// Most rows of the search: with fewer a change still shows, and its position is determined to a few rows.
 const MOST_ROWS: usize = 20_000;
 /// Least share of the suspected rows that a change explains if it is their cause.
 const EXPLAINED: f64 = 0.8;
 
 /// A change point, drift, or difference of device frames.
 pub(crate) struct Moved {
-    /// What moved, from which row on, how far, and what to do.
+    /// Moved object, first row, distance, and advice.
     pub(crate) statement: String,
-    /// Whether the result must not be used.
+    /// True if the result must not be used.
     pub(crate) is_grave: bool,
     kind: ChangeKind,
 }
@@ -37,12 +37,12 @@ enum ChangeKind {
 }
 
 impl Moved {
-    /// Whether device frames differ so much that no single model describes the rows.
+    /// True if device frames differ so much that no single model describes the rows.
     pub(crate) fn is_of_frames(&self) -> bool {
         matches!(self.kind, ChangeKind::Frames)
     }
 
-    /// Whether the suspected rows are those on one side of the change.
+    /// True if the suspected rows are those on one side of the change.
     pub(crate) fn explains(&self, robustness: &Robustness) -> bool {
         match &self.kind {
             ChangeKind::Frames => true,
@@ -68,7 +68,7 @@ pub(crate) struct ChangeSearch<'a> {
     pub(crate) again: Option<&'a FrameSearch<'a>>,
 }
 
-/// MovedObject of a series of errors.
+/// Moved object of a series of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum MovedObject {
     /// The device at one station.
@@ -110,12 +110,12 @@ fn of_device(search: &ChangeSearch<'_>, rows: &[u32], errors: &[RowError], stati
     Series { rows, values, configurations }
 }
 
-/// Whether an error has a direction in space.
+/// True if an error has a direction in space.
 fn is_position(error: &RowError) -> bool {
     error.leading() == Some(Quantity::Position)
 }
 
-/// Functions of the joint values, so that errors of the robot are not taken for a drift.
+/// Functions of the joint values, which keep errors of the robot apart from a drift.
 fn shapes(packed: &Packed, row: usize) -> Vec<f64> {
     let values = packed.joint_values(row).iter().zip(packed.row(row)).zip(packed.turns());
     let mut shapes = vec![1.0];
@@ -180,7 +180,7 @@ impl ChangeSearch<'_> {
         Moved { statement, is_grave: true, kind: ChangeKind::Step([before.to_vec(), after.to_vec()]) }
     }
 
-    /// Description of a moved device; at the first row of a file, of files without a common device frame.
+    /// Description of a moved device; at the first row of a file, a description of files without a common device frame.
     fn device_words(&self, rows: &[u32], at: usize, far_mm: f64, place: &str) -> String {
         let data = self.session.data;
         let file = |index: usize| {

@@ -12,17 +12,17 @@ const LEAST_ROWS: usize = 4;
 /// Least step over the residual standard deviation of a component, and least explained squares over its variance.
 const STEP_SIGMAS: f64 = 3.0;
 const STEP_CHANCE: f64 = 40.0;
-/// The same of a drift, which has no free place.
+/// The same for a drift, which has no free position.
 const DRIFT_SIGMAS: f64 = 1.5;
 const DRIFT_CHANCE: f64 = 25.0;
 /// Changes below this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
-/// Errors are limited to so many times their median while the place of a step is searched for.
+/// Errors are limited to this multiple of their median during the search for a step.
 const FAR: f64 = 20.0;
-/// Errors beyond so many times the median beside a step are excluded, up to a share of the rows.
+/// Errors beyond this multiple of the median beside a step are excluded, up to a share of the rows.
 const WRONG: f64 = 8.0;
 const MOST_WRONG: f64 = 0.15;
-/// Rows for each function of the configuration that a drift is separated from.
+/// Rows for each function of the configuration that is separated from a drift.
 const ROWS_PER_SHAPE: usize = 2;
 
 /// Errors in the order of time.
@@ -31,7 +31,7 @@ pub(crate) struct Series {
     pub(crate) rows: Vec<u32>,
     /// Errors, metres, in axes in which a move shifts them alike.
     pub(crate) values: Vec<Vector3<f64>>,
-    /// Functions of each row's configuration that may vary with time; empty where no drift is searched for.
+    /// Functions of each row's configuration that may vary with time; empty if no drift is searched for.
     pub(crate) configurations: Vec<Vec<f64>>,
 }
 
@@ -40,15 +40,15 @@ pub(crate) struct Series {
 pub(crate) struct SeriesChange {
     /// First row after the step, as an index into the series; `None` for a drift.
     pub(crate) at: Option<usize>,
-    /// Distance, metres; of a drift from the first row to the last.
+    /// Distance, metres; for a drift from the first row to the last.
     pub(crate) distance_m: f64,
-    /// Sum of squares that it explains, square metres.
+    /// Explained sum of squares, square metres.
     pub(crate) explained: f64,
     /// Remaining root mean square error, metres.
     pub(crate) left_m: f64,
 }
 
-/// A model of the series, and the squares that it explains.
+/// A model of the series, and its explained squares.
 struct Explained {
     at: usize,
     change: Vector3<f64>,
@@ -161,7 +161,7 @@ fn steady(values: &[Vector3<f64>]) -> Explained {
     Explained { at: 0, change, explained: change.norm_squared() * squares }
 }
 
-/// The step that explains most, of all places with enough rows on both sides.
+/// The step that explains most, among all positions with enough rows on both sides.
 fn strongest_step(values: &[Vector3<f64>]) -> Option<Explained> {
     let count = values.len();
     let total: Vector3<f64> = values.iter().sum();

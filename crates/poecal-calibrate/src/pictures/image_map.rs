@@ -1,4 +1,4 @@
-//! What a calibration says and leaves over the image of each camera (theory.md §4, *Pictures*).
+//! Prediction and remaining error over the image of each camera (theory.md §4, *Pictures*).
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -12,11 +12,11 @@ use crate::steps::figures::Figures;
 use poecal_fit::state::RowError;
 use poecal_model::camera::Camera;
 
-/// Cells along the longer side of an image, and what their side is a multiple of, pixels.
+/// Cells along the longer side of an image, and the unit of the length of a cell's side, pixels.
 const ALONG: f64 = 12.0;
 const ROUND_PX: f64 = 10.0;
 
-/// Errors of corners over the image of a camera, and how well the calibration predicts pixels there.
+/// Errors of corners over the image of a camera, and the uncertainty of predicted pixels there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "ImageEntry")]
 pub struct ImageMap {
@@ -38,13 +38,13 @@ pub struct ImageCell {
     pub at: [usize; 2],
     /// Number of corners.
     pub corners: usize,
-    /// Their root mean square distance from where the registered model sees them, pixels; null without any.
+    /// Their root mean square distance from their pixels by the registered model; null without corners.
     pub before_px: Option<f64>,
-    /// The same of the model that is delivered.
+    /// The same by the delivered model.
     pub after_px: Option<f64>,
     /// Mean of measured minus predicted pixel by that model, along u and v.
     pub mean_px: Option<[f64; 2]>,
-    /// Root mean square distance by which a point before the middle of the cell is predicted off, by the covariance of robot, camera and board;
+    /// Root mean square uncertainty of the predicted pixel of a point before the middle of the cell, by the covariance of robot, camera and board;
     /// null beyond the lens.
     pub predicted_px: Option<f64>,
 }

@@ -1,8 +1,7 @@
-//! Pictures as a fit sees them: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §4,
-//! *Pictures*).
+//! Pictures in a fit: the common error of their corners, and the pose of each that is nearest to its prediction (theory.md §4, *Pictures*).
 //!
-//! A picture is one row, so that fits, bounds and judgements count pictures. The common error is found in turn with the fit; `poecal-fit`'s
-//! `start/pictures.rs` finds which end of the robot a camera is on, and which of two poses of a flat board the others agree with, and its
+//! A picture is one row, so that fits, bounds and judgements count pictures. The common error is estimated in turn with the fit. `poecal-fit`'s
+//! `start/pictures.rs` determines the end of the robot that carries a camera, and the one of two poses of a flat board that the others support; its
 //! `problem/bundle.rs` fits all corners at once.
 
 pub(crate) mod image_map;
@@ -22,23 +21,23 @@ use poecal_fit::start::predicted_pose;
 use poecal_model::camera::{Centre, CommonError, Sighting, View};
 use poecal_model::measurement::{Dataset, Noise, SightingAbout, deviation};
 
-/// Most fits with the noise of pictures found anew.
+/// Most fits with the noise of pictures re-estimated.
 pub(crate) const ROUNDS: usize = 8;
 /// Change of a standard deviation that is worth another fit.
 const CHANGE: f64 = 0.05;
 /// Turn of a pose from its prediction beyond which a flat board is seen as tilted the other way, rad.
 const FLIPPED_RAD: f64 = 0.2;
-/// Times the noise of its best pose up to which a pose near the prediction is taken instead.
+/// Ratio to the noise of its best pose up to which a pose near the prediction is preferred.
 const AS_GOOD: f64 = 3.0;
 
-/// Most times its step that a round goes.
+/// Largest extension of a round, as a multiple of its step.
 const FASTEST: f64 = 4.0;
 
-/// How fast the rounds approach the common error that they agree with: each alone goes a share of the way, the smaller the less its pictures say of
-/// it.
+/// Convergence of the rounds to the common error that they agree with: each round alone goes a share of the distance, a smaller one the less its
+/// pictures determine it.
 #[derive(Default)]
 pub(crate) struct Pace {
-    /// Where the last round began, as logarithms of shift and turn, and its step.
+    /// Start of the last round, as logarithms of shift and turn, and its step.
     last: Option<([f64; 2], [f64; 2])>,
 }
 
@@ -61,12 +60,12 @@ impl Pace {
     }
 }
 
-/// A sighting, and how far its row is off the prediction.
+/// A sighting, and the deviation of its row from the prediction.
 type Seen = (Sighting, Vector6<f64>);
 
 impl Run<'_> {
-    /// The data with the noise of pictures as the residuals of a fit show it, and with each picture at the pose that is nearest to its
-    /// prediction. `None` if that changes nothing.
+    /// The data with the noise of pictures as estimated from the residuals of a fit, and with each picture at the pose nearest to its prediction.
+    /// `None` if that changes nothing.
     pub(crate) fn renewed_pictures(
         &self,
         ratios: &[Noise],
@@ -86,7 +85,7 @@ impl Run<'_> {
         let rows: Vec<u32> = pictures.all.iter().map(|it| it.row).collect();
         let errors = session.errors(&rows, estimate);
         let mut has_moved = next.is_some();
-        // Sightings with how far each is off its prediction, as motions of its row.
+        // Sightings with their deviations from prediction, as motions of their rows.
         let mut found: Vec<Seen> = Vec::with_capacity(rows.len());
         for (picture, error) in pictures.all.iter().zip(&errors) {
             let measured = self.data.observations[picture.row as usize].measurement.pose();
@@ -125,8 +124,8 @@ impl Run<'_> {
         Some(data)
     }
 
-    /// The likeliest common error of the corners of a picture, about the board or about the camera: deviations from predictions are smaller than
-    /// from the truth by what the predictions are off themselves.
+    /// Likeliest common error of the corners of a picture, about the board or about the camera. Deviations from predictions are smaller than those
+    /// from the truth, by the error of the predictions themselves.
     fn common_error(
         &self,
         (fit, numbers): (&RobustFit, f64),
@@ -151,12 +150,12 @@ impl Run<'_> {
             CommonError { about, ..pictures.common }.likeliest(&seen(about), numbers, length_m)
         };
         let (board, camera) = (likeliest(Centre::Board), likeliest(Centre::Camera));
-        // What is known of the centre stays known unless the other is better.
+        // The known centre is kept unless the other is better.
         let margin = if pictures.common.about == Centre::Board { 2.0 } else { -2.0 };
         if camera.1 + margin < board.1 { camera.0 } else { board.0 }
     }
 
-    /// Covariance of the predicted pose of each picture by the unknowns of a fit, as motions of its row; none of those that are not fitted.
+    /// Covariance of the predicted pose of each picture by the unknowns of a fit, as motions of its row; empty for pictures that are not fitted.
     fn spreads_of_pictures(&self, information: Option<&FitInformation<'_>>) -> Vec<Matrix6<f64>> {
         let pictures = &self.data.pictures.all;
         let mut spreads = vec![Matrix6::zeros(); pictures.len()];
@@ -169,7 +168,7 @@ impl Run<'_> {
     }
 }
 
-/// The sighting of a picture that is nearest to its prediction and nearly as good as the one it has; else that one.
+/// The sighting of a picture nearest to its prediction, if it is nearly as good as the kept one; else the kept one.
 fn nearest_sighting(view: &View<'_>, kept: Sighting, expected: &Pose) -> Sighting {
     let is_near = |it: &Sighting| expected.apart(&it.camera_from_board).1 <= FLIPPED_RAD;
     // To first order at the prediction, where the rounds end at the fit of the pixels; far from it at the nearest best pose.
@@ -195,7 +194,7 @@ mod tests {
         let ahead = pace.ahead(at(-4.0), at(-4.5));
         println!("steps of 1 and 1/2 end at {:.6}", ahead.shift_m.ln());
         assert!((ahead.shift_m.ln() + 5.0).abs() < 1e-12 && (ahead.turn_rad.ln() + 5.0).abs() < 1e-12);
-        // Steps that turn back go their own way.
+        // Steps that turn back are not extended.
         assert!((pace.ahead(at(-5.0), at(-4.75)).shift_m.ln() + 4.75).abs() < 1e-12);
         // Another centre is another error.
         let other = CommonError { about: Centre::Camera, ..at(-4.9) };

@@ -1,4 +1,4 @@
-//! Lenses, boards and markers that are unknown beside the robot (theory.md §4, *Pictures* (17d)).
+//! Lenses, boards and markers that are fitted together with the robot (theory.md §4, *Pictures* (17d)).
 
 use nalgebra::{DMatrix, DVector, Matrix2xX};
 
@@ -20,7 +20,7 @@ use poecal_numerics::solve::Normal;
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 3.0;
 
-/// Unknown numbers of cameras and boards in a fit, and how far they are from what was given.
+/// Unknown numbers of cameras and boards in a fit, and their distances from the stated values.
 #[derive(Clone)]
 pub(crate) struct Optics {
     unknowns: PictureUnknowns,
@@ -28,15 +28,15 @@ pub(crate) struct Optics {
     deviations: Vec<f64>,
 }
 
-/// Information of the numbers beside the robot's unknowns: with those, alone with its prior, and its pull.
+/// Information of the numbers: coupled with the robot's unknowns, alone with its prior, and its gradient.
 struct Coupling {
     mixed: DMatrix<f64>,
     gram: DMatrix<f64>,
     pull: DVector<f64>,
 }
 
-/// A step of the numbers with what it explains, in squared standard deviations, their covariance, and the step of the robot's unknowns without it
-/// and by it.
+/// A step of the numbers with its explained squares (in squared standard deviations), their covariance, and the step of the robot's unknowns without
+/// it and by it.
 pub(crate) struct BestStep {
     pub(crate) step: DVector<f64>,
     gain: f64,
@@ -53,21 +53,21 @@ impl BestStep {
 }
 
 impl Optics {
-    /// Of the unknowns of a session with pictures, as they are given there.
+    /// Optics of a session with pictures, from the stated values.
     pub(crate) fn from_run(run: &Run<'_>) -> Option<Self> {
         let pictures = &run.data.pictures;
         let has_any = !pictures.is_empty() && !run.unknowns.pictures.is_empty();
         has_any.then(|| Optics::from_here(pictures, &run.unknowns.pictures))
     }
 
-    /// Of these unknowns, from cameras and boards as they are.
+    /// Optics of these unknowns, from the present cameras and boards.
     pub(crate) fn from_here(pictures: &Pictures, unknowns: &[PictureUnknown]) -> Self {
         let unknowns = PictureUnknowns::new(&pictures.cameras, &pictures.boards, unknowns);
         let count = unknowns.count();
         Optics { unknowns, step: DVector::zeros(count), deviations: vec![1.0; count] }
     }
 
-    /// The numbers as they were found.
+    /// The fitted numbers.
     pub(crate) fn numbers(&self) -> Vec<PictureNumber> {
         self.unknowns.numbers(&self.step, &self.deviations)
     }
@@ -82,7 +82,7 @@ impl Optics {
         self.unknowns.numbers(&best.step, &best.deviations())
     }
 
-    /// How many numbers the pictures determine rather than the prior.
+    /// Effective number of numbers that the pictures determine rather than the prior.
     pub(crate) fn determined(&self) -> f64 {
         self.deviations.iter().map(|it| 1.0 - it * it).sum::<f64>().max(0.0)
     }
@@ -105,7 +105,8 @@ impl Optics {
             if view.is_odd(&picture.directed(&measured)) {
                 continue;
             }
-            // At the prediction: there a robot of another size and a board of another size are one direction, to the last digit.
+            // The information is evaluated at the prediction: there the size of the robot and the size of the board are one direction, to the last
+            // digit.
             let pose = picture.directed(&predicted_pose(&measured, error));
             let information = view.information(&pose);
             let of = (picture.camera, picture.board);
@@ -113,7 +114,7 @@ impl Optics {
             if picture.of_camera {
                 follow = motion_by_inverse(&pose.inverse()) * follow;
             }
-            // The measured pose moves with the numbers: residuals fall by the opposite.
+            // The measured pose moves with the numbers, so the residuals decrease by this motion.
             let weight = problem.weight(*row).sqrt();
             by_numbers.rows_mut(starts[at], 6).copy_from(&(whitening * follow * -weight));
         }
@@ -122,7 +123,7 @@ impl Optics {
         Coupling { mixed: jacobian.transpose() * by_numbers, gram, pull }
     }
 
-    /// The best step of the numbers from the optimum of a fit, with their standard deviations and how the robot's unknowns follow.
+    /// The best step of the numbers from the optimum of a fit, with their standard deviations and the resulting step of the robot's unknowns.
     pub(crate) fn best_step(&self, run: &Run<'_>, information: &FitInformation<'_>) -> Option<BestStep> {
         let Coupling { mixed, gram, pull } =
             self.coupling(&run.data, &information.problem, information.estimate);
@@ -136,13 +137,13 @@ impl Optics {
         Some(BestStep { step, gain, covariance: inverse, still: information.step(), follow })
     }
 
-    /// Derivative of a pixel of a camera by the numbers, in deviations of their prior.
+    /// Derivative of a pixel of a camera by the numbers, in standard deviations of their prior.
     pub(crate) fn by_lens(&self, camera: usize, found: &Projection) -> Matrix2xX<f64> {
         self.unknowns.by_lens(camera, found)
     }
 
-    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate as it follows them; `None` where they
-    /// change by less than so many standard deviations.
+    /// The data with the next numbers, from the optimum of a fit with the present ones, and the estimate adapted to them. `None` if they change by
+    /// less than `least` standard deviations.
     pub(crate) fn advance(
         &mut self,
         run: &Run<'_>,
@@ -166,7 +167,7 @@ impl Optics {
         Some((data, estimate))
     }
 
-    /// Takes from the information of the robot's unknowns what the numbers could explain of the rows as well.
+    /// Subtracts the information shared with the numbers from the information of the robot's unknowns.
     pub(crate) fn loosen(
         &self,
         data: &Dataset,

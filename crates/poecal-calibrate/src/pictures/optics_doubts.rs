@@ -10,26 +10,26 @@ use poecal_numerics::error::shown;
 
 /// Least share of the squared errors of corners that another lens or board must explain.
 const EVIDENT: f64 = 0.1;
-/// Standard deviations beyond which a number is another than stated.
+/// Standard deviations beyond which a number contradicts its stated value.
 const FAR: f64 = 5.0;
-/// Least difference of the scales of a board along x and y that is said.
+/// Least difference of a board's scales along x and y that is reported.
 const UNEQUAL: f64 = 2e-3;
-/// Least sagitta of a bent board that is said, as a share of its radius.
+/// Least sagitta of a bent board that is reported, as a share of its radius.
 const BENT: f64 = 1e-3;
-/// Fewest numbers that are left of the corners of pictures that judge.
+/// Fewest degrees of freedom of the corners of pictures that judge.
 const LEAST_FREEDOM: f64 = 30.0;
-/// Fewest corners of which something can be said.
+/// Fewest corners that allow a statement.
 const FEWEST: usize = 100;
 
-/// What is doubtful of a camera or a board that was taken as stated.
+/// Doubt about a camera or a board that was taken as stated.
 pub(crate) struct OpticsDoubt {
-    /// What explains most of the corners' errors, with what to do, a sentence.
+    /// Explanation of most of the corners' errors, with advice, a sentence.
     pub(crate) statement: String,
-    /// Why the model is not good, where a lens is that of other pictures.
+    /// Reason against a good model, if a lens belongs to other pictures.
     pub(crate) against_good: Option<String>,
 }
 
-/// What is doubtful of cameras and boards that were taken as stated: the one thing that explains most of the corners' errors, with what to do.
+/// Doubt about cameras and boards that were taken as stated: the one cause that explains most of the corners' errors, with advice.
 pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     let pictures = &fit.run.data.pictures;
     if pictures.all.iter().map(|it| it.corners.len()).sum::<usize>() < FEWEST {
@@ -65,8 +65,8 @@ pub(crate) fn optics_doubt(fit: &CalibratedFit<'_>) -> Option<OpticsDoubt> {
     Some(OpticsDoubt { statement, against_good })
 }
 
-/// Mean squared error of the coordinates of corners beside the best pose of each picture that was held out, pixels²: the numbers were found without
-/// them.
+/// Mean squared error of the coordinates of corners beside the best pose of each held-out picture, pixels²: the numbers were fitted without these
+/// pictures.
 fn remaining(fit: &CalibratedFit<'_>, (cameras, boards): (&[Camera], &[Board])) -> Option<f64> {
     let data = &fit.run.data;
     let others = Pictures {
@@ -120,7 +120,7 @@ fn words(
     }
 }
 
-/// What contradicts the stated shape of a board: scales that differ along its sides, and a bend.
+/// Contradiction to the stated shape of a board: scales that differ along its sides, and a bend.
 fn shape_words(board: &Board, numbers: &[PictureNumber], best: &BestStep, both: &str) -> Option<String> {
     let [x, y, bend_x, bend_y] = numbers else { return None };
     let differs = |it: &PictureNumber| (it.found - it.given).abs() > FAR * it.deviation;

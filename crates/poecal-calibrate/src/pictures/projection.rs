@@ -1,4 +1,4 @@
-//! Where in the image of a camera a fit predicts pixels well, and where it does not (theory.md §4, *Pictures*).
+//! Accuracy of a fit's predicted pixels over the image of a camera (theory.md §4, *Pictures*).
 
 use nalgebra::{DMatrix, Matrix2x6, Matrix6xX, Vector3};
 
@@ -15,18 +15,18 @@ use poecal_numerics::distributions::median;
 /// Most pictures over which the squares are averaged.
 const PICTURES: usize = 24;
 
-/// A fitted picture: the pose of its board as the robot predicts it, and how that moves with the unknowns.
+/// A fitted picture: the pose of its board predicted by the robot, and its derivative by the unknowns.
 struct Seen {
     pose: Pose,
     by_unknowns: Matrix6xX<f64>,
     depth_m: f64,
 }
 
-/// How far off pixels are predicted by a fit.
+/// Uncertainty of predicted pixels by a fit.
 pub(crate) struct Projection {
     covariance: DMatrix<f64>,
     numbers: Option<(Optics, BestStep)>,
-    /// Of each camera.
+    /// Fitted pictures of each camera.
     seen: Vec<Vec<Seen>>,
 }
 
@@ -42,13 +42,12 @@ impl Projection {
         Some(Projection { covariance: information.covariance(), numbers, seen })
     }
 
-    /// Median depth of the boards before a camera, metres; none without pictures.
+    /// Median depth of the boards before a camera, metres; `None` without pictures.
     pub(crate) fn distance_m(&self, camera: usize) -> Option<f64> {
         median(self.seen.get(camera)?.iter().map(|it| it.depth_m)).filter(|it| *it > 0.0)
     }
 
-    /// Root mean square distance of the pixel in which a point before a camera would be predicted from where it is, by the covariance of all that
-    /// was found; none beyond the lens.
+    /// Root mean square error of the predicted pixel of a point before a camera, by the covariance of all fitted unknowns; `None` beyond the lens.
     pub(crate) fn off_px(&self, (at, camera): (usize, &Camera), point: &Vector3<f64>) -> Option<f64> {
         let found = camera.lens.projection(point)?;
         let seen = self.seen.get(at)?;

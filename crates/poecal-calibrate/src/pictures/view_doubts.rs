@@ -1,4 +1,4 @@
-//! What the pictures of a camera cannot determine, whatever the robot is (theory.md §4, *Pictures*).
+//! Unknowns that the pictures of a camera cannot determine, for any robot (theory.md §4, *Pictures*).
 
 use crate::run::pixels::predicted_picture;
 use crate::steps::calibrated::CalibratedFit;
@@ -11,35 +11,36 @@ const PARALLEL_RAD: f64 = 0.1;
 const ONE_AXIS_RAD: f64 = 0.05;
 /// Share of width or height of the image within which corners are in one part of it.
 const PART: f64 = 0.4;
-/// Standard deviations above which focal lengths (of these) and the centre (of the width) are not determined: half of what is known of any lens.
+/// Standard deviations above which focal lengths (relative) and the centre (relative to the width) are undetermined: half of the prior knowledge of
+/// any lens.
 const FOCAL: f64 = 0.01;
 const CENTRE: f64 = 0.01;
 
-/// A sentence for each thing that the pictures of a camera leave open, with what to do.
+/// A sentence for each quantity that the pictures of a camera leave undetermined, with advice.
 pub(crate) fn view_doubts(fit: &CalibratedFit<'_>) -> Vec<String> {
     let cameras = 0..fit.run.data.pictures.cameras.len();
     cameras.flat_map(|camera| OneCamera::new(fit, camera).map(|it| it.doubts()).unwrap_or_default()).collect()
 }
 
-/// A camera with what its fitted pictures saw.
+/// A camera with the views of its fitted pictures.
 struct OneCamera<'a> {
     fit: &'a CalibratedFit<'a>,
     camera: usize,
     name: String,
     views: Views,
-    /// Whether all its boards are flat.
+    /// True if all its boards are flat.
     is_flat: bool,
 }
 
 impl<'a> OneCamera<'a> {
-    /// `None` of a camera without pictures.
+    /// The views of a camera; `None` without pictures.
     fn new(fit: &'a CalibratedFit<'a>, camera: usize) -> Option<Self> {
         let data = &fit.run.data;
         let pictures = &data.pictures;
         let mut views = Views { poses: vec![Vec::new(); pictures.boards.len()], ..Views::default() };
         let rows = fit.run.fit_rows.iter().copied().filter(|row| !fit.robust.robustness.suspects_row(*row));
         let rows: Vec<u32> = rows.filter(|row| pictures.of_row(*row).is_some()).collect();
-        // As the robot predicts them: a single picture says little of the tilt of a board that it sees from the front.
+        // Poses as the robot predicts them: a single picture hardly determines the tilt of a board seen from the front.
         let errors = fit.session().errors(&rows, &fit.robust.fitted.estimate);
         for (row, error) in rows.iter().zip(&errors) {
             let (picture, pose) = predicted_picture(data, *row, error)?;
@@ -95,7 +96,7 @@ impl<'a> OneCamera<'a> {
         })
     }
 
-    /// Whether the robot can turn about one direction only.
+    /// True if the robot can turn about one direction only.
     fn has_parallel_axes(&self) -> bool {
         let turning = || self.fit.run.robot.joints.iter().filter(|joint| !joint.screw.is_prismatic());
         let Some(first) = turning().next().map(|joint| joint.screw.direction()) else { return true };

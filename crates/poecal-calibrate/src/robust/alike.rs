@@ -9,12 +9,12 @@ use poecal_model::measurement::Dataset;
 pub(crate) const TAILS: f64 = 2.0;
 /// A row has the error of its configuration if it differs from the others' mean by less than this share of its own length.
 const SHARE: f64 = 0.5;
-/// The same factor for configurations with a common error: elastic gears and links cause less.
+/// The same factor for configurations with a common error: elastic gears and links cause smaller errors.
 const COMMON_TAILS: f64 = 8.0;
 
 /// Configurations measured several times, or with several targets.
 pub(crate) struct Configurations {
-    /// Those of two rows or more.
+    /// Configurations of two rows or more.
     groups: Vec<Vec<u32>>,
     /// Mean number of fitted rows per configuration and subject ([`Dataset::subject`]).
     pub(crate) repeats: f64,
@@ -23,7 +23,7 @@ pub(crate) struct Configurations {
 impl Configurations {
     /// Groups the data, and counts the fitted rows.
     pub(crate) fn new(data: &Dataset, fitted: &[u32]) -> Self {
-        // Of several rows of a subject in one configuration the first counts.
+        // With several rows of a subject in one configuration the first counts.
         let over_again: usize = data
             .grouped(fitted)
             .into_iter()
@@ -39,7 +39,7 @@ impl Configurations {
         Configurations { groups, repeats: fitted.len() as f64 / distinct.max(1) as f64 }
     }
 
-    /// For each row of the data the share of its length that counts: less where the other rows of its configuration have the same error.
+    /// Share of each row's length that counts: less if the other rows of its configuration have the same error.
     pub(crate) fn shares(&self, session: &Session<'_>, estimate: &Estimate) -> Vec<f64> {
         let mut shares = vec![1.0; session.data.len()];
         let rows: Vec<u32> = self.groups.concat();

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Loss of robust estimation, a function of the length of a row's whitened residual. Its constant gives 95 % efficiency under normal noise
-/// of that many components.
+/// Loss of robust estimation, a function of the length of a row's whitened residual. Its constant leads to 95 % efficiency under normal noise of that
+/// many components.
 ///
 /// ```
 /// # mod poecal {
@@ -66,7 +66,7 @@ impl Loss {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Robust {
-    /// Least squares, unless outliers are evident: then Tukey's loss, and a warning says so.
+    /// Least squares, unless outliers are evident: then Tukey's loss, and a warning reports it.
     #[default]
     Auto,
     /// Least squares.

@@ -33,7 +33,7 @@ const ITERATIONS: usize = 6;
 /// Largest change of settled weights.
 const SETTLED: f64 = 1e-3;
 
-/// A finished fit, as rows are judged by it.
+/// A finished fit in the form by which rows are judged.
 fn judging(fitted: &Fitted) -> JudgingFit<'_> {
     let Fitted { estimate, noise, normal, .. } = fitted;
     JudgingFit { estimate, noise: *noise, normal, unknowns: normal.dim() as f64 }
@@ -46,7 +46,7 @@ pub(crate) struct RobustFit {
     pub(crate) robustness: Robustness,
 }
 
-/// Fits as the options ask: by least squares, by a robust loss, or by Tukey's where least squares show outliers.
+/// Fits as the options state: by least squares, by a robust loss, or by Tukey's if least squares show outliers.
 pub(crate) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Start) -> Result<RobustFit> {
     let configurations = &Configurations::new(task.session.data, task.rows);
     let attempt = |loss, other| attempt(task, configurations, registration, start, loss, other);
@@ -65,7 +65,7 @@ pub(crate) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Star
             }
             let plain = ordinary(found)?;
             let tried = if tried.is_suspicious(task) {
-                // Apparent outliers may come from a local minimum: further starts come first.
+                // Apparent outliers may be the effect of a local minimum: further starts come first.
                 if !plain.is_evident(task) {
                     return Ok(plain);
                 }
@@ -73,13 +73,13 @@ pub(crate) fn fit(task: &Task<'_>, registration: &Registration<'_>, start: &Star
             } else {
                 tried
             };
-            // A row with much influence may be the only one that determines something: cross-validation by the other rows decides.
+            // A row of high leverage may be the only one that determines some direction: cross-validation by the other rows decides.
             Ok(if tried.is_evident(task) && tried.predicts_better(task, &plain) { tried } else { plain })
         }
     }
 }
 
-/// Fits by least squares without some rows, which are suspected then, and only they.
+/// Fits by least squares without some rows; these rows, and no others, are then suspected.
 pub(crate) fn fit_without(task: &Task<'_>, start: &Start, left_out: &[u32]) -> Result<RobustFit> {
     let is_left_out = |row: &u32| left_out.binary_search(row).is_ok();
     let kept: Vec<u32> = task.rows.iter().copied().filter(|row| !is_left_out(row)).collect();
@@ -95,18 +95,18 @@ pub(crate) fn fit_without(task: &Task<'_>, start: &Start, left_out: &[u32]) -> R
 }
 
 impl RobustFit {
-    /// Weights of all rows; suspected ones have none.
+    /// Weights of all rows; suspected ones have weight 0.
     pub(crate) fn weights(&self) -> Vec<f64> {
         let counted = |row: &RowJudgement| if row.suspected { 0.0 } else { row.weight };
         self.robustness.rows.iter().map(counted).collect()
     }
 
-    /// Whether a fitted row is suspected.
+    /// True if a fitted row is suspected.
     fn is_evident(&self, task: &Task<'_>) -> bool {
         task.rows.iter().any(|&row| self.robustness.suspects_row(row))
     }
 
-    /// Whether it predicts held-out clusters of rows better than another fit, by a bounded loss.
+    /// True if it predicts held-out clusters of rows better than another fit, by a bounded loss.
     fn predicts_better(&self, task: &Task<'_>, other: &RobustFit) -> bool {
         let scale = self.robustness.scale;
         let noise = ByQuantity::from_fn(|quantity| scale[quantity] * self.fitted.noise[quantity]);
@@ -145,7 +145,7 @@ impl RobustFit {
         })
     }
 
-    /// Whether the robust scale of position errors is larger than elastic gears and links explain.
+    /// True if the robust scale of position errors is larger than elastic gears and links explain.
     fn is_suspicious(&self, task: &Task<'_>) -> bool {
         let parts = parts(&task.session, task.rows, &self.fitted.estimate, self.fitted.noise);
         let scale = Scale::from_rows(parts.iter(), self.fitted.normal.dim() as f64);
@@ -166,7 +166,7 @@ fn ordinary(
     Ok(RobustFit { fitted, robustness })
 }
 
-/// Cheap screening: does any residual exceed the 1/1000 quantile at the robust scale? If so, a robust fit decides.
+/// True if any residual exceeds the 1/1000 quantile at the robust scale: a cheap screening, after which a robust fit decides.
 fn shows_outliers(
     task: &Task<'_>,
     configurations: &Configurations,
@@ -193,8 +193,8 @@ fn estimated<'a>(task: &Task<'a>, source: NoiseSource) -> Option<&'a Calibration
     (source == NoiseSource::Estimated).then_some(task.options)
 }
 
-/// A robust fit: from a robust registration by Huber's loss, which adds no local minima, then by `loss`. `other` is a further start, tried
-/// if the robust scale is suspicious.
+/// A robust fit: from a robust registration by Huber's loss, which adds no local minima, then by `loss`. `other` is a further start, tried if the
+/// robust scale is suspicious.
 fn attempt(
     task: &Task<'_>,
     configurations: &Configurations,

@@ -17,9 +17,9 @@ const FAMILY: f64 = 1e-3;
 /// Judgement of one row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowJudgement {
-    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had (1 without a robust loss).
+    /// Weight in the fit, 0 to 1; for a held-out row the weight that it would have had (1 without a robust loss).
     pub weight: f64,
-    /// Whether it is suspected of a gross error.
+    /// True if it is suspected of a gross error.
     pub suspected: bool,
 }
 
@@ -30,7 +30,7 @@ pub struct Robustness {
     pub loss: Option<Loss>,
     /// One for each row of the data.
     pub rows: Vec<RowJudgement>,
-    /// Robust scale of the residuals over the calibration's noise, of each quantity: the unit by which rows are judged.
+    /// Robust scale of the residuals relative to the calibration's noise, for each quantity: the unit in which rows are judged.
     pub scale: ByQuantity<f64>,
     /// Errors on the fitted rows without suspected ones; `None` if none is suspected.
     pub training_rest: Option<SetAccuracy>,
@@ -39,7 +39,7 @@ pub struct Robustness {
 }
 
 impl Robustness {
-    /// The same with the errors on training and held-out rows but for the suspected ones; `accuracy` gives those on some rows.
+    /// The same with the errors on training and held-out rows without the suspected ones; `accuracy` computes those on some rows.
     pub(crate) fn beside(
         self,
         [fitted, held_out]: [&[u32]; 2],
@@ -59,7 +59,7 @@ impl Robustness {
         self
     }
 
-    /// Whether a row is suspected.
+    /// True if a row is suspected.
     pub(crate) fn suspects_row(&self, row: u32) -> bool {
         self.rows.get(row as usize).is_some_and(|it| it.suspected)
     }
@@ -70,7 +70,7 @@ impl Robustness {
         rows.filter_map(|(row, _)| u32::try_from(row).ok())
     }
 
-    /// Whether so many rows are suspected that the whole session is doubtful.
+    /// True if so many rows are suspected that the whole session is doubtful.
     pub(crate) fn suspects_many(&self) -> bool {
         self.suspects().count() as f64 > MANY * self.rows.len() as f64
     }
@@ -113,8 +113,8 @@ impl Robustness {
     }
 }
 
-/// Times the median of held-out rows beyond which one of them is gross, and fewest of these: predictions of a fit with few rows are uncertain, but not so
-/// differently.
+/// Factor on the median of held-out rows beyond which one of them is gross, and fewest of these. Predictions of a fit with few rows are uncertain,
+/// but all to a similar degree.
 const GROSS: f64 = 50.0;
 const FEWEST_BESIDE: usize = 5;
 
@@ -125,7 +125,7 @@ const MANY: f64 = 0.2;
 pub(crate) struct Bounds([f64; 6]);
 
 impl Bounds {
-    /// Length that normal noise exceeds in one of a thousand sets of so many rows, times a factor (theory.md §6 (34f)).
+    /// Length that normal noise exceeds in one of a thousand sets of this number of rows, times a factor (theory.md §6 (34f)).
     pub(crate) fn new(rows: usize, factor: f64) -> Self {
         let probability = FAMILY / rows.max(1) as f64;
         Bounds([1, 2, 3, 4, 5, 6].map(|dof| factor * distributions::upper_quantile(probability, dof).sqrt()))
@@ -141,7 +141,7 @@ impl Bounds {
     }
 }
 
-/// Whether there are numbers enough for a robust scale: twice the unknowns. Residuals of fewer show the fit, not the noise.
+/// True if there are enough numbers for a robust scale: twice the unknowns. Residuals of fewer reflect the fit, not the noise.
 pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknowns: f64) -> bool {
     parts.flat_map(RowParts::iter).map(|(_, part)| part.components).sum::<usize>() as f64 >= 2.0 * unknowns
 }
@@ -149,11 +149,11 @@ pub(crate) fn is_judgeable<'a>(parts: impl Iterator<Item = &'a RowParts>, unknow
 /// A fit by which rows are judged.
 #[derive(Clone, Copy)]
 pub(crate) struct JudgingFit<'a> {
-    /// Where it ended.
+    /// Estimate of the fit.
     pub(crate) estimate: &'a Estimate,
-    /// Its noise.
+    /// Noise of the fit.
     pub(crate) noise: Noise,
-    /// Its information there.
+    /// Normal information at the estimate.
     pub(crate) normal: &'a Normal,
     /// Number of unknowns that the rows determine.
     pub(crate) unknowns: f64,
@@ -199,20 +199,20 @@ pub(crate) fn judge_rows(
     robustness(rows.judged(task, fitted, scale, loss), scale)
 }
 
-/// All rows of the data as they are judged.
+/// All rows of the data in their judgement.
 struct Rows {
     all: Vec<u32>,
     parts: Vec<RowParts>,
     /// Share of each row's length that counts.
     shares: Vec<f64>,
-    /// Weight of each row in the fit; `None` of one that was held out.
+    /// Weight of each row in the fit; `None` for a held-out row.
     weights: Vec<Option<f64>>,
     bounds: Bounds,
 }
 
 impl Rows {
-    /// Rows of a fit with too few numbers for a judgement of its rows, in which held-out ones that are gross beside the others are suspected: what others
-    /// predict of them needs no scale.
+    /// Suspects held-out rows that are gross compared with the others, for a fit with too few numbers for a judgement of its own rows: this
+    /// comparison needs no scale.
     fn with_gross(&self, mut judged: Vec<RowJudgement>, scale: Scale) -> Vec<RowJudgement> {
         let held_out = || self.all.iter().filter(|row| self.weights[**row as usize].is_none());
         let middle = distributions::median(held_out().map(|&row| self.length(row, scale).0));

@@ -11,7 +11,7 @@ use poecal_numerics::distributions::{chi_square_median, median};
 pub(crate) struct RowPart {
     pub(crate) squares: f64,
     pub(crate) components: usize,
-    /// Whether the row states this part's noise.
+    /// True if the row states this part's noise.
     stated: bool,
 }
 
@@ -30,12 +30,12 @@ pub(crate) fn parts(session: &Session<'_>, rows: &[u32], estimate: &Estimate, no
     })
 }
 
-/// Number of all numbers of some rows.
+/// Number of measured components of some rows.
 fn count<'a>(rows: impl Iterator<Item = &'a RowParts>) -> usize {
     rows.flat_map(RowParts::iter).map(|(_, part)| part.components).sum()
 }
 
-/// Robust scale over the noise, of each quantity.
+/// Robust scale relative to the noise, of each quantity.
 #[derive(Clone, Copy)]
 pub(crate) struct Scale(pub(crate) ByQuantity<f64>);
 
@@ -48,7 +48,7 @@ impl Scale {
         }))
     }
 
-    /// Floor for exact data, whose rounding is no scale.
+    /// The scale with a floor for exact data, whose rounding is no scale.
     pub(crate) fn at_least_rounding(self, noise: Noise) -> Self {
         Scale(ByQuantity::from_fn(|quantity| self.0[quantity].max(ROUNDING / noise[quantity])))
     }

@@ -59,7 +59,7 @@ impl Statistic {
         let rank = 0.95 * (errors.len() - 1) as f64;
         let (_, &mut below, beyond) = errors.select_nth_unstable_by(rank.floor() as usize, f64::total_cmp);
         let above = beyond.iter().copied().min_by(f64::total_cmp).unwrap_or(below);
-        // A whole rank must not touch the next value, which may be infinite.
+        // A whole rank must not use the next value, which may be infinite.
         let p95 = if rank.fract() == 0.0 { below } else { below + (above - below) * rank.fract() };
         Some(Statistic { mean, rms, p95, max })
     }
@@ -81,14 +81,15 @@ impl Statistic {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelAccuracy {
-    /// Of each measured quantity.
+    /// Statistics of each measured quantity.
     #[serde(flatten)]
     pub quantities: Measured<Statistic>,
-    /// Of all rows that a device without a frame of its own measured, millimetres, whatever their quantity: what their constraint leaves, as the
-    /// error of a distance, a ball from the middle of its socket, a height over its plane. Absent if there are none.
+    /// Residuals of all rows measured by a device without a frame of its own, millimetres, for any quantity: the remaining violation of their
+    /// constraint, as the error of a distance, the distance of a ball from the middle of its socket, or a height over its plane. Absent if there are
+    /// none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub residual_mm: Option<Statistic>,
-    /// Of the corners of all pictures; absent if there are none.
+    /// Errors of the corners of all pictures; absent if there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels: Option<PixelAccuracy>,
 }
@@ -102,13 +103,13 @@ impl Deref for ModelAccuracy {
 }
 
 impl ModelAccuracy {
-    /// Errors of the corners where all of so many rows are pictures: the pose of a small board in its picture is uncertain along the ray and in its
-    /// turn, so its corners judge.
+    /// Errors of the corners if all of `rows` rows are pictures. The pose of a small board in its picture is uncertain along the ray and in its turn,
+    /// so its corners judge.
     pub fn of_pictures(&self, rows: usize) -> Option<PixelAccuracy> {
         self.pixels.filter(|pixels| pixels.pictures == rows)
     }
 
-    /// By what the model is judged on so many rows.
+    /// Error that judges the model on this number of rows.
     pub(crate) fn judging(&self, rows: usize) -> JudgingError {
         if let Some(pixels) = self.of_pictures(rows) {
             let (what, rms) = (CORNERS.to_owned(), pixels.rms_mm);
@@ -119,7 +120,7 @@ impl ModelAccuracy {
     }
 }
 
-/// What the error of corners in millimetres is called.
+/// Name of the error of corners in millimetres.
 pub(crate) const CORNERS: &str = "error of the corners at the board";
 
 /// The error by which a model is judged, root mean square in the unit in which people read it.
@@ -137,7 +138,7 @@ impl Default for JudgingError {
 }
 
 impl JudgingError {
-    /// In metres; zero of what is no length.
+    /// The error in metres; zero if it is not a length.
     pub(crate) fn metres(&self) -> f64 {
         if self.unit == Unit::Metre { 1e-3 * self.rms } else { 0.0 }
     }
@@ -157,7 +158,7 @@ impl ModelAccuracy {
     }
 }
 
-/// Root mean square error of the nominal model, registered, over that of another, on the same rows.
+/// Ratio of the root mean square error of the nominal model, registered, to that of another model on the same rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Improvement {
     /// The factor.
@@ -169,7 +170,7 @@ pub struct Improvement {
 }
 
 impl Improvement {
-    /// Whether the other model is clearly better.
+    /// Decision whether the other model is clearly better.
     #[must_use]
     pub fn gain(&self) -> Gain {
         Gain::of_interval([self.from.ln(), self.to.ln()])
@@ -179,9 +180,9 @@ impl Improvement {
 /// Improvement of each quantity by the models that are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Improvements {
-    /// Of the calibrated model.
+    /// Improvement by the calibrated model.
     pub calibrated: Measured<Improvement>,
-    /// Of the corrected model; absent if there is none.
+    /// Improvement by the corrected model; absent if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<Measured<Improvement>>,
 }
@@ -209,10 +210,10 @@ pub struct SetAccuracy {
     pub registered: ModelAccuracy,
     /// Screws fitted too.
     pub calibrated: ModelAccuracy,
-    /// Screws and terms of the joints fitted together; absent if no terms were asked for.
+    /// Screws and terms of the joints fitted together; absent if no terms were requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<ModelAccuracy>,
-    /// How many times smaller than the registered model's the errors of rows held out are; absent of others.
+    /// Ratio of the registered model's errors to those of the fitted models, on held-out rows; absent for other rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub improvement: Option<Improvements>,
 }
@@ -236,7 +237,7 @@ pub struct Accuracy {
     pub training: SetAccuracy,
     /// On the held-out rows; null if there are none.
     pub held_out: Option<SetAccuracy>,
-    /// Number of configurations where all were fitted because too few would have been held out; absent otherwise.
+    /// Number of configurations, if all were fitted because too few would have been held out; absent otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub few_configurations: Option<usize>,
 }

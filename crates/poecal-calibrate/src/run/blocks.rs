@@ -1,4 +1,4 @@
-//! The choice of what a fit changes, by names of blocks.
+//! Choice of the unknowns of a fit, by names of blocks.
 
 use wildmatch::WildMatch;
 
@@ -12,15 +12,15 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// Blocks that a message lists at most.
 const LISTED: usize = 12;
 
-/// What a fit changes beside or without the usual: first the blocks of `fix` are held as in the model, then those of `free` are unknown.
-/// A word is a block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis;
-/// or one of `joints` (all axes), `targets` and `frames`. Only by their exact names are further terms unknown: harmonics (`joint2.sin1`), couplings (`joint3.coupled2` is
-/// what the second joint turns joint3), and what depends on weights or factors (`joint2.masses`).
+/// Deviations of a fit's unknowns from the default: first the blocks of `fix` are held as in the model, then those of `free` are unknown. A word is a
+/// block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis; or one of `joints`
+/// (all axes), `targets` and `frames`. Further terms are unknown only by their exact names: harmonics (`joint2.sin1`), couplings (`joint3.coupled2`
+/// is the motion of joint3 by the second joint), and terms of weights or factors (`joint2.masses`).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockChoice {
-    /// Words of what is unknown.
+    /// Words for unknown blocks.
     pub free: Vec<String>,
-    /// Words of what is held.
+    /// Words for held blocks.
     pub fix: Vec<String>,
 }
 
@@ -33,7 +33,7 @@ pub fn names(robot: &Robot, data: &Dataset) -> Names {
     }
 }
 
-/// The blocks of a session: of clocks those of instruments that measured in motion.
+/// The blocks of a session; clocks only of instruments that measured in motion.
 fn blocks(names: &Names, data: &Dataset) -> Vec<Block> {
     let is_there = |block: &Block| match block {
         Block::Clock(station, _) => data.moving.clock(*station).is_some(),
@@ -43,10 +43,10 @@ fn blocks(names: &Names, data: &Dataset) -> Vec<Block> {
 }
 
 impl BlockChoice {
-    /// The robot with what the freed terms are functions of beside joint values: gravity in this direction, and these terms themselves.
+    /// The robot with the additional arguments of the freed terms beside joint values: gravity in this direction, and these terms themselves.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] if the robot has no such masses, weights or factors, or gravity is to be found.
+    /// [`ErrorKind::Option`] if the robot has no such masses, weights or factors, or gravity is unknown.
     pub(crate) fn with_terms(
         &self,
         robot: Robot,
@@ -115,7 +115,7 @@ impl BlockChoice {
         further.dedup();
         let is_any = !further.is_empty() || is_free.contains(&true);
         unknowns.terms.extend(further);
-        // A lens that was guessed is unknown without being named.
+        // A guessed lens is unknown without being named.
         let guessed = data.pictures.cameras.iter().enumerate().filter(|(_, camera)| camera.is_guessed);
         pictures.extend(guessed.map(|(at, _)| PictureUnknown::Lens(at)));
         pictures.sort_unstable();
@@ -128,7 +128,7 @@ impl BlockChoice {
         Ok(unknowns)
     }
 
-    /// Targets that are named, which are unknown whatever the model says of their places; a star that means everything means targets by the way.
+    /// Named targets, which are unknown regardless of their positions in the model; a star that means everything includes targets only incidentally.
     fn open_targets(&self, names: &Names, blocks: &[Block]) -> Vec<usize> {
         let mut open = Vec::new();
         for word in &self.free {
@@ -154,7 +154,7 @@ pub(crate) fn refuse_frames(choice: &BlockChoice, robot: &Robot, data: &Dataset)
     let blocks = names.blocks();
     let frees = |word: &&String| {
         let chosen = chosen(&names, &blocks, word);
-        // A star that means everything means frames by the way.
+        // A star that means everything includes frames only incidentally.
         let others = chosen.iter().zip(&blocks).any(|(is, block)| *is && !matches!(block, Block::Frame(_)));
         !others && chosen.contains(&true)
     };
@@ -184,7 +184,7 @@ fn refuse_bodies(data: &Dataset, word: &str, seen: &[PictureUnknown]) -> Result<
     }
 }
 
-/// What of the cameras and boards of a session's pictures a word frees: `lens`, `board`, `markers`, or one of these of a name.
+/// Unknowns of the cameras and boards of a session's pictures that a word frees: `lens`, `board`, `markers`, or one of these of a name.
 fn picture_unknowns(data: &Dataset, word: &str) -> Vec<PictureUnknown> {
     let Pictures { cameras, boards, .. } = &data.pictures;
     let (kind, name) = word.split_once('.').map_or((word, None), |(kind, name)| (kind, Some(name)));
@@ -204,7 +204,7 @@ fn picture_unknowns(data: &Dataset, word: &str) -> Vec<PictureUnknown> {
     }
 }
 
-/// A term by its exact name that is no block without being asked for.
+/// A term by its exact name that is a block only on request.
 fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
     let (joint, term) = word.rsplit_once('.')?;
     let joint = names.joints.iter().position(|name| name == joint)?;
@@ -213,7 +213,7 @@ fn further_term(names: &Names, word: &str) -> Option<(usize, Term)> {
     (is_other && term.is_of(names.joints.len(), usize::MAX)).then_some((joint, term))
 }
 
-/// Of each block, whether a word means it.
+/// Marks each block that a word means.
 fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
     let pattern = WildMatch::new(word);
     let is_meant = |block: &Block| match (word, block) {
@@ -222,7 +222,7 @@ fn chosen(names: &Names, blocks: &[Block], word: &str) -> Vec<bool> {
             let is_joint = names.joints.get(*joint).is_some_and(|name| name == word);
             is_joint && !["targets", "frames"].contains(&word) || pattern.matches(&names.name_of_block(*block))
         }
-        // Of all instruments by the name of the term alone.
+        // The name of the term alone means the blocks of all instruments.
         (_, Block::Range(_, term)) => {
             word == term.name() || word != "*" && pattern.matches(&names.name_of_block(*block))
         }
@@ -253,7 +253,7 @@ fn unknown_word(names: &Names, blocks: &[Block], word: &str) -> Error {
     ))
 }
 
-/// Sorts blocks that are unknown, or not, into the unknowns of a fit.
+/// Sorts blocks that are unknown (or held) into the unknowns of a fit.
 fn sort_blocks<'a>(
     unknowns: &mut Unknowns,
     blocks: impl Iterator<Item = (Block, &'a bool)>,

@@ -27,7 +27,7 @@ pub(crate) fn check_count(session: &Session<'_>, fit_rows: &[u32]) -> Result<()>
     let targets = data.target_freedoms(fit_rows).into_iter().enumerate();
     let targets = targets.filter(|(target, _)| unknowns.moves_target(*target));
     let targets: usize = targets.map(|(_, freedom)| freedom.count()).sum();
-    // Beside free axes the first frame is no further unknown.
+    // If axes are free, the first frame is no further unknown.
     let held = session.held_station(fit_rows);
     let devices = (0..data.station_count()).filter(|&at| Some(at) != held && unknowns.moves_frame(at));
     let devices: usize = devices.map(|at| of_device(data, at, fit_rows)).sum();

@@ -9,12 +9,12 @@ use poecal_fit::state::{Estimate, Session, sample_rows};
 use poecal_model::measurement::Noise;
 use poecal_numerics::solve::{LeastSquares as _, Normal, Options, Summary};
 
-/// A fit of many rows begins on a subsample: at least so many rows, for each unknown, and times the root of the number of rows. After that,
-/// one step with the first `JᵀJ` of all rows is about enough, however many they are.
+/// A fit of many rows begins on a subsample with at least this number of rows, for each unknown, and times the root of the number of rows. After
+/// that, one step with the first `JᵀJ` of all rows nearly suffices, for any number of rows.
 const SAMPLE: usize = 512;
 const SAMPLE_PER_UNKNOWN: usize = 10;
 const SAMPLE_PER_ROOT: usize = 7;
-/// Ratio of all rows to those of the subsample above which a fit begins on one.
+/// Least ratio of all rows to the subsample for which a fit begins on one.
 const MANY: usize = 3;
 /// The fit of the subsample stops within a tenth of a standard deviation.
 const SAMPLE_DECREMENT: f64 = 1e-2;
@@ -107,7 +107,7 @@ pub(crate) fn minimal(
     (problem.layout().clone(), problem.normal(estimate))
 }
 
-/// Whether a position error is larger than elastic gears and links of a robot of this size explain.
+/// True if a position error is larger than elastic gears and links of a robot of this size explain.
 pub(crate) fn is_suspicious(rms_m: f64, length_m: f64) -> bool {
     rms_m >= SUSPICIOUS * 3.0 * length_m
 }

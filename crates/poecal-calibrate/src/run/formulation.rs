@@ -1,4 +1,4 @@
-//! Formulations: other parameterisations, residuals and methods, given from outside for comparison.
+//! Formulations: other parameterisations, residuals and methods, supplied from outside for comparison.
 
 use poecal_fit::parameters::{Parameter, screw_axes};
 use poecal_fit::problem::Problem;

@@ -4,11 +4,11 @@ use crate::robust::RobustFit;
 use poecal_fit::state::Session;
 use poecal_model::measurement::{ByQuantity, Noise};
 
-/// Least change of a noise that is worth another fit, and least ratio of two instruments that is told apart.
+/// Least change of a noise that is worth another fit, and least ratio between two instruments that is distinguished.
 const CHANGE: f64 = 0.1;
-/// Standard deviations of the logarithm of a ratio beyond which it is no chance.
+/// Standard deviations of the logarithm of a ratio beyond which it is significant.
 const SIGNIFICANT: f64 = 4.0;
-/// Most fits with noises estimated anew.
+/// Most fits with noises re-estimated.
 pub(crate) const ROUNDS: usize = 4;
 
 /// Residuals of one quantity and instrument, whitened by the noise of the fit.
@@ -18,8 +18,8 @@ struct Sum {
     count: usize,
 }
 
-/// Noise of each instrument in units of the first one's, from the residuals of a fit that used `before` (empty: all alike). Rows that state
-/// their noise and suspected rows do not count. `None` if that changes nothing (theory.md §6, *Noise*).
+/// Noise of each instrument in units of the first one's, from the residuals of a fit that used `before` (empty: all alike). Rows that state their
+/// noise and suspected rows do not count. `None` if that changes nothing (theory.md §6, *Noise*).
 pub(crate) fn noise_ratios(session: &Session<'_>, rows: &[u32], fit: &RobustFit) -> Option<Vec<Noise>> {
     let stations = session.data.station_count();
     let rows: Vec<u32> = fit.robustness.rest(rows);

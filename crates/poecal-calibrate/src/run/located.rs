@@ -6,7 +6,7 @@ use poecal_fit::start::{Registration, register};
 use poecal_fit::state::{Estimate, Session};
 use poecal_model::measurement::{Dataset, Noise};
 
-/// Stations of which some rows are no fitted ones and none is: places that only held-out rows name.
+/// Stations that only rows outside the fit name.
 pub(crate) fn stations_to_locate(data: &Dataset, fitted: &[u32]) -> Vec<usize> {
     if data.station_count() == 1 {
         return Vec::new();
@@ -18,14 +18,14 @@ pub(crate) fn stations_to_locate(data: &Dataset, fitted: &[u32]) -> Vec<usize> {
     (0..data.station_count()).filter(|&station| has_rows[station] && !is_fitted[station]).collect()
 }
 
-/// Held-out rows of stations that were fitted: bounds promise nothing of frames that are found from the judging rows themselves.
+/// Held-out rows of fitted stations: bounds do not apply to frames that are determined from the judging rows themselves.
 pub(crate) fn rows_of_fitted_stations(data: &Dataset, fitted: &[u32], held_out: &[u32]) -> Vec<u32> {
     let others = stations_to_locate(data, fitted);
     let is_promised = |row: &u32| !others.contains(&data.observations[*row as usize].station);
     held_out.iter().copied().filter(is_promised).collect()
 }
 
-/// The estimate with the frames of stations that no fitted row sees found from their own rows, all else as it is (theory.md §9, *Places that
+/// The estimate with the frames of stations that no fitted row sees, determined from their own rows with all else held (theory.md §9, *Places that
 /// are held out*).
 pub(crate) fn located<'e>(
     session: &Session<'_>,

@@ -44,12 +44,12 @@ use poecal_numerics::threads;
 /// A session, ready for a fit.
 #[derive(Clone)]
 pub(crate) struct Run<'a> {
-    /// The measurements as they are fitted: those given, or as they would be without what happened.
+    /// The measurements as they are fitted: the supplied ones, or as they would be without events.
     pub(crate) data: Cow<'a, Dataset>,
     /// The nominal robot.
     pub(crate) robot: Robot,
     pub(crate) options: CalibrationOptions,
-    /// Which terms are fitted beside the screws.
+    /// Terms that are fitted beside the screws.
     pub(crate) corrections: Corrections,
     /// Joint values of the measurements with their sines and cosines.
     pub(crate) packed: Arc<Packed>,
@@ -59,15 +59,15 @@ pub(crate) struct Run<'a> {
     pub(crate) prior: Option<Prior>,
     pub(crate) fit_rows: Vec<u32>,
     pub(crate) held_out_rows: Vec<u32>,
-    /// Standard deviation of the places of targets by the rows, metres, where these leave them open and a narrower prior was taken.
+    /// Standard deviation of the positions of targets by the rows, metres, if these leave them undetermined and a narrower prior was used.
     pub(crate) open_targets_m: Option<f64>,
-    /// Rows that are left out as suspected ones, in order.
+    /// Rows that are left out as suspected, in order.
     pub(crate) left_out: Vec<u32>,
     length_m: f64,
     device_free: bool,
 }
 
-/// The nominal estimate, with frames that are held where an earlier calibration has them.
+/// The nominal estimate, with held frames as in an earlier calibration.
 fn started(robot: &Robot, data: &Dataset, (options, unknowns): (&CalibrationOptions, &Unknowns)) -> Estimate {
     let mut start = delivered(robot, data);
     for (station, device) in options.devices.iter().enumerate().take(data.station_count()) {
@@ -182,7 +182,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The robot with its factors counted from their mean in all rows; the side of an approach and a payload from 0.
+/// The robot with its factors relative to their mean in all rows; the side of an approach and a payload relative to 0.
 fn about_mean_factors(robot: &Robot, data: &Dataset) -> Robot {
     let mut found = robot.clone();
     if data.is_empty() {

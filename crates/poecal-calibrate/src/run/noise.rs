@@ -21,16 +21,16 @@ pub enum NoiseSource {
     Exact,
 }
 
-/// Below this (1 nm, 1 nrad) residuals are rounding, and their ratio means nothing.
+/// Residuals below this (1 nm, 1 nrad) are rounding, and their ratio means nothing.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// Noise by which nothing is whitened.
+/// Unit noise: it whitens nothing.
 const ONE: Noise = Noise::new(1.0, 1.0);
 
 /// Least number of residuals, beyond a part's own unknowns, for an estimate of its noise.
 const REDUNDANT: f64 = 6.0;
 
-/// The stated noise; otherwise 1 mm and 1 mrad to begin with.
+/// The stated noise; otherwise 1 mm and 1 mrad as a start.
 pub(crate) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Noise, NoiseSource) {
     let by_rows = |row: &Observation| {
         Quantity::ALL.into_iter().all(|it| !row.measurement.has(it) || row.stated.get(it).is_some())
@@ -49,7 +49,7 @@ pub(crate) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     };
     let mut noise = Noise::new(1e-3, 1e-3);
     if source == NoiseSource::Rows {
-        // No row uses this; it is the value that users see.
+        // No row uses this; it is the reported value.
         for (quantity, noise) in noise.values_mut() {
             let stated: Vec<f64> =
                 data.observations.iter().filter_map(|row| row.stated.get(quantity)).collect();
@@ -62,7 +62,7 @@ pub(crate) fn first_guess(data: &Dataset, options: &CalibrationOptions) -> (Nois
     (stated(options, noise), source)
 }
 
-/// Of each quantity, whether its noise is stated, by the options or by every row that has it.
+/// Marks each quantity whose noise is stated, by the options or by every row that has it.
 pub(crate) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuantity<bool> {
     ByQuantity::from_fn(|quantity| {
         let by_row = |row: &Observation| row.stated.get(quantity).is_some() || !row.measurement.has(quantity);
@@ -70,7 +70,7 @@ pub(crate) fn is_stated(data: &Dataset, options: &CalibrationOptions) -> ByQuant
     })
 }
 
-/// Estimated noise, with the parts that the user stated in their place.
+/// Estimated noise, with stated components in their place.
 pub(crate) fn stated(options: &CalibrationOptions, found: Noise) -> Noise {
     ByQuantity::from_fn(|quantity| options.sigma[quantity].unwrap_or(found[quantity]))
 }
@@ -102,7 +102,7 @@ pub fn estimate_noise(
             }
         }
     }
-    // Each target's orientation (3 unknowns) is determined by rotations alone; all other unknowns are shared in proportion.
+    // Rotations alone determine each target's orientation (3 unknowns); all other unknowns are shared in proportion.
     let turned = session.data.turns_of_targets(rows);
     let total = (shares.iter().map(|(_, share)| share.count).sum::<usize>() + stated) as f64;
     let others = ((unknowns - turned as f64).max(0.0) / (total - turned as f64).max(1.0)).min(1.0);
@@ -140,7 +140,7 @@ struct Share {
 }
 
 impl Share {
-    /// Standard deviation, corrected for so many unknowns; `None` if too few residuals remain beyond `own`.
+    /// Standard deviation, corrected for this number of unknowns; `None` if too few residuals remain beyond `own`.
     fn less(&self, unknowns: f64, own: f64) -> Option<f64> {
         let redundancy = (self.count as f64 - unknowns).max(1.0);
         (self.count as f64 - own >= REDUNDANT).then(|| (self.squares / redundancy).sqrt())

@@ -12,7 +12,7 @@ use poecal_numerics::solve;
 
 use crate::{AcceptanceLimits, BlockChoice, Corrections, Formulation, RepairLimits, Repairs, Robust};
 
-/// What is known of the measuring device's frame.
+/// Prior knowledge of the measuring device's frame.
 ///
 /// ```
 /// # mod poecal {
@@ -47,47 +47,48 @@ pub enum DeviceFrameKnowledge {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationOptions {
-    /// What is known of the device's frame.
+    /// Prior knowledge of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// Which blocks of unknowns are fitted; by default all axes, targets and frames.
+    /// Blocks of unknowns that are fitted; by default all axes, targets and frames.
     pub blocks: BlockChoice,
-    /// `base_from_device` of each station where an earlier calibration has it: a frame that is held stands there. Empty where there is none; a frame that
-    /// is held then stands where the model has its instrument, else in the base.
+    /// `base_from_device` of each station from an earlier calibration, used for held frames. If empty, a held frame is that of the model's
+    /// instrument, else the base.
     pub devices: Vec<Pose>,
     /// Stated standard deviation of each component of a quantity, metres or radians; estimated from the data if absent.
     pub sigma: ByQuantity<Option<f64>>,
-    /// Share of the configurations held out, 0 to below 1, if rows do not state their set. Where none is asked for, 0.3, or nothing where that
-    /// were fewer than 12 configurations, none of them a picture, and no limits are to be accepted: then cross-validation judges.
+    /// Share of the configurations held out, 0 to below 1, if rows do not state their set. By default it is 0.3; or nothing if that is fewer than 12
+    /// configurations, none of them a picture, and no limits are to be accepted: then cross-validation judges.
     pub held_out: Option<f64>,
     /// Seed of that choice and of further starts.
     pub seed: u64,
     /// Parameterisation, residual and method of the fit. All but the default are for comparison.
     pub formulation: Formulation,
-    /// Prior: standard deviations of the axes from nominal; a joint's own tolerance precedes. It decides where the measurements determine
-    /// little. `None` is no prior. Formulations other than the default have none.
+    /// Prior: standard deviations of the axes from nominal; a joint's own tolerance precedes. It decides directions that the measurements hardly
+    /// determine. `None` is no prior. Formulations other than the default have none.
     pub tolerance: Option<Tolerance>,
-    /// Whether, instead, the best of (0.05°, 0.5 mm), (0.2°, 2 mm), (0.5°, 5 mm), (1°, 10 mm) and (3°, 10 mm) is taken: that whose fit predicts rows best which are left out.
+    /// True if the tolerance is chosen instead among (0.05°, 0.5 mm), (0.2°, 2 mm), (0.5°, 5 mm), (1°, 10 mm) and (3°, 10 mm): the one whose fit
+    /// predicts left-out rows best.
     pub chooses_tolerance: bool,
-    /// Which terms are fitted beside the screws, for the corrected model; with the default formulation only.
+    /// Terms that are fitted beside the screws, for the corrected model; with the default formulation only.
     pub corrections: Corrections,
     /// Highest order of the harmonics of a joint's turn among these terms.
     pub harmonics: u8,
-    /// Where weights are pulled.
+    /// Direction of gravity.
     pub gravity: GravityDirection,
-    /// How to treat outliers.
+    /// Treatment of outliers.
     pub robust: Robust,
-    /// Whether the one target, which no row names, becomes the tip: the model ends in its reflector. Otherwise the tip stays where the model has
-    /// it on the last link, and what was measured is the target [`MEASURED`](poecal_model::robot::MEASURED).
+    /// True if the one target, which no row names, becomes the tip: the model ends in its reflector. Otherwise the tip stays on the last link as in
+    /// the model, and the measured target is [`MEASURED`](poecal_model::robot::MEASURED).
     pub move_tip: bool,
-    /// Whether [`calibrate_repairing`](crate::calibrate_repairing) repairs a session in which something evidently happened.
+    /// Choice whether [`calibrate_repairing`](crate::calibrate_repairing) repairs a session with evident events.
     pub repair: Repairs,
     /// The largest sizes that are repaired.
     pub repair_limits: RepairLimits,
-    /// Limits that the errors of rows that were not fitted shall keep.
+    /// Limits for the errors of rows that were not fitted.
     pub accept: Option<AcceptanceLimits>,
     /// Options of the solver.
     pub solver: solve::Options,
-    /// Whether mistakes in the input are searched for where the residuals leave room for them; takes some tenths of a second.
+    /// True if mistakes in the input are searched for when the residuals are large enough; takes some tenths of a second.
     pub diagnose: bool,
     /// Most further starts if the fit may have converged to a local minimum.
     pub restarts: usize,
@@ -128,7 +129,7 @@ impl CalibrationOptions {
         tolerance.map(|tolerance| Prior::from_session(session, tolerance))
     }
 
-    /// Prior of a fit with terms, which has one in any case.
+    /// Prior of a fit with terms, which always has one.
     #[must_use]
     pub(crate) fn prior_with_terms(&self, session: &Session<'_>) -> Prior {
         Prior::from_session(session, self.tolerance.unwrap_or(Tolerance::WIDE))

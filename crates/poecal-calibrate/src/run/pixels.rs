@@ -12,14 +12,14 @@ use poecal_model::camera::{Corner, Picture};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::distributions::median;
 
-/// Distances of corners from where a model sees them: in the picture, and at the board, square to the ray.
+/// Distances of corners from their prediction by a model: in the picture, and at the board, perpendicular to the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PixelAccuracy {
     /// Number of pictures.
     pub pictures: usize,
     /// Number of corners.
     pub corners: usize,
-    /// Corners that the model has behind the camera or beyond its lens; they are in no figure.
+    /// Corners behind the camera or beyond its lens by the model; no statistic includes them.
     #[serde(default, skip_serializing_if = "is_none")]
     pub unseen: usize,
     /// Mean over the corners, pixels.
@@ -32,7 +32,7 @@ pub struct PixelAccuracy {
     pub max_px: f64,
     /// Median over the pictures of the root mean square of each, pixels.
     pub median_picture_px: f64,
-    /// Root mean square over the corners at the board, square to the ray, millimetres.
+    /// Root mean square over the corners at the board, perpendicular to the ray, millimetres.
     pub rms_mm: f64,
 }
 
@@ -41,7 +41,7 @@ fn is_none(count: &usize) -> bool {
     *count == 0
 }
 
-/// The errors of the pictures among some rows by the errors of these rows; `None` without a corner that is seen.
+/// Errors of the pictures among some rows by the errors of these rows; `None` without a visible corner.
 pub(crate) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) -> Option<PixelAccuracy> {
     if data.pictures.is_empty() {
         return None;
@@ -70,12 +70,12 @@ pub(crate) fn pixel_accuracy(data: &Dataset, rows: &[u32], errors: &[RowError]) 
     })
 }
 
-/// Root mean square distance of the corners of one picture from where a model sees them.
+/// Root mean square distance of the corners of one picture from their prediction by a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CornerError {
     /// In the picture, pixels.
     pub rms_px: f64,
-    /// At the board, square to the ray, millimetres.
+    /// At the board, perpendicular to the ray, millimetres.
     pub rms_mm: f64,
 }
 
@@ -87,13 +87,13 @@ impl CornerError {
     }
 }
 
-/// The error of the corners of a row by the error of the row; `None` of a row that is no picture, or none of whose corners the model sees.
+/// Error of the corners of a row by the error of the row; `None` if the row is not a picture, or the model sees none of its corners.
 pub fn corner_error(data: &Dataset, row: u32, error: &RowError) -> Option<CornerError> {
     CornerError::from_corners(&seen_corners(data, row, error)?.1)
 }
 
-/// The picture of a row with the pose of its board in the camera's frame as the model predicts it, by the error of the row; `None` of a row that is
-/// no picture.
+/// Picture of a row with the pose of its board in the camera's frame as the model predicts it, by the error of the row; `None` if the row is not a
+/// picture.
 pub(crate) fn predicted_picture<'a>(
     data: &'a Dataset,
     row: u32,
@@ -104,17 +104,16 @@ pub(crate) fn predicted_picture<'a>(
     Some((picture, picture.directed(&predicted_pose(&measured, error))))
 }
 
-/// Number of the corners of a row, and the errors of those that the model sees; `None` of a row that is no picture.
+/// Number of the corners of a row, and the errors of those that the model sees; `None` if the row is not a picture.
 fn seen_corners(data: &Dataset, row: u32, error: &RowError) -> Option<(usize, Vec<(f64, f64)>)> {
     let (picture, pose) = predicted_picture(data, row, error)?;
     Some((picture.corners.len(), corners(data, picture, &pose)))
 }
 
-/// The pixel of a corner, and how far it is from where a model sees it; none where that does not see it.
+/// Pixel of a corner, and its deviation from the model's prediction; `None` if the model does not see it.
 pub(crate) type SeenPixel = (Vector2<f64>, Option<Vector2<f64>>);
 
-/// The pixel of each corner of a row that has weight, and how far it is off by the error of the row, if it is seen; `None` of a row that is no
-/// picture.
+/// Pixel of each corner of a row that has weight, and its deviation by the error of the row, if it is visible; `None` if the row is not a picture.
 pub(crate) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<Vec<SeenPixel>> {
     let (picture, pose) = predicted_picture(data, row, error)?;
     let errors = data.pictures.view(picture)?.errors(&pose);
@@ -122,7 +121,7 @@ pub(crate) fn seen_pixels(data: &Dataset, row: u32, error: &RowError) -> Option<
     Some(own.map(|(corner, error)| (corner.pixel, error)).collect())
 }
 
-/// Of each corner that a pose of the board lets the camera see, how far it is off: pixels, and metres at its depth.
+/// Deviation of each corner that the camera sees with a pose of the board: pixels, and metres at its depth.
 fn corners(data: &Dataset, picture: &Picture, pose: &Pose) -> Vec<(f64, f64)> {
     let Some(view) = data.pictures.view(picture) else { return Vec::new() };
     let of = |(corner, error): (&Corner, Option<Vector2<f64>>)| {

@@ -1,4 +1,4 @@
-//! Targets, instruments and tip at their calibrated places.
+//! Targets, instruments and tip at their calibrated poses.
 
 use poecal_arm::lie::Pose;
 use poecal_fit::state::{Estimate, Range, Session};
@@ -20,28 +20,28 @@ use poecal_model::robot::{MEASURED, Mount, Robot};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedTarget {
-    /// Its name; `None` is the tip itself ([`CalibrationOptions::move_tip`](crate::CalibrationOptions::move_tip)).
+    /// Name; `None` is the tip itself ([`CalibrationOptions::move_tip`](crate::CalibrationOptions::move_tip)).
     pub name: Option<String>,
-    /// Whether its orientation was measured; otherwise only the position means something.
+    /// True if its orientation was measured; otherwise only the position is meaningful.
     pub is_frame: bool,
-    /// `tip_from_target` in the calibrated robot; of a target of its `mounted`, which is on a body of its own, at zero joint values.
+    /// `tip_from_target` in the calibrated robot; for a target of its `mounted`, which is on a body of its own, at zero joint values.
     pub tip_from_target: Pose,
 }
 
 /// A station of the device, as calibrated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedStation {
-    /// Its name, if the measurements name it.
+    /// Name, if the measurements name it.
     pub name: Option<String>,
-    /// `base_from_device` there; of an instrument on the robot, at zero joint values.
+    /// `base_from_device` of the station; for an instrument on the robot, at zero joint values.
     pub base_from_device: Pose,
     /// Noise of its rows that state none.
     pub noise: Noise,
     /// Zero and scale of its distances.
     pub range: Range,
-    /// What it is: an instrument, an anchor, a socket, a plane, a sphere, a direction, a pair of configurations.
+    /// Kind of the station: an instrument, an anchor, a socket, a plane, a sphere, a direction, a pair of configurations.
     pub kind: &'static str,
-    /// Radius of a sphere with that of the probe, known or found, metres.
+    /// Radius of a sphere with that of the probe, known or fitted, metres.
     pub radius_m: Option<f64>,
 }
 
@@ -59,16 +59,16 @@ pub(crate) fn stations(session: &Session<'_>, estimate: &Estimate, noise: Noise)
     (0..data.station_count()).map(of).collect()
 }
 
-/// Where a tip is that was not measured.
+/// Pose of a tip that was not measured.
 #[derive(Clone, Copy)]
 pub(crate) enum Tip {
     /// On the last joint as in the nominal model.
     Nominal,
-    /// Here, `base_from_tip` at zero joint values.
+    /// `base_from_tip` at zero joint values.
     At(Pose),
 }
 
-/// What was measured of the tip.
+/// Measured components of the tip.
 #[derive(Clone, Copy, PartialEq)]
 enum SeenTip {
     Nothing,
@@ -76,9 +76,9 @@ enum SeenTip {
     Pose,
 }
 
-/// The calibrated robot with its tip, and the targets in that tip. The tip is where `tip` has it, but for a target, or an instrument, of the
-/// model at its very place, and, with `move_tip`, for the target that no row names (measured as points, with the orientation of `tip`). Targets
-/// and instruments of the model with bodies of their own stay on these.
+/// The calibrated robot with its tip, and the targets in that tip. The tip is placed as `tip` states, with two exceptions. A target or an instrument
+/// exactly at the model's tip moves it; so does, with `move_tip`, the target without a name (if measured as points, with the orientation of `tip`).
+/// Targets and instruments of the model with bodies of their own stay on these.
 pub(crate) fn place_tip(
     robot: &Robot,
     data: &Dataset,
@@ -134,8 +134,8 @@ pub(crate) fn place_tip(
     (calibrated, targets)
 }
 
-/// Puts the measured targets and the instruments of the model to their calibrated places. A target at the tip moves it too, or else an
-/// instrument there, unless it was `seen` otherwise; returns what was seen of it.
+/// Moves the measured targets and the instruments of the model to their calibrated poses. A target at the tip moves the tip too, or else an
+/// instrument there, unless it was already `seen`; returns the measured components of the tip.
 fn place_mounts(
     robot: &Robot,
     calibrated: &mut Robot,

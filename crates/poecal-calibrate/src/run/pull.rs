@@ -1,30 +1,29 @@
-//! Whether the residuals of a fit are the pull of its prior, and not noise: theory.md §6, *Pull*.
+//! Test whether the residuals of a fit are the bias of its prior, and not noise: theory.md §6, *Pull*.
 
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// The prior is let go where a step without it would leave a smaller share of the variance: the pull is then three times the noise.
+/// The prior is released if a step without it would leave a smaller share of the variance: the prior bias is then three times the noise.
 const LET_GO: f64 = 0.1;
-/// Least number of residuals beyond the unknowns: of so many that are noise, a step leaves so small a share by chance in four of a million
-/// sessions.
+/// Least number of residuals beyond the unknowns: if these are noise, a step leaves so small a share by chance in four of a million sessions.
 const REDUNDANT: usize = 15;
-/// Share of the prior that stays in that step: what the rows do not determine stays where it is.
+/// Share of the prior that stays in that step: directions that the rows do not determine stay unchanged.
 const KEPT: f64 = 1e-2;
-/// The share may be so large where `JᵀJ` is that of an earlier state.
+/// Limit of the share if `JᵀJ` is that of an earlier state.
 const NEARLY: f64 = 0.5;
 /// Rounding, as a share of the largest information.
 const ROUNDING: f64 = 1e-13;
-/// The prior is let go if what is left is smaller than any instrument's noise, as a share of the length of physical scaling.
+/// The prior is released if the remaining residuals are smaller than any instrument's noise, as a share of the length of physical scaling.
 pub(crate) const FINE: f64 = 1e-5;
-/// Weight of a prior that is let go, over that by the rule: small beside any residual, and large beside rounding.
+/// Weight of a released prior, relative to that by the rule: small beside any residual, and large beside rounding.
 pub(crate) const RELEASED: f64 = 1e-6;
-/// A fit without its prior ends so many times sooner: what it would still move is the rest of the pull.
+/// Factor by which a fit without its prior ends sooner: its remaining motion is the rest of the prior bias.
 pub(crate) const SOONER: f64 = 1000.0;
 /// Mean square of exact residuals over that of rounding: three picometres.
 pub(crate) const EXACT: f64 = 1e7;
 
-/// The share of the residuals' variance that is not the prior's pull, where that is little; `None` if they may be noise. `fitted` is the
-/// normal information of a fit, `believed` the prior's part of it, and `seen` gives that of the rows anew.
+/// Share of the residuals' variance that is not prior bias, if it is small; `None` if they may be noise. `fitted` is the normal information of a fit,
+/// `believed` the prior's part of it, and `seen` recomputes that of the rows.
 pub(crate) fn left_by_pull(fitted: &Normal, believed: &Normal, seen: impl FnOnce() -> Normal) -> Option<f64> {
     let less = |all: &[f64], part: &[f64]| all.iter().zip(part).map(|(all, part)| all - part).collect();
     let nearly = Normal {
@@ -37,7 +36,7 @@ pub(crate) fn left_by_pull(fitted: &Normal, believed: &Normal, seen: impl FnOnce
     left(&seen(), believed).filter(|left| *left < LET_GO)
 }
 
-/// Variance of the residuals after a step without the prior, over their mean square; `None` if too few are left to tell.
+/// Variance of the residuals after a step without the prior, over their mean square; `None` if too few are left to decide.
 fn left(seen: &Normal, believed: &Normal) -> Option<f64> {
     let n = seen.dim();
     let redundant = seen.residuals.checked_sub(n).filter(|it| *it >= REDUNDANT)?;

@@ -35,8 +35,8 @@ pub(crate) fn refuse_options(data: &Dataset, options: &CalibrationOptions) -> Re
     ))
 }
 
-/// The corrections of a fit of these unknowns: none where terms beside screws that are held or written otherwise would do what the screws do not.
-/// Refuses those that the robot does not allow.
+/// The corrections of a fit of these unknowns: none if terms beside held or reparameterised screws would replace the screws. Refuses corrections that
+/// the robot does not allow.
 pub(crate) fn allowed_corrections(
     robot: &Robot,
     unknowns: &Unknowns,

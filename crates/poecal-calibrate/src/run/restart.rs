@@ -1,4 +1,4 @@
-//! Further starts where a fit may have converged to a local minimum, and the choice among optima that are equal.
+//! Further starts if a fit may have converged to a local minimum, and the choice among equal optima.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;

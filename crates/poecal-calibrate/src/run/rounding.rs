@@ -1,9 +1,9 @@
-//! What is said of readings that were written with few digits.
+//! Statement about readings that were written with few digits.
 
 use poecal_fit::state::{Rounding, Session};
 use poecal_numerics::error::first_few;
 
-/// That readings are rounded, and what that costs at the tip, where `left_m` (RMS) is no less than half of it.
+/// Reports rounded readings and their effect at the tip, if `left_m` (RMS) is at least half of it.
 pub(crate) fn rounded(session: &Session<'_>, left_m: f64) -> Option<String> {
     let Rounding { names, step, unit, place_m2, .. } = Rounding::from_session(session, left_m)?;
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -9,15 +9,15 @@ use poecal_numerics::distributions::median;
 
 /// Numbers for each unknown from which a robust fit finds such rows by itself.
 const ENOUGH: usize = 4;
-/// Times the median distance of all rows from a robust start that a row is off by: axes that are off by degrees make no tenth of it.
+/// Distance of a gross row from a robust start, as a multiple of the median over all rows: axes with errors of degrees cause less than a tenth of it.
 const GROSS: f64 = 30.0;
-/// Times that the median distance from the usual start is larger where it is ruined.
+/// Ratio of the median distance from the usual start to that from the robust one, if the usual start is ruined.
 const RUINED: f64 = 5.0;
-/// Most of the rows: one of so many, or one.
+/// Largest share of such rows: one in this number, or one.
 const ONE_OF: usize = 10;
 
 impl Run<'_> {
-    /// The same without rows that ruin the start, which are suspected then, with the start of the others.
+    /// The run without rows that ruin the start, which are then suspected, with the start of the others.
     pub(crate) fn without_ruinous(self, start: Start) -> (Self, Start) {
         let rows = self.in_pool(|| self.ruinous(&start));
         if rows.is_empty() {

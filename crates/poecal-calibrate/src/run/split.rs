@@ -11,16 +11,16 @@ use poecal_model::measurement::{Dataset, Set};
 use poecal_model::simulate::random;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Share of the configurations that is held out where none is asked for.
+/// Default share of the configurations that is held out.
 const USUAL: f64 = 0.3;
-/// Fewest configurations that are held out where nothing is asked for: of fewer, cross-validation of all judges better.
+/// Fewest configurations that are held out by default: with fewer, cross-validation of all judges better.
 pub const FEWEST_HELD_OUT: usize = 12;
 /// Option that names measurements for validation.
 const VALIDATE: &str = "--validate";
 
-/// Training and held-out rows, each in the order of the data. Sets stated by rows hold (rows without one are fitted); otherwise a seeded
-/// share of the *configurations* is held out, so that targets of one configuration are never in both sets; none of few, unless it is asked
-/// for ([`CalibrationOptions::held_out`]).
+/// Training and held-out rows, each in the order of the data. Sets stated by rows hold (rows without one are fitted). Otherwise a seeded share of the
+/// *configurations* is held out, so that targets of one configuration are never in both sets. With few configurations none is held out by default
+/// ([`CalibrationOptions::held_out`]).
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the share is not in `[0, 1)`, [`ErrorKind::Problem`] if no row is left to fit.
@@ -50,7 +50,7 @@ pub fn split_rows(data: &Dataset, options: &CalibrationOptions) -> Result<(Vec<u
     Ok((fitted, held_out_count))
 }
 
-/// Refuses held-out rows of which half or more are copies of fitted rows: their errors would be too small.
+/// Refuses held-out rows if half or more of them are copies of fitted rows: their errors would be too small.
 fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Result<()> {
     // Numbers converted from another unit differ in the last digits.
     const SAME: f64 = 1e-9;
@@ -82,11 +82,11 @@ fn refuse_copies(data: &Dataset, held_out: &[bool], held_out_count: usize) -> Re
         ))
 }
 
-/// Applies the stated sets. If rows state their set, `held_out` must be absent or 0; 0 fits all rows but those of `--validate`. `stated_by`
-/// names the source in the message. Returns whether sets are stated.
+/// Applies the stated sets. If rows state their set, `held_out` must be absent or 0; 0 fits all rows except those of `--validate`. `stated_by` names
+/// the source in the message. Returns whether sets are stated.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if a share above 0 is asked for as well.
+/// [`ErrorKind::Option`] if a share above 0 is requested as well.
 pub fn settle_sets(data: &mut Dataset, held_out: Option<f64>, stated_by: &str) -> Result<bool> {
     if data.observations.iter().all(|row| row.set.is_none()) {
         return Ok(false);
@@ -133,8 +133,8 @@ fn random_share(data: &Dataset, options: &CalibrationOptions) -> Vec<bool> {
     configuration.iter().map(|&first| chosen[first as usize]).collect()
 }
 
-/// Whether it may be decided here that all rows are fitted: limits are decided by rows that were not, and so are pictures, whose corners
-/// cross-validation does not predict. Neither of rows in motion, which are no configurations, nor of fewer than cross-validation leaves out.
+/// True if the default may be to fit all rows. It may not if limits are stated, which only held-out rows decide; nor for pictures, whose corners
+/// cross-validation does not predict; nor for rows in motion, which are no configurations; nor for fewer than cross-validation leaves out.
 fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
     options.held_out.is_none()
         && options.accept.is_none()
@@ -143,7 +143,7 @@ fn is_open(data: &Dataset, options: &CalibrationOptions) -> bool {
         && data.len() >= FEWEST_VALIDATED
 }
 
-/// Number of configurations where all are fitted although nothing asks for it: those that would have been held out are too few.
+/// Number of configurations, if all are fitted by default because too few would have been held out.
 pub(crate) fn too_few_to_hold_out(
     data: &Dataset,
     options: &CalibrationOptions,
@@ -154,7 +154,7 @@ pub(crate) fn too_few_to_hold_out(
     is_chosen.then(|| data.configurations(&data.all_rows()).len())
 }
 
-/// Rows in motion that are near in time are nearly of one configuration: those of each two seconds are held out together.
+/// Groups rows in motion that are near in time, which are nearly one configuration: those of each two seconds are held out together.
 fn in_motion_together(data: &Dataset, configuration: &mut [u32]) {
     const TOGETHER_S: f64 = 2.0;
     let mut firsts: BTreeMap<(usize, i64), u32> = BTreeMap::new();

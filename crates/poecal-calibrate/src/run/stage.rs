@@ -7,7 +7,7 @@ pub enum Stage {
     Registration,
     /// Fitting the screws.
     Fit,
-    /// Fitting what joints do beyond geometry.
+    /// Fitting joint effects beyond geometry.
     Corrections,
     /// Judging the models.
     Analysis,

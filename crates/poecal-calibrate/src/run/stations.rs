@@ -10,7 +10,7 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// Fewest rows that determine a device frame: three points.
 const FEWEST_ROWS: usize = 3;
 
-/// Fewest rows that determine what a station shows of its frame.
+/// Fewest rows that determine the observable part of a station's frame.
 fn fewest(data: &Dataset, station: usize, rows: &[u32]) -> usize {
     let numbers = rows.iter().map(|&row| data.observations[row as usize].measurement.dim()).max();
     let freedom = data.device_freedom(station, rows);
@@ -36,7 +36,7 @@ pub(crate) fn check_stations(
     }
     for station in (0..stations).filter(|&station| unknowns.moves_frame(station)) {
         let (own, judging) = (data.seen_from(station, fitted), data.seen_from(station, held_out));
-        // A station that held-out rows alone name is found from these.
+        // A station that only held-out rows name is determined from these.
         let rows = if own.is_empty() { judging } else { own };
         let needed = fewest(data, station, &rows);
         if rows.len() >= needed {
@@ -51,7 +51,7 @@ pub(crate) fn check_stations(
     Ok(())
 }
 
-/// Refuses a fit without a tolerance where nothing that was measured has a length: the robot that fits best is then a point.
+/// Refuses a fit without a tolerance if no measured quantity has a length: the best-fitting robot is then a point.
 pub(crate) fn check_length(
     session: &Session<'_>,
     options: &CalibrationOptions,

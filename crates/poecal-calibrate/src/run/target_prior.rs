@@ -1,4 +1,4 @@
-//! How near the drawing targets are taken to be where the rows leave their places open: theory.md §6, *Targets*.
+//! Prior of targets' positions near nominal, if the rows leave the positions undetermined: theory.md §6, *Targets*.
 
 use super::Run;
 use crate::robust::RobustFit;
@@ -8,10 +8,10 @@ use poecal_model::measurement::Noise;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::{LeastSquares as _, Normal};
 
-/// Prior standard deviations of targets' places that are tried before the widest, metres.
+/// Prior standard deviations of targets' positions that are tried before the widest, metres.
 const SIGMAS_M: [f64; 3] = [0.02, 0.06, 0.2];
-/// Standard deviation of the places by the rows and the axes' prior, metres, from which on another prior of targets matters where rows are left
-/// out, and from which on it decides in the fit.
+/// Standard deviation of the positions by the rows and the axes' prior, metres: the least with which another prior of targets matters for left-out
+/// rows, and the least with which it decides in the fit.
 const MATTERS_M: f64 = 1e-3;
 const OPEN_M: f64 = 5e-3;
 /// Loss of twice the cost (27) by which the rows contradict a prior: 95 % of χ² with one degree of freedom.
@@ -19,7 +19,7 @@ const CONTRADICTED: f64 = 3.84;
 /// Rounding of information, as a share of its largest diagonal element.
 const ROUNDING: f64 = 1e-14;
 
-/// A run with a narrower prior of its targets' places, and its fit.
+/// A run with a narrower prior of its targets' positions, and its fit.
 pub(crate) struct Narrowed<'a> {
     pub(crate) run: Run<'a>,
     pub(crate) start: Start,
@@ -27,8 +27,8 @@ pub(crate) struct Narrowed<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// The same with the narrowest prior of targets' places that the rows do not contradict; `None` where they determine the places, or
-    /// contradict all but the widest.
+    /// The run with the narrowest prior of targets' positions that the rows do not contradict; `None` if they determine the positions, or contradict
+    /// all but the widest.
     pub(crate) fn with_narrower_targets(&self, widest: &RobustFit) -> Option<Narrowed<'a>> {
         let open_m = self.open_m(self.prior.as_ref()?, &widest.fitted).filter(|open| *open > MATTERS_M)?;
         let rows = widest.robustness.registrable(&self.fit_rows);
@@ -46,7 +46,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The cost (27) of a fit by these rows, in units of the variance of their whitened residuals where that is above 1.
+    /// The cost (27) of a fit by these rows, in units of the variance of their whitened residuals if it is above 1.
     fn cost(&self, rows: &[u32], noise: Noise, fitted: &Fitted) -> Option<f64> {
         let free = fitted.layout.parameters().map(|(parameter, _)| *parameter).collect();
         let of_rows = Problem::new(self.session(&[]), rows.to_vec(), free, noise).normal(&fitted.estimate);
@@ -55,7 +55,7 @@ impl<'a> Run<'a> {
         cost.is_finite().then_some(cost)
     }
 
-    /// Standard deviation of the places of targets by the rows and the axes' prior, metres, at most that of the targets' prior.
+    /// Standard deviation of the positions of targets by the rows and the axes' prior, metres, at most that of the targets' prior.
     fn open_m(&self, prior: &Prior, fitted: &Fitted) -> Option<f64> {
         let sigma_m = prior.target_sigma_m()?;
         let n = fitted.layout.dim();
@@ -78,7 +78,7 @@ impl<'a> Run<'a> {
         Some(sigma_m * share.max(0.0).sqrt())
     }
 
-    /// That the rows leave the places of targets open, and what to measure.
+    /// States that the rows leave the positions of targets undetermined, and recommends measurements.
     pub(crate) fn open_targets(&self) -> Option<String> {
         let (open_m, sigma_m) =
             self.open_targets_m.filter(|open| *open > OPEN_M).zip(self.unknowns.target_sigma_m)?;

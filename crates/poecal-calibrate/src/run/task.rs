@@ -15,7 +15,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::solve::{LeastSquares as _, Normal, Options, Summary};
 use poecal_numerics::unit::Unit;
 
-/// Most rounds of re-estimating noise and the weight of the prior. Two or three are enough, but for data without noise.
+/// Most rounds of re-estimating noise and the weight of the prior. Two or three suffice, except for data without noise.
 const RENEWALS: usize = 12;
 
 /// Predicted reduction of a full step.
@@ -36,18 +36,18 @@ pub(crate) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// The same with another weight of the prior.
+    /// The task with another weight of the prior.
     pub(crate) fn with_prior_weight(&self, weight: f64) -> Self {
         Task { prior: self.prior.map(|(prior, _)| (prior, weight)), ..*self }
     }
 
-    /// A weight of the prior, at least 1 where nothing has a length: noise would have the robot shrink.
+    /// A weight of the prior, at least 1 if no measured quantity has a length: noise would shrink the robot.
     pub(crate) fn counted(&self, weight: f64) -> f64 {
         if self.session.lacks_length(self.rows) { weight.max(1.0) } else { weight }
     }
 
-    /// The prior's weight in the first fit. An estimated noise is then mostly error of the screws, so the prior counts as beside the usual
-    /// error of gears and links.
+    /// The prior's weight in the first fit. An estimated noise then consists mostly of errors of the screws, so the prior is weighted as beside the
+    /// usual error of gears and links.
     fn with_first_prior_weight(&self, start: &Start) -> Self {
         let usual = 0.1 * SUSPICIOUS * 3.0 * self.session.length_m / start.noise.of_lengths();
         let is_open = start.source == NoiseSource::Estimated;
@@ -76,8 +76,7 @@ impl Task<'_> {
         Some(believed)
     }
 
-    /// Whether the residuals are evidently the prior's pull and nothing that an instrument adds; never where the prior alone gives the robot
-    /// its size.
+    /// True if the residuals are evidently bias of the prior and no instrument noise; never if the prior alone determines the size of the robot.
     fn is_pull(&self, found: &OngoingFit, noise: Noise) -> bool {
         let Session { length_m, .. } = self.session;
         let believed = if self.session.lacks_length(self.rows) { None } else { self.believed(found) };
@@ -90,7 +89,7 @@ impl Task<'_> {
         left.is_some_and(|left| (left * self.mean_square(found)).sqrt() * noise_m < FINE * length_m)
     }
 
-    /// Whether residuals are so near rounding that the rest of the prior's pull does not matter.
+    /// True if residuals are so near rounding that the remaining bias of the prior does not matter.
     fn is_exact(&self, found: &OngoingFit, noise: Noise, source: NoiseSource) -> bool {
         let rounding = || self.problem(&found.estimate, noise).rounding();
         source == NoiseSource::Exact && self.mean_square(found) < EXACT * rounding()
@@ -102,8 +101,8 @@ impl Task<'_> {
         2.0 * (found.normal.cost - believed).max(0.0) / found.normal.residuals.max(1) as f64
     }
 
-    /// Completes a first fit: further starts if needed, then rounds with noise and prior weight re-estimated (noise only if its source is
-    /// the residuals).
+    /// Completes a first fit: further starts if needed, then rounds with noise and prior weight re-estimated (noise only if its source is the
+    /// residuals).
     pub(crate) fn complete(&self, mut found: OngoingFit, start: &Start) -> Result<Fitted> {
         let Start { mut noise, mut source, .. } = *start;
         let mut task = self.with_first_prior_weight(start);
@@ -157,12 +156,12 @@ impl Task<'_> {
             let explains = source != NoiseSource::Exact && is_within_band(variance, freedom).is_eq();
             weight = if explains { 1.0 } else { variance };
         }
-        // The axes' deviations estimate how good the nominal model is.
+        // The axes' deviations estimate the quality of the nominal model.
         weight /= self.prior.map_or(1.0, |(prior, _)| prior.looseness(&found.estimate));
         if source == NoiseSource::Exact { weight } else { self.counted(weight) }
     }
 
-    /// Change of the ratios of noises: of the largest to the smallest change of any of them, as a logarithm.
+    /// Change of the ratios of noises: ratio of the largest to the smallest change among them, as a logarithm.
     fn change(&self, noise: Noise, before: Noise) -> f64 {
         let is_used = |quantity: Quantity| self.session.data.has(quantity) || quantity.is_of_pose();
         let used = || noise.iter().filter(|(quantity, _)| is_used(*quantity));
@@ -170,8 +169,7 @@ impl Task<'_> {
         logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min)
     }
 
-    /// Effective number of unknowns determined by the rotation residuals, `tr(N⁻¹ N_R)`: theory.md §6 (34). Only for few rows, where it
-    /// matters.
+    /// Effective number of unknowns determined by the rotation residuals, `tr(N⁻¹ N_R)`: theory.md §6 (34). Only for few rows, with which it matters.
     pub(crate) fn determined_by_rotations(&self, found: &OngoingFit, noise: Noise) -> Option<f64> {
         const FEW: usize = 300;
         // With positions practically unmeasured, the information of rotations remains.
@@ -211,7 +209,7 @@ impl Task<'_> {
         }
         let layout = self.problem(&estimate, noise).layout().clone();
         let offsets = |(parameter, _): (&Parameter, _)| matches!(parameter, Parameter::ValueTerm(_));
-        // Terms that were asked for are the robot's.
+        // Requested terms belong to the robot.
         let is_of_formulation = self.options.formulation != Formulation::default();
         report.joint_offsets =
             (is_of_formulation && layout.parameters().any(offsets)).then(|| estimate.offsets());
@@ -226,7 +224,7 @@ impl Task<'_> {
         fit_screws(self.session, self.rows, start, noise, self.prior, self.options)
     }
 
-    /// One fit whose prior is let go.
+    /// One fit with a released prior.
     fn released_fit(&self, start: Estimate, noise: Noise) -> (Estimate, Normal, Summary) {
         let mut options = self.options.clone();
         options.solver.decrement *= SOONER;

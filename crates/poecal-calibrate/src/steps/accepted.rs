@@ -15,26 +15,26 @@ use poecal_numerics::distributions::upper_quantile;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_numerics::unit::Unit;
 
-/// Probability that the noise of a measurement is larger than what is added to its error.
+/// Probability that the noise of a measurement exceeds the margin added to its error.
 const RISK: f64 = 0.05;
 
-/// Errors of rows, and what they are worth.
+/// Errors of rows, with their noise.
 struct Rows<'a> {
     session: Session<'a>,
     rows: &'a [u32],
     errors: &'a [RowError],
-    /// By which rows are weighted.
+    /// Noise by which rows are weighted.
     noise: Noise,
-    /// The part of it that stated noise or repeated measurements show; none without an uncertainty.
+    /// Part of it that stated noise or repeated measurements show; `None` without an uncertainty.
     shown: Option<Noise>,
-    /// Factor on the errors of rows that parts of the model were fitted to.
+    /// Factor on the errors of rows to which parts of the model were fitted.
     factor: f64,
 }
 
 /// Judges a finished calibration by its rows held out, or if there are none, by cross-validation.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if no such row measured what a limit is for, [`ErrorKind::Problem`] if there are no such rows.
+/// [`ErrorKind::Option`] if no such row measured the quantity of a limit, [`ErrorKind::Problem`] if there are no such rows.
 pub(crate) fn accepted(
     calibration: &Calibration,
     data: &Dataset,
@@ -60,11 +60,11 @@ pub(crate) fn accepted(
     Ok(Acceptance::new(model, AcceptedRows::HeldOut, judged.limits(&accept.limits)?))
 }
 
-/// Judges a calibration by other measurements. Errors of rows to which a device frame or targets were fitted count as larger, by the
-/// unknowns that took a part of them.
+/// Judges a calibration by other measurements. Errors of rows to which a device frame or targets were fitted are scaled up, by the share that these
+/// unknowns absorbed.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if no row measured what a limit is for, [`ErrorKind::Problem`] if the rows are too few for the refit.
+/// [`ErrorKind::Option`] if no row measured the quantity of a limit, [`ErrorKind::Problem`] if the rows are too few for the refit.
 pub fn accepted_by(
     subject: &Subject<'_>,
     data: &Dataset,
@@ -125,8 +125,7 @@ impl Rows<'_> {
     }
 }
 
-/// The mean square of rows that were left out in turn, of no more degrees of freedom than configurations: their errors are not known one by
-/// one.
+/// Mean square of rows that were left out in turn, with at most as many degrees of freedom as configurations: their individual errors are not kept.
 fn by_cross_validation(
     calibration: &Calibration,
     data: &Dataset,

@@ -1,4 +1,4 @@
-//! The judgement of what was fitted, once, at the end.
+//! Judgement of the fit, once, at the end.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ use poecal_numerics::error::Result;
 use poecal_numerics::threads;
 
 impl<'a> Found<'a> {
-    /// Judges what was fitted; with `events` if the session was searched for them.
+    /// Judges the fit; with `events` if the session was searched for them.
     pub(crate) fn judge(self, events: Option<Events>) -> Result<Repaired<'a>> {
         let rows = self.fit.run.data.len();
         let (mut calibration, run) = threads::in_pool(rows, || self.judged(events));
@@ -44,7 +44,7 @@ impl<'a> Found<'a> {
 
     fn judged(self, events: Option<Events>) -> (Calibration, Run<'a>) {
         let Found { fit, corrected, summary, cross_validation } = self;
-        // Where a corrected model searches for steps and drifts, the residuals of geometry do not.
+        // If a corrected model searches for steps and drifts, the residuals of geometry do not.
         let finds_moves = events.is_none() || fit.run.corrections == Corrections::Off;
         let events = events.unwrap_or_default();
         let mut figures = fit.figures(&summary, corrected, cross_validation);
@@ -55,7 +55,7 @@ impl<'a> Found<'a> {
             judged(&Grounds { fit: &fit, summary: &summary, figures: &figures, signs: &signs, mistakes });
         let is_doubtful = judged.of_calibrated(&figures.trust.expected).level == Level::DoNotUse;
         if is_doubtful || signs.diagnosis.iter().any(Diagnosis::is_of_input) {
-            // Mistakes in the input are not the fault of a joint.
+            // Mistakes in the input are no fault of a joint.
             figures.trust.joints.iter_mut().for_each(|joint| joint.suspicious = None);
         }
         figures.explain_suspicions(&fit.run.robot);
@@ -105,7 +105,7 @@ impl<'a> Found<'a> {
 }
 
 impl CalibratedFit<'_> {
-    /// The calibrated robot with its tip, and the targets in that.
+    /// The calibrated robot with its tip, and the targets in its frame.
     fn placed(&self, figures: &Figures) -> (Robot, Vec<CalibratedTarget>) {
         let Run { robot, data, options, fit_rows, .. } = &self.run;
         let frames = data.frames(fit_rows);
@@ -140,7 +140,7 @@ impl CalibratedFit<'_> {
     }
 }
 
-/// The verdict on the model that is delivered.
+/// The verdict on the delivered model.
 fn verdict(judged: &Judged, correction: Option<&Correction>, accuracy: &Accuracy, trust: &Trust) -> Verdict {
     match correction.filter(|it| it.has_terms()) {
         Some(found) => {

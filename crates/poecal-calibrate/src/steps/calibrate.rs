@@ -14,15 +14,14 @@ use poecal_numerics::error::Result;
 ///
 /// # Errors
 /// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if there are too few measurements,
-/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) for options out of range, [`ErrorKind::Solver`](poecal_numerics::error::ErrorKind::Solver)
-/// if no finite result could be reached.
+/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) for options out of range,
+/// [`ErrorKind::Solver`](poecal_numerics::error::ErrorKind::Solver) if no finite result could be reached.
 pub fn calibrate(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> Result<Calibration> {
     Ok(calibrated(robot, data, options, false, &mut |_| {})?.calibration)
 }
 
-/// [`calibrate`] with the session repaired where something evidently happened in it and the repaired one predicts rows better
-/// that are left out ([`CalibrationOptions::repair`]); reports each stage as it begins. All that belongs to the calibration belongs to
-/// [`Repaired::data`].
+/// [`calibrate`] with the session repaired if an event is evident and the repaired session predicts left-out rows better
+/// ([`CalibrationOptions::repair`]); reports each stage as it begins. The results of the calibration refer to [`Repaired::data`].
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -35,7 +34,7 @@ pub fn calibrate_repairing<'a>(
     calibrated(robot, data, options, true, progress)
 }
 
-/// All steps; `searches` the session for what happened in it.
+/// All steps; `searches` requests the search for events.
 fn calibrated<'a>(
     robot: &Robot,
     data: &'a Dataset,
@@ -44,28 +43,28 @@ fn calibrated<'a>(
     progress: &mut dyn FnMut(Stage),
 ) -> Result<Repaired<'a>> {
     refuse_options(data, options)?;
-    // Rows, unknowns and prior; refuses what cannot be fitted.
+    // Rows, unknowns and prior; refuses problems that cannot be fitted.
     let run = Run::new(robot, Cow::Borrowed(data), options, Vec::new())?;
-    // A loop over fits, if it is asked for.
+    // A loop over fits, if it is requested.
     let run = run.with_best_tolerance()?;
     progress(Stage::Registration);
     let start = run.register();
-    // A session of few rows without one that alone ruins its start.
+    // A session of few rows, without one that alone ruins its start.
     let (run, start) = run.without_ruinous(start);
     progress(Stage::Fit);
-    // A loop where several instruments have different noises: fit, noises, fit.
+    // A loop if several instruments have different noises: fit, noises, fit.
     let fit = run.fit(start)?;
     if fit.run.corrections != Corrections::Off {
         progress(Stage::Corrections);
     }
-    // A loop where the corrected model suspects other rows than geometry: terms, rows, fit, terms.
+    // A loop if the corrected model suspects other rows than geometry: terms, rows, fit, terms.
     let mut found = fit.correct()?;
-    // A loop over sessions where something happened: search, session as it would be without, its fit.
+    // A loop over sessions with events: search, the session without the event, its fit.
     let events = searches.then(|| repair(&mut found));
     progress(Stage::Analysis);
-    // All that is said of the fit, once.
+    // The complete judgement of the fit, once.
     let Repaired { calibration, data: repaired } = found.judge(events)?;
-    // What a formulation writes otherwise is given back as it was.
+    // Data that a formulation rewrites are returned unchanged.
     let is_as_given = calibration.repairs.is_empty() && data.pictures.is_empty();
     let data = if is_as_given { Cow::Borrowed(data) } else { repaired };
     Ok(Repaired { calibration, data })

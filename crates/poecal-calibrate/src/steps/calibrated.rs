@@ -23,18 +23,18 @@ pub(crate) struct CalibratedFit<'a> {
     pub(crate) robust: RobustFit,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
     pub(crate) noise_ratios: Vec<Noise>,
-    /// What of cameras and boards was found with the robot.
+    /// Fitted unknowns of cameras and boards.
     pub(crate) optics: Option<Optics>,
     /// The calibrated model: the fit in the nominal base frame, with the frames of all stations.
     pub(crate) estimate: Estimate,
 }
 
 impl<'a> Run<'a> {
-    /// Fits the screws; where several instruments have different noises, again with these until they do not change.
+    /// Fits the screws; if several instruments have different noises, repeats with these until they do not change.
     pub(crate) fn fit(mut self, mut start: Start) -> Result<CalibratedFit<'a>> {
         let mut ratios = Vec::new();
         let mut fit = self.fit_with(&ratios, &start, self.options.robust)?;
-        // A loop where the rows leave the places of targets open: the narrowest prior that they do not contradict.
+        // A loop if the rows leave the positions of targets undetermined: the narrowest prior that they do not contradict.
         if let Some(narrowed) = self.with_narrower_targets(&fit) {
             (self, start, fit) = (narrowed.run, narrowed.start, narrowed.fit);
         }
@@ -45,7 +45,7 @@ impl<'a> Run<'a> {
             let again = Start { noise: fit.fitted.noise, ..start.clone() };
             fit = self.fit_with(&ratios, &again, self.options.robust)?;
         }
-        // A loop where there are pictures: fit, what their corners share, fit.
+        // A loop if there are pictures: fit, common error of their corners, fit.
         let (mut optics, mut pace) = (Optics::from_run(&self), pictures::Pace::default());
         for _ in 0..pictures::ROUNDS {
             let Some(data) = self.renewed_pictures(&ratios, &fit, (&mut optics, &mut pace)) else { break };
@@ -77,7 +77,7 @@ impl<'a> Run<'a> {
     /// The calibrated model of a fit.
     fn calibrated(&self, fit: &RobustFit, ratios: &[Noise]) -> Estimate {
         let session = self.session(ratios);
-        // Offsets that were asked for stay; those of a formulation are a way to write the screws.
+        // Requested offsets stay; those of a formulation are only its parameterisation of the screws.
         let found = if self.options.formulation == Formulation::default() {
             fit.fitted.estimate.clone()
         } else {
@@ -105,12 +105,12 @@ impl CalibratedFit<'_> {
         3.0 * self.session().length_m
     }
 
-    /// Noise by which residuals were whitened where a row stated none.
+    /// Noise by which residuals of rows without a stated noise were whitened.
     pub(crate) fn noise(&self) -> Noise {
         self.robust.fitted.noise
     }
 
-    /// Weights of all rows of the data after a robust fit: those of a loss that was asked for; otherwise only suspected rows lose theirs.
+    /// Weights of all rows of the data after a robust fit: those of a requested loss; otherwise only suspected rows lose their weight.
     pub(crate) fn weights(&self) -> Option<Vec<f64>> {
         let is_chosen = matches!(self.run.options.robust, Robust::Loss(_));
         let weight = |row: &RowJudgement| if row.suspected || is_chosen { row.weight } else { 1.0 };
@@ -118,7 +118,7 @@ impl CalibratedFit<'_> {
         loss.map(|_| rows.iter().map(weight).collect())
     }
 
-    /// The fitted rows that have a weight: others say nothing of the noise either.
+    /// The fitted rows that have a weight: the others do not inform the noise either.
     pub(crate) fn weighted_rows(&self) -> Vec<u32> {
         let weights = self.weights();
         let weight = |row: u32| weights.as_ref().and_then(|it| it.get(row as usize));
@@ -126,7 +126,7 @@ impl CalibratedFit<'_> {
         self.run.fit_rows.iter().copied().filter(counts).collect()
     }
 
-    /// The fit with other rows suspected; of all rows at full weight where none is.
+    /// The fit with other rows suspected; without any, of all rows at full weight.
     pub(crate) fn suspecting(self, suspected: &[bool]) -> Result<Self> {
         if suspected.contains(&true) {
             return Ok(self.with_suspects(suspected));

@@ -10,13 +10,13 @@ use poecal_fit::uncertainty::{Uncertainty, View};
 use poecal_model::offsets::{ChangeBySteps, Changes, End, JointChange};
 use poecal_model::robot::{Joint, JointKind, Robot};
 
-/// Standard deviations, as shares of those of a nominal model, up to which something is determined.
+/// Standard deviations, as shares of those of a nominal model, up to which a quantity is determined.
 const DETERMINED: f64 = 0.5;
 
 /// Derivatives of a vector by each scaled unknown: three rows.
 type Rows = [Vec<f64>; 3];
 
-/// Standard deviations of tilt and shift; `None` where they exceed half of the uncertainty of a nominal model.
+/// Standard deviations of tilt and shift; `None` if they exceed half of the uncertainty of a nominal model.
 pub(crate) fn sigmas(
     (tilt, shift): (&Rows, &Rows),
     uncertainty: Option<&Uncertainty>,
@@ -24,7 +24,7 @@ pub(crate) fn sigmas(
 ) -> (Option<f64>, Option<f64>) {
     let tilt = sigma(tilt, uncertainty, PLAUSIBLE);
     let shift = sigma(shift, uncertainty, PLAUSIBLE * length_m);
-    // The place of an axis of unknown direction means little.
+    // The position of an axis of unknown direction is not meaningful.
     if tilt.is_some() && shift.is_some() { (tilt, shift) } else { (None, None) }
 }
 
@@ -35,7 +35,7 @@ fn sigma(rows: &[Vec<f64>], uncertainty: Option<&Uncertainty>, most: f64) -> Opt
     Some(variance.sqrt()).filter(|sigma| *sigma < DETERMINED * most)
 }
 
-/// The correction of each joint, with its derivatives by the unknowns. In a robot with branches offsets are not told from the axes.
+/// The correction of each joint, with its derivatives by the unknowns. In a robot with branches offsets are not separated from the axes.
 pub(crate) fn joint_changes(
     view: &View<'_>,
     layout: &Layout,

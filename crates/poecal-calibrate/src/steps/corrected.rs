@@ -10,10 +10,10 @@ use poecal_numerics::error::Result;
 /// Most rounds of judging rows by the corrected model.
 const JUDGEMENTS: usize = 3;
 
-/// A session with all that was fitted to it.
+/// A session with all its fits.
 pub(crate) struct Found<'a> {
     pub(crate) fit: CalibratedFit<'a>,
-    /// None without corrections.
+    /// Corrected model; `None` without corrections.
     pub(crate) corrected: Option<CorrectedFit>,
     pub(crate) summary: FitSummary,
     /// Cross-validation of geometry; `None` with too few rows.
@@ -21,8 +21,8 @@ pub(crate) struct Found<'a> {
 }
 
 impl<'a> CalibratedFit<'a> {
-    /// Fits screws and terms together, if terms are asked for. What joints do beyond geometry makes no outliers: where the corrected model
-    /// suspects other rows, geometry is fitted again without these, and so are the terms.
+    /// Fits screws and terms together, if terms are requested. Joint effects beyond geometry are no outliers: if the corrected model suspects other
+    /// rows, geometry is refitted without these, and so are the terms.
     pub(crate) fn correct(self) -> Result<Found<'a>> {
         let mut fit = self;
         let mut corrected = fit.corrected();
@@ -49,7 +49,7 @@ impl<'a> CalibratedFit<'a> {
         Some(self.run.in_pool(|| corrected(self, sizes)))
     }
 
-    /// Whether each row is suspected by the corrected model, where these are other rows than those that geometry suspects.
+    /// Marks each row suspected by the corrected model; `None` if these are the rows that geometry suspects.
     fn other_suspects(&self, corrected: Option<&CorrectedFit>) -> Option<Vec<bool>> {
         let is_open = self.run.options.robust == Robust::Auto && self.run.left_out.is_empty();
         self.robust.robustness.suspects().next().filter(|_| is_open)?;

@@ -1,4 +1,4 @@
-//! The figures of what was fitted: errors of all models, trust, determined unknowns.
+//! Figures of a fit: errors of all models, trust, determined unknowns.
 
 use super::calibrated::CalibratedFit;
 use super::summary::FitSummary;
@@ -20,10 +20,10 @@ use poecal_model::measurement::ByQuantity;
 use poecal_model::robot::Robot;
 use poecal_numerics::unit::Unit;
 
-/// Factor on the noise of rotations where tool and frame are registered for the best positions.
+/// Factor on the noise of rotations in the registration of tool and frame for the best positions.
 const POSITIONS_FIRST: f64 = 100.0;
 
-/// Figures of what was fitted.
+/// Figures of a fit.
 pub(crate) struct Figures {
     pub(crate) models: Models,
     pub(crate) accuracy: Accuracy,
@@ -39,7 +39,7 @@ impl Figures {
         self.trust.uncertainty.as_ref()?.discrepancy.lag_one
     }
 
-    /// That the size of the robot shows in no measurement, and that no expected error contains it.
+    /// States that no measurement determines the size of the robot, and no expected error includes it.
     pub(crate) fn unknown_size(&self) -> Option<String> {
         let of_corrected = self.correction.as_ref().and_then(|it| it.uncertainty.as_ref());
         let sigma = of_corrected.or(self.trust.uncertainty.as_ref())?.size_sigma?;
@@ -50,7 +50,7 @@ impl Figures {
         ))
     }
 
-    /// Adds to each suspicious joint what the corrected model finds there.
+    /// Adds the corrected model's findings to each suspicious joint.
     pub(crate) fn explain_suspicions(&mut self, robot: &Robot) {
         let Some(found) = &self.correction else { return };
         for (joint, correction) in robot.joints.iter().zip(&mut self.trust.joints) {
@@ -116,7 +116,7 @@ impl CalibratedFit<'_> {
     /// The three models; the first two are registered by the rows that a robust fit keeps, the third in the nominal base frame.
     fn models(&self, session: &Session<'_>, kept: &[u32]) -> Models {
         let (run, noise) = (&self.run, self.noise());
-        // Positions decide tool and frame; orientations decide only the directions that positions do not determine.
+        // Positions determine tool and frame; orientations determine only the remaining directions.
         let positions = ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => noise[quantity],
             Unit::Radian | Unit::One | Unit::Second => POSITIONS_FIRST * noise[quantity],
@@ -135,7 +135,7 @@ impl CalibratedFit<'_> {
         Models { nominal, registered, calibrated: self.estimate.clone() }
     }
 
-    /// Beside a corrected model without terms, what terms might be there stays a part of the uncertainty of geometry, so that both are one.
+    /// Adds the possible effect of terms to the uncertainty of geometry if the corrected model has no terms, so that both models are the same.
     fn allow_for_terms(
         &self,
         session: &Session<'_>,

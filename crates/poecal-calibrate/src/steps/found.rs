@@ -1,4 +1,4 @@
-//! Begin and results of a fit.
+//! Start and results of a fit.
 
 use crate::NoiseSource;
 use poecal_fit::problem::Layout;
@@ -17,12 +17,12 @@ pub struct SolverReport {
     pub restarts: usize,
     /// Mean square whitened residual by iteration.
     pub trace: Vec<f64>,
-    /// Joint offsets (radians or metres): joint value minus reading, where the formulation has offsets. They are not
-    /// identifiable beside the screws (lou2009 Proposition 1); the calibrated robot has them in its screws.
+    /// Joint offsets (radians or metres): joint value minus reading, if the formulation has offsets. They are not identifiable beside the screws
+    /// (lou2009 Proposition 1); the calibrated robot has them in its screws.
     pub joint_offsets: Option<Vec<f64>>,
 }
 
-/// Device frame and targets with nominal screws, and the noise that they leave.
+/// Device frame and targets with nominal screws, and the noise estimated from their residuals.
 #[derive(Clone)]
 pub(crate) struct Start {
     pub(crate) registered: Estimate,

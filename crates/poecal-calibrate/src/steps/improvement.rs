@@ -1,4 +1,4 @@
-//! How many times smaller errors are than those of the registered or nominal model on the same rows: theory.md §9 (50).
+//! Ratio of the errors of the registered or nominal model to those of another model on the same rows: theory.md §9 (50).
 
 use crate::{Calibration, Improvement, Improvements};
 use poecal_fit::state::RowError;
@@ -8,7 +8,7 @@ use poecal_numerics::distributions::f_quantile;
 /// Probability that the factor lies outside its bounds.
 const RISK: f64 = 0.05;
 
-/// Of the rows held out; `None` without any.
+/// Improvements on the held-out rows; `None` without any.
 pub(crate) fn improvements(calibration: &Calibration, data: &Dataset) -> Option<Improvements> {
     let rows = &calibration.held_out_rows;
     let packed = calibration.packed(data);
@@ -23,7 +23,7 @@ pub(crate) fn improvements(calibration: &Calibration, data: &Dataset) -> Option<
     Some(Improvements { calibrated: of(&after), corrected })
 }
 
-/// (50) of each quantity, from errors of the same rows by two models, before and after; `rows` ascend.
+/// Improvement by (50) of each quantity, from errors of the same rows by two models, before and after; `rows` ascend.
 pub(crate) fn paired(
     data: &Dataset,
     rows: &[u32],
@@ -44,7 +44,7 @@ pub(crate) fn paired(
     })
 }
 
-/// (50) of sums of squares before and after, by configuration.
+/// Improvement by (50) from sums of squares before and after, by configuration.
 pub(crate) fn improvement(sums: &[[f64; 2]], is_measured: bool) -> Option<Improvement> {
     let [before, after] = sums.iter().fold([0.0, 0.0], |[a, b], [c, d]| [a + c, b + d]);
     let groups = sums.len() as f64;
@@ -66,7 +66,7 @@ mod tests {
     fn what_is_three_times_smaller_everywhere_is_so_for_certain() {
         let sums: Vec<[f64; 2]> = (1..20).map(|k| [9.0 * f64::from(k), f64::from(k)]).collect();
         let found = improvement(&sums, true).unwrap();
-        // Roundings.
+        // Tolerance for rounding.
         assert!((found.factor - 3.0).abs() < 1e-12 && (found.to - found.from).abs() < 1e-12, "{found:?}");
         assert_eq!(improvement(&sums[..1], true), None);
     }
@@ -90,7 +90,7 @@ mod tests {
             }
             let share = inside as f64 / 2000.0;
             println!("{count} configurations: {share:.3} inside");
-            // Of few configurations the scatter is not known well; three standard errors of the trials are 0.015.
+            // The scatter of few configurations is poorly determined; three standard errors of the trials are 0.015.
             assert!((if count < 20 { 0.89 } else { 0.93 }..0.98).contains(&share));
         }
     }

@@ -1,4 +1,4 @@
-//! The rows by which the models are judged, and whether they show that the calibrated one is no better: theory.md §9, *Verdict*.
+//! Rows that judge the models, and the decision whether they show that the calibrated model is no better: theory.md §9, *Verdict*.
 
 use super::calibrated::CalibratedFit;
 use super::figures::Figures;
@@ -10,25 +10,25 @@ use poecal_model::measurement::Dataset;
 
 /// Least relative reduction of the error.
 pub(crate) const WORTH: f64 = 0.02;
-/// Upper end of the interval of the improvement below which *no better* is said: rows held out must have been able to show a gain of a quarter, and
+/// Upper end of the interval of the improvement below which *no better* is stated. Held-out rows must have been able to show a gain of a quarter;
 /// cross-validation, whose fits have fewer rows than the model, must show a loss.
 const SEEN: f64 = 1.25;
 const LOST: f64 = 1.0;
 
-/// Rows that judge: those held out, or where there are none those fitted, each predicted by a fit of others.
+/// Rows that judge: those held out, or if there are none the fitted ones, each predicted by a fit of others.
 pub(crate) struct Judging {
-    /// Which errors these are.
+    /// Origin of these errors.
     pub(crate) place: &'static str,
     /// Errors of the nominal model, with targets and devices fitted, and of the calibrated one.
     pub(crate) errors: [JudgingError; 2],
-    /// How many times smaller the latter are: none of fewer than two configurations.
+    /// Ratio of the former to the latter; `None` with fewer than two configurations.
     improvement: Option<Improvement>,
-    /// Upper end of its interval below which the latter is no better; none where the rows were fitted.
+    /// Upper end of its interval below which the latter is no better; `None` if the rows were fitted.
     least: Option<f64>,
 }
 
 impl Judging {
-    /// Of a fit. Suspected rows do not count.
+    /// Judging rows of a fit. Suspected rows do not count.
     pub(crate) fn from_fit(fit: &CalibratedFit<'_>, figures: &Figures) -> Self {
         let (run, session) = (&fit.run, fit.session());
         let suspected = |row: &u32| figures.robustness.rows.get(*row as usize).is_some_and(|it| it.suspected);
@@ -54,8 +54,8 @@ impl Judging {
         Judging { place, errors, improvement: improved(session.data, &rows, both), least }
     }
 
-    /// That the calibrated model is no better, where its rows would have shown an improvement; else, where it is not seen to be better, that they
-    /// are too few to tell.
+    /// States that the calibrated model is no better, if its rows would have shown an improvement; or else, if no improvement is visible, that they
+    /// are too few to decide.
     pub(crate) fn no_better(&self) -> [Option<String>; 2] {
         let [before, after] = &self.errors;
         if after.rms <= (1.0 - WORTH) * before.rms {
@@ -78,7 +78,7 @@ impl Judging {
     }
 }
 
-/// (50) of the errors by which models are judged.
+/// Improvement by (50) of the errors that judge the models.
 fn improved(data: &Dataset, rows: &[u32], both: [&[RowError]; 2]) -> Option<Improvement> {
     let of_group = |group: &Vec<u32>| {
         let at: Vec<usize> = group.iter().filter_map(|row| rows.binary_search(row).ok()).collect();
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use poecal_numerics::unit::Unit;
 
-    /// What is said of a model whose errors are so many times smaller, up to `to` times.
+    /// Marks of the two statements about a model whose errors are smaller by `factor`, at most by `to`.
     fn said(place: &'static str, least: Option<f64>, factor: f64, to: f64) -> [bool; 2] {
         let error = |rms| JudgingError { what: "position error".to_owned(), rms, unit: Unit::Metre };
         let improvement = Some(Improvement { factor, from: factor * factor / to, to });

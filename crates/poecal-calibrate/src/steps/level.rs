@@ -4,22 +4,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::AcceptedModel;
 
-/// Level of a verdict: what the delivered model may be used for.
+/// Level of a verdict: the permitted use of the delivered model.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
-    /// Not at all: something is wrong with the input, the fit, or both.
+    /// No use: the input, the fit, or both are wrong.
     #[default]
     DoNotUse,
-    /// To locate targets and devices: the axes of the joints were held.
+    /// Location of targets and devices: the axes of the joints were held.
     Located,
-    /// In configurations like those that were measured.
+    /// Use in configurations like those that were measured.
     MeasuredConfigurations,
-    /// Anywhere inside the sampled range of each joint.
+    /// Use anywhere inside the sampled range of each joint.
     InsideSampledRange,
-    /// Anywhere within the limits.
+    /// Use anywhere within the limits.
     Good,
 }
 
@@ -50,7 +50,7 @@ impl Level {
     }
 }
 
-/// Whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it.
+/// Decision whether the delivered model predicts better than the nominal model: anywhere inside the sampled range, or on rows that judge it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Gain {
@@ -63,7 +63,7 @@ pub enum Gain {
 }
 
 impl Gain {
-    /// All, with their words in files and on the command line.
+    /// All gains, with their words in files and on the command line.
     pub const TABLE: [(Gain, &'static str); 3] =
         [(Gain::Clear, "clear"), (Gain::Unclear, "unclear"), (Gain::Loss, "loss")];
 
@@ -73,7 +73,7 @@ impl Gain {
         Self::TABLE[self as usize].1
     }
 
-    /// By the ends of an interval.
+    /// Gain by the ends of an interval.
     pub(crate) fn of_interval([least, most]: [f64; 2]) -> Self {
         if least > 0.0 {
             Gain::Clear
@@ -85,8 +85,7 @@ impl Gain {
     }
 }
 
-/// A level, and the reasons against a better one; for the best level, the reasons for it. And the expected errors of the model that is
-/// delivered.
+/// A level, and the reasons against a better one; for the best level, the reasons for it. It includes the expected errors of the delivered model.
 ///
 /// ```
 /// use poecal_calibrate::{Level, Verdict};
@@ -96,31 +95,31 @@ impl Gain {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Verdict {
-    /// How far it may be used.
+    /// Permitted use.
     pub level: Level,
     /// Sentences with the deciding figures.
     pub reasons: Vec<String>,
-    /// The model that is delivered: the corrected one where it has terms. Missing in older files.
+    /// The delivered model: the corrected one if it has terms. Missing in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<AcceptedModel>,
-    /// Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent where no use is advised, or
-    /// nothing is known.
+    /// Expected error of its predictions in configurations like those that were measured, millimetres (RMS); absent if no use is advised, or nothing
+    /// is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_error_mm: Option<f64>,
     /// Mean of the distances that 95 % of its errors do not exceed there, millimetres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound95_mm: Option<f64>,
-    /// Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent where no use is advised,
-    /// and in older files.
+    /// Expected error of its predictions anywhere inside the sampled range of each joint, millimetres (RMS); absent if no use is advised, and in
+    /// older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sampled_range_error_mm: Option<f64>,
     /// Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub nominal_error_mm: Option<f64>,
-    /// Whether it predicts better than the nominal model there.
+    /// Decision whether it predicts better than the nominal model there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<Gain>,
-    /// That the axes of the nominal model are confirmed, a sentence with its figures: the fitted ones are the same within their uncertainty.
+    /// Statement that the axes of the nominal model are confirmed, with its figures: the fitted ones are the same within their uncertainty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confirmed: Option<String>,
 }

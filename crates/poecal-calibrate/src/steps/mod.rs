@@ -1,8 +1,8 @@
 //! The steps of a calibration in order, and their results.
 //!
-//! `calibrate.rs` calls the steps, each once, in order, and has no formulas: `calibrated.rs` (the fit, a loop where several instruments have noises of
-//! their own), `corrected.rs` (a loop where the corrected model suspects other rows than geometry), `tolerance.rs` (a loop over fits and their
-//! cross-validations), `assess.rs` (all that is said of the fit, once; figures by `figures.rs`, the level with its reasons by `verdict.rs`).
+//! `calibrate.rs` calls the steps, each once, in order, and has no formulas. These are `calibrated.rs` (the fit, a loop if several instruments have
+//! noises of their own), `corrected.rs` (a loop if the corrected model suspects other rows than geometry), `tolerance.rs` (a loop over fits and their
+//! cross-validations), and `assess.rs` (the judgement of the fit, once; figures by `figures.rs`, the level with its reasons by `verdict.rs`).
 
 pub(crate) mod accepted;
 pub(crate) mod assess;

@@ -7,7 +7,7 @@ use crate::{Calibration, RowError};
 use poecal_fit::state::{Estimate, Session, turn_to_first};
 use poecal_model::measurement::{Dataset, Quantity};
 
-/// Fewest rows of one configuration; ISO 9283 asks for 30.
+/// Fewest rows of one configuration; ISO 9283 requires 30.
 const ROWS: usize = 3;
 /// Readings (radians, metres) within this belong to one configuration: encoder differences of a robot that returned.
 const SAME: f64 = 1e-4;
@@ -19,7 +19,7 @@ const DEVIATIONS: f64 = 3.0;
 pub struct RepeatedPose {
     /// Its rows.
     pub rows: Vec<u32>,
-    /// The quantity whose errors are compared: the first of its measurements, of poses and points the position.
+    /// Quantity of the compared errors: the first of its measurements, for poses and points the position.
     pub quantity: Quantity,
     /// Length of the mean error of the nominal, registered and calibrated model: A of theory.md §9 (46), metres or radians.
     pub accuracy: [f64; 3],
@@ -35,11 +35,11 @@ pub struct RepeatScatter {
     pub poses: usize,
     /// Number of their rows.
     pub rows: usize,
-    /// The quantity that is compared: that of the first of them.
+    /// The compared quantity: that of the first of them.
     pub quantity: Quantity,
     /// The smallest repeatability of a pose (theory.md §9 (46)), millimetres or degrees.
     pub smallest: f64,
-    /// The largest.
+    /// The largest repeatability.
     pub largest: f64,
 }
 

@@ -39,15 +39,15 @@ use poecal_numerics::{solve, threads};
 pub struct Calibration {
     /// The nominal robot.
     pub nominal: Robot,
-    /// The calibrated robot; targets and instruments of the model that were used are at their calibrated places.
+    /// The calibrated robot; used targets and instruments of the model are at their calibrated poses.
     pub robot: Robot,
     /// The targets.
     pub targets: Vec<CalibratedTarget>,
-    /// What was known of the device's frame.
+    /// Prior knowledge of the device's frame.
     pub frame: DeviceFrameKnowledge,
-    /// What the fit changed.
+    /// Unknowns of the fit.
     pub unknowns: Unknowns,
-    /// How the fit was written and minimised.
+    /// Formulation of the fit, and its minimisation.
     pub formulation: Formulation,
     /// Tolerance of the prior, if cross-validation chose it.
     pub chosen_tolerance: Option<Tolerance>,
@@ -61,15 +61,15 @@ pub struct Calibration {
     pub accuracy: Accuracy,
     /// The minimisation.
     pub solver: SolverReport,
-    /// Which unknowns the measurements determine.
+    /// Determined unknowns.
     pub identifiability: Identifiability,
     /// Uncertainty, cross-validation, corrections.
     pub trust: Trust,
-    /// Whether the limits that were asked for are kept; none if none were.
+    /// Decision whether the requested limits are kept; `None` without limits.
     pub acceptance: Option<Acceptance>,
-    /// Verdict with its reasons, on the model that is delivered.
+    /// Verdict with its reasons, on the delivered model.
     pub verdict: Verdict,
-    /// Noise by which residuals were whitened where a row stated none; of the first of several instruments.
+    /// Noise by which residuals of rows without a stated noise were whitened; with several instruments that of the first.
     pub noise: Noise,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
     pub noise_ratios: Vec<Noise>,
@@ -79,17 +79,17 @@ pub struct Calibration {
     pub robustness: Robustness,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
-    /// Mistakes found in all rows: named, not corrected.
+    /// Mistakes found in all rows: reported, not corrected.
     pub diagnosis: Vec<Diagnosis>,
-    /// What happened during the session and was repaired ([`calibrate_repairing`](crate::calibrate_repairing)).
+    /// Repaired events of the session ([`calibrate_repairing`](crate::calibrate_repairing)).
     pub repairs: Vec<Event>,
-    /// What seems to have happened and was not.
+    /// Suspected events that were not repaired.
     pub suspicions: Vec<Event>,
     /// Rows fitted.
     pub fit_rows: Vec<u32>,
     /// Rows held out.
     pub held_out_rows: Vec<u32>,
-    /// The corrected model: screws and terms fitted together; none if no terms were asked for.
+    /// The corrected model: screws and terms fitted together; `None` if no terms were requested.
     pub correction: Option<Box<Correction>>,
     /// Errors of corners over the image of each camera whose picture has a known size.
     pub images: Vec<ImageMap>,
@@ -97,12 +97,12 @@ pub struct Calibration {
     pub(crate) packed: Arc<Packed>,
 }
 
-/// A calibration, and the session that it is of.
+/// A calibration, and its session.
 #[derive(Clone, Debug)]
 pub struct Repaired<'a> {
-    /// The calibration, with what was repaired and what is suspected.
+    /// The calibration, with repaired and suspected events.
     pub calibration: Calibration,
-    /// The measurements as they were fitted: those given where nothing was repaired but rows left out.
+    /// The measurements as they were fitted: the supplied ones if rows were only left out.
     pub data: Cow<'a, Dataset>,
 }
 
@@ -132,8 +132,8 @@ impl Calibration {
         Robot { targets: self.targets.iter().filter_map(named).collect(), ..self.robot.clone() }
     }
 
-    /// Solves the least-squares problem of a finished calibration again, from the nominal (with an unknown device frame, the registered)
-    /// model to the optimum: packing and minimisation, with the final noise and all fitted rows at full weight. For comparisons of solvers.
+    /// Solves the least-squares problem of a finished calibration again, from the nominal model (with an unknown device frame, the registered one) to
+    /// the optimum: packing and minimisation, with the final noise and all fitted rows at full weight. It serves comparisons of solvers.
     #[must_use]
     pub fn solve_again(&self, data: &Dataset, options: &CalibrationOptions) -> solve::Summary {
         threads::in_pool(data.len(), || self.solved_again(data, options))

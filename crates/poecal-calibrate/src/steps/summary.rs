@@ -17,9 +17,9 @@ use poecal_numerics::solve::Normal;
 /// Efficiency of the robust losses under normal noise.
 const EFFICIENCY: f64 = 0.95;
 
-/// Unknowns of a fit in the minimal basis, with their information from the kept rows, whatever the parameterisation and loss of the fit.
+/// Unknowns of a fit in the minimal basis, with their information from the kept rows, for any parameterisation and loss of the fit.
 pub(crate) struct FitSummary {
-    /// Rows that a robust fit keeps, or all that were fitted.
+    /// Rows that a robust fit keeps, or all fitted rows.
     pub(crate) kept: Vec<u32>,
     pub(crate) layout: Layout,
     pub(crate) normal: Normal,

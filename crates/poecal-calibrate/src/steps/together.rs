@@ -1,4 +1,4 @@
-//! What is known of the corrections of several joints together only: common directions, and each joint when the others are held.
+//! Joint uncertainty of the corrections of several joints: common directions, and each joint when the others are held.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -10,18 +10,18 @@ use poecal_numerics::solve::Normal;
 
 /// Rows by which the effect on predictions is computed.
 const ROWS: usize = 300;
-/// How many times larger a standard deviation must be than with the others held, for its common direction to be told.
+/// Least ratio of a standard deviation to that with the others held, for which its common direction is reported.
 const LARGER: f64 = 3.0;
 /// Share of a direction (of its square) from which a joint is named.
 const NAMED: f64 = 0.05;
-/// Smallest share of the whole variance that a direction must have, and most directions that are told.
+/// Smallest share of the whole variance of a reported direction, and most directions that are reported.
 const SHARE: f64 = 0.1;
 const MOST: usize = 3;
 
-/// A direction in which the corrections of several joints are known worst: they may change together with little effect on predictions.
+/// A direction in which the corrections of several joints are most uncertain: they may change together with little effect on predictions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommonDirection {
-    /// In words: the largest part of each joint, one standard deviation of the direction.
+    /// Description: the largest part of each joint, one standard deviation of the direction.
     pub words: String,
     /// The joints, by index.
     pub joints: Vec<usize>,
@@ -68,8 +68,8 @@ pub(crate) fn held_sigmas(
     (0..view.session.robot.joints.len()).map(of_axis).collect()
 }
 
-/// The common directions of a fit: eigenvectors of the covariance of all corrections with the largest eigenvalues, where these are what
-/// makes the standard deviations large (theory.md §9 (39c)).
+/// The common directions of a fit: eigenvectors of the covariance of all corrections with the largest eigenvalues, if these cause the large standard
+/// deviations (theory.md §9 (39c)).
 pub(crate) fn common_directions(
     view: &View<'_>,
     uncertainty: &Uncertainty,
@@ -81,10 +81,10 @@ pub(crate) fn common_directions(
     let is_larger = |(change, held): (&JointChange, &Option<(f64, f64)>)| {
         let Some((tilt, shift)) = held else { return false };
         let larger = |all: Option<f64>, held: f64| all.is_some_and(|all| all > LARGER * held);
-        // Of a joint that slides the tilt alone counts.
+        // For a sliding joint the tilt alone counts.
         larger(change.sigma_tilt, *tilt) && (*shift == 0.0 || larger(change.sigma_shift, *shift))
     };
-    // Joints that are known no better with the others held would take most of the variance.
+    // Joints that are determined no better with the others held would take most of the variance.
     let larger: Vec<bool> = changes.iter().map(|(change, _)| change).zip(held).map(is_larger).collect();
     if n == 0 || !larger.contains(&true) {
         return Vec::new();
@@ -189,7 +189,7 @@ fn parts_of(direction: &DVector<f64>, changes: &[(JointChange, ChangeBySteps)], 
     parts
 }
 
-/// `toward +x`, or the unit vector where no direction of the base is near.
+/// `toward +x`, or the unit vector if no direction of the base is near.
 fn along(relation: &str, vector: &Vector3<f64>) -> String {
     match direction(vector) {
         Some(name) => format!("{relation} {name}"),
@@ -201,7 +201,7 @@ fn along(relation: &str, vector: &Vector3<f64>) -> String {
     }
 }
 
-/// Two digits that matter.
+/// Two significant digits.
 fn digits(value: f64) -> String {
     let decimals = (1.0 - value.max(1e-6).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.decimals$}")

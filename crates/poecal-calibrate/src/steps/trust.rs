@@ -1,4 +1,4 @@
-//! How far a calibration can be trusted: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
+//! Trust in a calibration: cross-validation, uncertainty of predictions and of each screw, and the effect of each correction.
 
 use super::changes::{joint_changes, sigmas};
 use super::summary::FitSummary;
@@ -19,7 +19,7 @@ use poecal_model::measurement::Quantity;
 /// Rows by which the effect of each correction is computed.
 const EFFECT_SAMPLE: usize = 300;
 
-/// How far a calibration can be trusted.
+/// Trust in a calibration.
 ///
 /// ```
 /// # use poecal_calibrate::CalibrationOptions;
@@ -48,11 +48,11 @@ pub struct Trust {
     pub held_out: Option<CoverageCheck>,
     /// Correction of each joint.
     pub joints: Vec<JointCorrection>,
-    /// Directions in which corrections of several joints are known only together; none where each is known for itself.
+    /// Directions in which corrections of several joints are known only together; empty if each is known by itself.
     pub common: Vec<CommonDirection>,
 }
 
-/// Judges a finished fit, beside its cross-validation.
+/// Judges a finished fit, together with its cross-validation.
 pub(crate) fn trust(
     view: &View<'_>,
     summary: &FitSummary,

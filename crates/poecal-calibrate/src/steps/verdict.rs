@@ -11,44 +11,44 @@ use crate::{AcceptedModel, Expectations};
 use poecal_fit::analysis::Direction;
 use poecal_fit::forensics::DiagnosisKind;
 
-/// What speaks against a level, before the expected errors of a model do.
+/// Reasons against a level, before the expected errors of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Judged {
-    /// Against any use, of whatever model.
+    /// Reasons against any use of any model.
     against: Vec<String>,
-    /// Whether axes of joints were fitted.
+    /// True if axes of joints were fitted.
     moves_joints: bool,
     /// Errors of the nominal model, with targets and devices fitted, and of the calibrated one on the rows that judge.
     nominal: JudgingError,
     calibrated: JudgingError,
-    /// That the screws are no better than nominal: nothing was shown of this robot.
+    /// Statement that the screws are no better than nominal: the rows show nothing of this robot.
     no_better: Option<String>,
-    /// That the rows do not tell whether they are better.
+    /// Statement that the rows do not show whether the screws are better.
     unclear: Option<String>,
-    /// That the errors of the calibrated model are too large.
+    /// Statement that the errors of the calibrated model are too large.
     too_large: Option<String>,
-    /// Axes that ended where none of this robot is; said where nothing else speaks against use.
+    /// Axes that ended beyond any axis of this robot; reported if there is no other reason against use.
     drifted: Vec<String>,
-    /// Against use outside the sampled range.
+    /// Reasons against use outside the sampled range.
     everywhere: Vec<String>,
     /// Unknowns that are determined weakly.
     weakly: usize,
     reach_m: f64,
 }
 
-/// Whether errors are larger than those of any rigid robot of this reach.
+/// True if errors are larger than those of any rigid robot of this reach.
 fn is_too_large(error: &JudgingError, reach_m: f64) -> bool {
     error.metres() > TOO_LARGE * reach_m
 }
 
 impl Judged {
-    /// The same with this against any use.
+    /// Adds a reason against any use.
     pub(crate) fn against(mut self, reason: String) -> Self {
         self.against.insert(0, reason);
         self
     }
 
-    /// The same with this against use outside the sampled range.
+    /// Adds a reason against use outside the sampled range.
     pub(crate) fn against_good(mut self, reason: String) -> Self {
         self.everywhere.insert(0, reason);
         self
@@ -60,10 +60,10 @@ impl Judged {
         self.verdict(AcceptedModel::Calibrated, against, [expected, expected])
     }
 
-    /// The verdict on the corrected model, with its error on rows that were not fitted (or on those that were, without such) and the expected
-    /// errors of it and of the calibrated model.
+    /// The verdict on the corrected model, with the expected errors of it and of the calibrated model. `error` is its error on rows that were not
+    /// fitted, or without such on the fitted ones.
     pub(crate) fn of_corrected(&self, error: &JudgingError, expected: [&Expectations; 2]) -> Verdict {
-        // Terms may describe what no rigid robot does, and improve a model whose axes are right.
+        // Terms may describe effects that no rigid robot has, and improve a model whose axes are right.
         let too_large = self.too_large.as_ref().filter(|_| is_too_large(error, self.reach_m));
         let is_no_better = error.rms > (1.0 - WORTH) * self.nominal.rms;
         let [no_better, unclear] =
@@ -137,7 +137,8 @@ impl Judged {
         (if reasons.is_empty() { Level::Good } else { Level::InsideSampledRange }, reasons)
     }
 
-    /// That the axes of the nominal model are confirmed: the fitted ones are as near as their uncertainty, theory.md §9, *Verdict*.
+    /// Statement that the axes of the nominal model are confirmed: the distance of the fitted ones is within their uncertainty, theory.md §9,
+    /// *Verdict*.
     fn confirmed(&self, expected: &Expectations) -> Option<String> {
         let (sampled, nominal) = expected.sampled.zip(expected.nominal)?;
         let [before_m, after_m] = [&self.nominal, &self.calibrated].map(JudgingError::metres);
@@ -155,7 +156,7 @@ impl Judged {
     }
 }
 
-/// That the nominal model may be better inside the sampled range.
+/// Statement that the nominal model may be better inside the sampled range.
 fn no_clear_gain(expected: &Expectations) -> String {
     let (Some(sampled), Some(nominal)) = (expected.sampled, expected.nominal) else {
         return "too few rows to tell whether this model predicts better than the nominal one in other configurations"
@@ -168,23 +169,23 @@ fn no_clear_gain(expected: &Expectations) -> String {
     )
 }
 
-/// Calibrated error over the reach above which no rigid robot is described: elastic gears and links have a tenth of it.
+/// Calibrated error over the reach above which the data describe no rigid robot: elastic gears and links have a tenth of it.
 const TOO_LARGE: f64 = 1e-2;
-/// Error over the reach above which no model of a robot is confirmed: that of nominal models is half as large.
+/// Error over the reach above which no model of a robot is confirmed: nominal models have half of it.
 const USUAL: f64 = 2e-3;
-/// Distance of the predictions of fitted axes from those of the nominal model, over their expected error, up to which they are the same: fits of
-/// two sessions of one robot are apart by 0.3 to 0.65, and by 0.75 and more where a zero moved by 0.05°.
+/// Distance of the predictions of fitted axes from those of the nominal model, over their expected error, up to which they are the same. Fits of two
+/// sessions of one robot differ by 0.3 to 0.65, and by 0.75 and more if a zero moved by 0.05°.
 const SAME_AXES: f64 = 0.7;
-/// Error of the calibrated model over that of a nominal one from which on it is the same.
+/// Ratio of the error of the calibrated model to that of a nominal one from which they are the same.
 const AS_BEFORE: f64 = 0.8;
 /// Residuals per unknown below which a fit mostly reproduces its data.
 const REDUNDANCY: f64 = 1.5;
 /// Residuals per unknown below which a fit cannot be tested.
 const TESTED: f64 = 3.0;
-/// Distance of an axis from nominal, as a share of the reach and as an angle, that no robot of that model has.
+/// Distance of an axis from nominal, as a share of the reach and as an angle, beyond any robot of that model.
 const ANOTHER_SHARE: f64 = 0.1;
 const ANOTHER_RAD: f64 = 0.35;
-/// Most axes named for it.
+/// Most axes that the statement names.
 const MOST_NAMED: usize = 3;
 /// Least share of its range through which a joint must have moved.
 const COVERED: f64 = 0.5;
@@ -203,7 +204,7 @@ pub(crate) struct Grounds<'a> {
     pub(crate) mistakes: Vec<String>,
 }
 
-/// The verdict, but for the expected errors of the model.
+/// The verdict, except for the expected errors of the model.
 pub(crate) fn judged(grounds: &Grounds<'_>) -> Judged {
     let (run, reach_m) = (&grounds.fit.run, grounds.fit.reach_m());
     let moves_joints = run.unknowns.moves_joints(run.robot.joints.len());
@@ -237,7 +238,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     if !grounds.fit.robust.fitted.report.termination.is_success() {
         reasons.push("the fit did not converge".to_owned());
     }
-    // What the prior determines needs no measurements.
+    // Unknowns that the prior determines need no measurements.
     let remainder = &grounds.summary.remainder;
     let unknowns = if grounds.fit.run.prior.is_some() {
         remainder.effective_unknowns
@@ -253,7 +254,7 @@ fn against_use(grounds: &Grounds<'_>) -> Vec<String> {
     reasons
 }
 
-/// Axes farther from nominal than any axis of this robot. The zero of a joint turns all later axes.
+/// Axes farther from nominal than any axis of this robot. The zero of a joint moves all later axes.
 fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
     if grounds.signs.diagnosis.iter().any(|it| it.kind == DiagnosisKind::JointZero) {
         return Vec::new();
@@ -275,7 +276,7 @@ fn drifted(grounds: &Grounds<'_>) -> Vec<String> {
         .collect()
 }
 
-/// Undetermined directions, but for those of joints of one reading: no configuration separates them, and no prediction does.
+/// Undetermined directions, except those of joints of one reading: no configuration separates them, and no prediction does.
 fn undetermined_directions(grounds: &Grounds<'_>) -> usize {
     let reading = |name: &String| {
         grounds

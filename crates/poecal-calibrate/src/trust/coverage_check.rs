@@ -33,14 +33,14 @@ pub struct PredictedUncertainty<'a> {
 /// Errors compared with their predicted uncertainty (theory.md §9 (40), *Coverage*).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CoverageCheck {
-    /// Of each measured quantity, millimetres or degrees; of rotations if they were calibrated too.
+    /// Coverage of each measured quantity, millimetres or degrees; of rotations only if they were calibrated too.
     #[serde(flatten)]
     pub parts: Measured<PartCoverage>,
     /// Share of the configurations with every joint inside the sampled range.
     pub inside_sampled_range: f64,
 }
 
-/// The same for one quantity.
+/// Coverage of one quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PartCoverage {
     /// Expected root mean square error between measured and predicted, measurement noise included.
@@ -50,13 +50,13 @@ pub struct PartCoverage {
 }
 
 impl CoverageCheck {
-    /// Of positions, millimetres.
+    /// Coverage of positions, millimetres.
     #[must_use]
     pub fn position_mm(&self) -> PartCoverage {
         self.parts.position_mm()
     }
 
-    /// Of rotations, degrees, if orientation was measured.
+    /// Coverage of rotations, degrees, if orientation was measured.
     #[must_use]
     pub fn rotation_deg(&self) -> Option<PartCoverage> {
         self.parts.rotation_deg()
@@ -70,7 +70,7 @@ impl CoverageCheck {
 }
 
 impl Default for PartCoverage {
-    /// Of no errors at all.
+    /// Coverage without any errors.
     fn default() -> Self {
         PartCoverage { expected_rms: 0.0, inside_bound95: 1.0 }
     }
@@ -100,21 +100,21 @@ impl CoverageSums {
     }
 }
 
-/// Error of one quantity in a row of other measurements, metres or radians, and what was promised of it.
+/// Error of one quantity in a row of other measurements, metres or radians, and its predictive distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedError {
     /// Length of measured minus predicted.
     pub length: f64,
-    /// Measured minus predicted by component, of vectors in the device's axes; NaN where one was not measured.
+    /// Measured minus predicted by component, for vectors in the device's axes; NaN for components that were not measured.
     pub residual: [f64; Quantity::MOST_COMPONENTS],
-    /// What was promised; `None` without uncertainty.
+    /// Predictive distribution; `None` without uncertainty.
     pub promised: Option<Promise>,
 }
 
-/// What a calibration promises of an error, measurement noise included.
+/// Predictive distribution of an error, measurement noise included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Promise {
-    /// Expected square of the error.
+    /// Expected square of the error, square metres or square radians.
     pub variance: f64,
     /// Bound below which 95 % of such errors lie.
     pub bound: f64,
@@ -123,16 +123,16 @@ pub struct Promise {
 /// Errors of a row of other measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedRow {
-    /// Of each measured quantity.
+    /// Errors of each measured quantity.
     pub errors: Measured<JudgedError>,
-    /// Whether every joint was inside the sampled range; `true` if none was stated.
+    /// True if every joint was inside the sampled range, or if none was stated.
     pub inside_sampled_range: bool,
-    /// Of the corners of a picture; none of other rows, and where the model sees none of them.
+    /// Error of the corners of a picture; `None` for other rows, and if the model sees none of them.
     pub corners: Option<CornerError>,
 }
 
 impl JudgedRow {
-    /// A row of which nothing was promised.
+    /// A row without a predictive distribution.
     pub(crate) fn from_error(error: &RowError) -> Self {
         let errors = Measured::from_fn(|quantity| JudgedError::from_error(error, quantity, None));
         JudgedRow { errors, inside_sampled_range: true, corners: None }
@@ -140,7 +140,7 @@ impl JudgedRow {
 }
 
 impl JudgedError {
-    /// Of a quantity, if it was measured.
+    /// Error of a quantity, if it was measured.
     fn from_error(error: &RowError, quantity: Quantity, promised: Option<Promise>) -> Option<Self> {
         let length = error.length(quantity)?;
         let (measured, vector) = (error.measured(quantity), error.vector(quantity));
@@ -150,7 +150,7 @@ impl JudgedError {
 }
 
 impl CoverageCheck {
-    /// Of some rows.
+    /// Coverage over some rows.
     fn from_rows<'a>(rows: impl Iterator<Item = &'a JudgedRow>) -> Self {
         let mut sums: ByQuantity<CoverageSums> = ByQuantity::default();
         let (mut count, mut sampled) = (0_usize, 0_usize);
@@ -179,7 +179,7 @@ impl PredictedUncertainty<'_> {
         CoverageCheck::from_rows(self.rows(session, estimate, rows, errors).iter())
     }
 
-    /// The errors of some rows with what was promised of each.
+    /// Errors of some rows with their predictive distributions.
     fn rows(
         &self,
         session: &Session<'_>,
@@ -202,7 +202,7 @@ impl PredictedUncertainty<'_> {
             let errors = Measured::from_fn(|quantity| {
                 error.length(quantity)?;
                 let of_robot = observed.covariance(&predicted, row, quantity);
-                // As many components as there are numbers.
+                // The noise has as many components as there are numbers.
                 let mut of_noise = Matrix3::zeros();
                 (0..error.part(quantity).len()).for_each(|k| of_noise[(k, k)] = own[quantity].powi(2));
                 let robot = self.uncertainty.discrepancy.standard_deviation[quantity];
@@ -219,13 +219,13 @@ impl PredictedUncertainty<'_> {
     }
 }
 
-/// Covariance of what corners leave open of the pose of a picture, without the error of its configuration, which is the robot's; `None` of other
-/// rows.
+/// Covariance of the part of a picture's pose that corners leave undetermined, without the error of its configuration, which belongs to the robot;
+/// `None` for other rows.
 fn of_picture(data: &Dataset, row: u32, (quantity, robot): (Quantity, f64)) -> Option<Matrix3<f64>> {
     data.pictures.of_row(row)?;
     let first = [Quantity::Position, Quantity::Rotation].iter().position(|it| *it == quantity)? * 3;
     let whitening = data.whitening_of_picture(row)?;
-    // A radian counts as many metres as makes both alike.
+    // Metres per radian that balance positions and rotations.
     let size = |first: usize| whitening.fixed_columns::<3>(first).norm().max(f64::MIN_POSITIVE);
     let length_m = size(3) / size(0);
     let mut information = whitening.transpose() * whitening;
@@ -243,7 +243,7 @@ fn of_picture(data: &Dataset, row: u32, (quantity, robot): (Quantity, f64)) -> O
     Some(left)
 }
 
-/// What rows show of their targets' uncertainty.
+/// Uncertainty of targets in the observed rows.
 struct Observed<'a> {
     session: &'a Session<'a>,
     estimate: &'a Estimate,
@@ -252,8 +252,8 @@ struct Observed<'a> {
 }
 
 impl Observed<'_> {
-    /// Covariance of a row's numbers of one quantity: the target's own where its position or orientation was measured, `S P Sᵀ` of any other
-    /// function, in the axes of the row's device.
+    /// Covariance of a row's numbers of one quantity: the target's own if its position or orientation was measured, `S P Sᵀ` for any other function,
+    /// in the axes of the row's device.
     fn covariance(&mut self, predicted: &PredictedError, row: u32, quantity: Quantity) -> Matrix3<f64> {
         let observation = self.session.observation(row);
         let seen = observation.measurement;
@@ -306,7 +306,7 @@ pub(crate) struct JudgedRows<'a> {
     pub(crate) free: Vec<Parameter>,
 }
 
-/// All rows with what was promised of each. `None` if they do not determine the refitted unknowns.
+/// All rows with their predictive distributions. `None` if they do not determine the refitted unknowns.
 pub(crate) fn promised_rows(
     predicted: &PredictedUncertainty<'_>,
     refit_tool: bool,
@@ -322,7 +322,7 @@ pub(crate) fn promised_rows(
     Some(predicted.rows(&seen.session, &seen.estimate, &data.all_rows(), &seen.errors))
 }
 
-/// Coverage on held-out rows, at most [`JUDGED`], of a model with its uncertainty and sampled ranges; `None` without any that bounds promise.
+/// Coverage on held-out rows, at most [`JUDGED`], of a model with its uncertainty and sampled ranges; `None` without rows to which bounds apply.
 pub(crate) fn held_out_check(
     (session, estimate): (&Session<'_>, &Estimate),
     (fitted, held_out): (&[u32], &[u32]),

@@ -1,13 +1,13 @@
-//! What errors are expected of: a robot, its rows and its nominal model.
+//! Domain of expected errors: a robot, its rows and its nominal model.
 
 use poecal_fit::analysis::JointCoverage;
 use poecal_fit::state::{Estimate, Session};
 use poecal_model::robot::Robot;
 
-/// The robot and rows of which errors are expected.
+/// The robot and the rows for which errors are expected.
 pub(crate) struct Domain<'a> {
     pub(crate) session: &'a Session<'a>,
-    /// Rows that were fitted.
+    /// Fitted rows.
     pub(crate) rows: &'a [u32],
     pub(crate) coverage: &'a [JointCoverage],
     /// The nominal robot, and the nominal model with targets and devices fitted.

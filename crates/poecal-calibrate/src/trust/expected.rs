@@ -16,12 +16,12 @@ use poecal_model::simulate::random;
 
 /// Number of random configurations within the joint range.
 const CONFIGURATIONS: usize = 400;
-/// The same where there are more unknowns than this: a mean over fewer is as good.
+/// Number of configurations if there are more unknowns than this: a mean over fewer is as good.
 const MANY_UNKNOWNS: usize = 80;
 const FEWER: usize = 120;
 /// Number of parts of each joint's range.
 const PARTS: usize = 6;
-/// Most targets over which expected errors are taken.
+/// Most targets over which expected errors are averaged.
 const MOST_TARGETS: usize = 12;
 /// Expected errors of predicted positions, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,12 +30,12 @@ pub struct Expected {
     pub sigma_m: f64,
     /// Mean of the 95 % bounds.
     pub bound_m: f64,
-    /// Largest of these.
+    /// Largest of these bounds.
     pub worst_bound_m: f64,
 }
 
 impl Expected {
-    /// From covariances of positions, `sqrt(mean tr P_p)` and bounds: theory.md §9 (40).
+    /// Expected error from covariances of positions, `sqrt(mean tr P_p)` and bounds: theory.md §9 (40).
     fn from_covariances(errors: &[Matrix3<f64>], quantile: Quantile) -> Self {
         let count = errors.len().max(1) as f64;
         let bounds = errors.iter().map(|covariance| quantile.bound(covariance));
@@ -52,7 +52,7 @@ impl Expected {
 pub struct RangePart {
     /// Index of the joint.
     pub joint: usize,
-    /// From and to, radians or metres.
+    /// Lower and upper end, radians or metres.
     pub range: [f64; 2],
     /// Expected root mean square distance, metres.
     pub sigma_m: f64,
@@ -61,7 +61,7 @@ pub struct RangePart {
 /// Expected errors of a robot's predictions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Expectations {
-    /// In the measured configurations; none without an uncertainty.
+    /// In the measured configurations; `None` without an uncertainty.
     pub measured: Option<Expected>,
     /// Anywhere between the least and the largest measured value of each joint.
     pub sampled: Option<Expected>,
@@ -73,14 +73,14 @@ pub struct Expectations {
     pub parts: Vec<RangePart>,
 }
 
-/// Least share of the error in cross-validation, but for stated noise, that is expected.
+/// Share of the error in cross-validation, without stated noise, that expected errors contain at least.
 const LEAST: f64 = 0.9;
 
-/// Raises the model error of positions where cross-validation errs by more than is expected in the measured configurations: theory.md §9 (43b).
-/// Whether it did.
+/// Raises the model error of positions if the errors in cross-validation exceed the expected ones in the measured configurations: theory.md §9 (43b).
+/// Returns true if it did.
 fn raise(uncertainty: &mut Uncertainty, measured: Expected, left_out_m: f64) -> bool {
     let found = &mut uncertainty.discrepancy;
-    // Residuals that stated noise or repeats explain are not the robot's.
+    // Residuals that stated noise or repeats explain are not errors of the robot.
     if found.attribution[Quantity::Position] != Attribution::Robot {
         return false;
     }
@@ -88,7 +88,7 @@ fn raise(uncertainty: &mut Uncertainty, measured: Expected, left_out_m: f64) -> 
     raise_to(uncertainty, measured, (LEAST * left_out_m).powi(2) - 3.0 * noise * noise)
 }
 
-/// Raises the model error of positions until so much is expected in the measured configurations (mean square, m²). Whether it did.
+/// Raises the model error of positions until this mean square (m²) is expected in the measured configurations. Returns true if it did.
 fn raise_to(uncertainty: &mut Uncertainty, measured: Expected, square_m2: f64) -> bool {
     let missing = square_m2 - measured.sigma_m.powi(2);
     if !missing.is_finite() || missing <= 0.0 {
@@ -100,8 +100,8 @@ fn raise_to(uncertainty: &mut Uncertainty, measured: Expected, square_m2: f64) -
 }
 
 impl Domain<'_> {
-    /// The expectations of geometry alone where terms that may be there were looked for and not taken: as much as with these is expected in
-    /// the measured configurations.
+    /// Expectations of geometry alone if possible terms were tried and rejected: the expected error in the measured configurations is as large as
+    /// with these terms.
     pub(crate) fn expectations_with_terms(
         &self,
         (uncertainty, found, with_terms): (&mut Uncertainty, &Expectations, &Expectations),
@@ -110,14 +110,15 @@ impl Domain<'_> {
         raise_to(uncertainty, measured, other.sigma_m.powi(2)).then(|| self.expectations(uncertainty))
     }
 
-    /// [`Self::expectations`], with the model error raised to what cross-validation shows of positions (metres, RMS).
+    /// [`Self::expectations`], with the model error raised to the error of positions in cross-validation (metres, RMS).
     pub(crate) fn expectations_beside(
         &self,
         uncertainty: &mut Uncertainty,
         left_out_m: Option<f64>,
     ) -> Expectations {
         let found = self.expectations(uncertainty);
-        // What pictures are off by in metres is their corners' noise in a direction that these hardly see; what is the robot's is found beside it.
+        // Errors of pictures in metres are noise of their corners in a direction that these hardly determine; the robot's errors are estimated
+        // separately.
         let pictures = &self.session.data.pictures;
         let is_seen = self.rows.iter().all(|row| pictures.of_row(*row).is_some());
         match found.measured.zip(left_out_m).filter(|_| !is_seen) {
@@ -128,7 +129,7 @@ impl Domain<'_> {
         }
     }
 
-    /// Expected errors of the predictions of some targets, from the rows that were fitted and from random configurations.
+    /// Expected errors of the predictions of some targets, from the fitted rows and from random configurations.
     fn expectations(&self, uncertainty: &Uncertainty) -> Expectations {
         let Session { robot, data, packed, .. } = *self.session;
         let count = if uncertainty.layout.dim() > MANY_UNKNOWNS { FEWER } else { CONFIGURATIONS };
@@ -158,8 +159,8 @@ impl Domain<'_> {
     }
 }
 
-/// Usable range of each joint: its limits; of a revolute joint at most a turn, about the middle of the sampled range; of a prismatic joint
-/// without limits the sampled range.
+/// Usable range of each joint: its limits; for a revolute joint at most a turn, about the middle of the sampled range; for a prismatic joint without
+/// limits the sampled range.
 fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     let half_turn = std::f64::consts::PI;
     let of = |(joint, coverage): (&Joint, &JointCoverage)| {
@@ -174,7 +175,7 @@ fn ranges(robot: &Robot, coverage: &[JointCoverage]) -> Vec<[f64; 2]> {
     robot.joints.iter().zip(coverage).map(of).collect()
 }
 
-/// Range of each reading that keeps all its joints in theirs: joints of one reading move together. Infinite of what moves no joint.
+/// Range of each reading that keeps all its joints in theirs: joints of one reading move together. Infinite for a reading that moves no joint.
 pub(crate) fn allowed_readings(robot: &Robot, ranges: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let indices = robot.reading_indices();
     let readings = indices.iter().max().map_or(0, |last| last + 1);

@@ -1,4 +1,4 @@
-//! What the rows of a fit and its prior say of the robot's unknowns.
+//! Information of the rows of a fit and its prior about the robot's unknowns.
 
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
@@ -22,7 +22,7 @@ pub(crate) struct FitInformation<'a> {
 }
 
 impl<'a> FitInformation<'a> {
-    /// Of a fit with the weights that it gave; `None` where they are not positive definite.
+    /// Information of a fit with its weights; `None` if it is not positive definite.
     pub(crate) fn from_fit(
         run: &'a Run<'_>,
         ratios: &'a [Noise],
@@ -62,7 +62,7 @@ impl<'a> FitInformation<'a> {
         DMatrix::from_row_slice(n, n, &linalg::inverse(&self.factor))
     }
 
-    /// How the predicted poses of pictures that count move with the unknowns, six motions of the row each, with the picture's index.
+    /// Derivatives of the predicted poses of weighted pictures by the unknowns, as six motions of the row each, with the picture's index.
     pub(crate) fn of_pictures(&self, run: &Run<'_>) -> Vec<(usize, Matrix6xX<f64>)> {
         let pictures = &run.data.pictures.all;
         let counts = |row: u32| run.fit_rows.binary_search(&row).is_ok() && self.problem.weight(row) > 0.0;
@@ -83,7 +83,7 @@ pub(crate) fn symmetric(upper: &[f64], n: usize) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| upper[i.min(j) * n + i.max(j)])
 }
 
-/// Factor of an information, of robot or numbers.
+/// Factor of an information matrix, of robot or numbers.
 pub(crate) fn factor_of(matrix: &DMatrix<f64>) -> Option<linalg::Factor> {
     cholesky(matrix, ROUNDING_OF_TERMS)
 }

@@ -1,4 +1,4 @@
-//! How far a calibration can be trusted: expected errors, and the check of their coverage.
+//! Trust in a calibration: expected errors, and the check of their coverage.
 
 pub(crate) mod coverage_check;
 pub(crate) mod domain;

@@ -1,4 +1,4 @@
-//! Errors of the nominal model where programs run, and the gain of the delivered model over it.
+//! Errors of the nominal model in the configurations of programs, and the gain of the delivered model over it.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -32,7 +32,8 @@ impl NominalError {
         [self.gain_m2 - half, self.gain_m2 + half]
     }
 
-    /// Over rows of joint values of the session's robot, of the first targets; the delivered model is expected to err by `expected_m` there (RMS).
+    /// Error over rows of joint values of the session's robot, for the first targets; the delivered model's expected error there is `expected_m`
+    /// (RMS).
     pub(crate) fn new(
         domain: &Domain<'_>,
         (uncertainty, expected_m): (&Uncertainty, f64),
@@ -49,7 +50,7 @@ impl NominalError {
         let count = apart.len().max(1) as f64;
         gradient.iter_mut().for_each(|it| *it *= 2.0 / count);
         let apart_m2 = apart.iter().map(Vector3::norm_squared).sum::<f64>() / count;
-        // Both models err by what none describes; the rest of the expected error is the fit's.
+        // Both models share the errors that neither describes; the rest of the expected error is due to the fit.
         let beyond_m2 = 3.0 * uncertainty.discrepancy.standard_deviation[Quantity::Position].powi(2);
         let fit_m2 = (expected_m.powi(2) - beyond_m2).max(0.0);
         NominalError {
@@ -61,7 +62,7 @@ impl NominalError {
 }
 
 impl Domain<'_> {
-    /// Joint values of the session's robot, and the same of the nominal one, which has no joints for links that bend.
+    /// Joint values of the session's robot, and those of the nominal one, which has no joints for compliant links.
     fn packed(&self, values: &[f64]) -> [Packed; 2] {
         let (robot, nominal) = (self.session.robot, self.nominal.0);
         let own = |name: &str| robot.joints.iter().position(|joint| joint.name == name);
@@ -71,8 +72,8 @@ impl Domain<'_> {
         [Packed::of_values(robot, values), Packed::of_values(nominal, &of_nominal)]
     }
 
-    /// Differences of the predicted positions of each target, row after row, from those of the nominal model with its targets and device fitted
-    /// to them, where these are unknown: linear least squares over the rows.
+    /// Differences of the predicted positions of each target, row by row, from those of the nominal model with its targets and device fitted to them,
+    /// if these are unknown: linear least squares over the rows.
     fn apart(&self, uncertainty: &Uncertainty, both: &[Packed; 2], targets: usize) -> Vec<Vector3<f64>> {
         let session = self.session;
         let linkages = [&uncertainty.estimate, self.nominal.1].map(Linkage::new);

@@ -1,4 +1,4 @@
-//! Whether poses of a camera are predicted better if the arm is fitted with the camera.
+//! Test whether poses of a camera are predicted better if the arm is fitted with the camera.
 
 use crate::acceptance::AcceptedModel;
 use crate::run::accuracy::ModelAccuracy;
@@ -10,33 +10,33 @@ use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// Errors of poses that were held out, root mean square, by the arm as its model has it and by one that was fitted with the camera.
+/// Errors of held-out poses, root mean square, by the arm of the model and by an arm that was fitted with the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArmToo {
     /// Number of these poses.
     pub rows: usize,
-    /// By the arm as it is: millimetres and degrees.
+    /// Errors by the arm as it is: millimetres and degrees.
     pub held: (f64, f64),
-    /// By an arm whose axes were fitted too.
+    /// Errors by an arm whose axes were fitted too.
     pub fitted: (f64, f64),
 }
 
 impl ArmToo {
-    /// Whether the fitted arm predicts these poses evidently better.
+    /// True if the fitted arm predicts these poses evidently better.
     #[must_use]
     pub fn is_better(&self) -> bool {
         const EVIDENT: f64 = 1.0 / 0.9;
         self.gain() > EVIDENT
     }
 
-    /// How many times nearer to these poses the fitted arm is.
+    /// Ratio of the position error of the arm as it is to that of the fitted arm.
     #[must_use]
     pub fn gain(&self) -> f64 {
         self.held.0 / self.fitted.0.max(f64::MIN_POSITIVE)
     }
 
-    /// Why the frames are no better than within their bounds, if they are so because the arm's own errors are most of what remains of the poses: these
-    /// follow the poses, while the bounds take them for noise.
+    /// Reason why the frames are no better than within their bounds, if the arm's own errors dominate the residuals of the poses: these depend on the
+    /// poses, while the bounds treat them as noise.
     #[must_use]
     pub fn weakens(&self) -> Option<String> {
         const MOST: f64 = 2.0;
@@ -52,8 +52,8 @@ impl ArmToo {
     }
 }
 
-/// The session of a hand-eye calibration whose arm's poses are by joint readings, one configuration after the other: the rows that count, each the
-/// pose of what is on the flange as the other frame sees it. So `calibrate` reads it.
+/// The session of a hand-eye calibration whose arm's poses are known by joint readings, in the form that `calibrate` reads. It has one configuration
+/// after the other, of the rows that count. Each row is the pose of the object on the flange in the other frame.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if the readings are not those of the robot.
@@ -76,7 +76,7 @@ pub fn session_of(robot: &Robot, joints: &[f64], target: &PoseList, found: &Hand
 /// Errors of held-out poses of such a session with the arm as it is, and fitted too; `None` if no rows could be held out.
 ///
 /// # Errors
-/// As [`calibrate`], as of too few poses.
+/// Those of [`calibrate`], such as too few poses.
 pub fn arm_too(robot: &Robot, data: &Dataset) -> Result<Option<ArmToo>> {
     let found = calibrate(robot, data, &CalibrationOptions::default())?;
     let Some(errors) = found.accuracy.held_out else { return Ok(None) };

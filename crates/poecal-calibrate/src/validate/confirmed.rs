@@ -1,4 +1,4 @@
-//! What other measurements confirm of a calibration.
+//! Confirmation of a calibration by other measurements.
 
 use super::judge::Judgement;
 use crate::run::accuracy::ModelAccuracy;
@@ -9,13 +9,13 @@ use crate::trust::coverage_check::{CoverageCheck, PartCoverage, ROUNDING};
 const INSIDE: f64 = 0.8;
 /// Standard deviations by which a share of the rows inside the sampled range is below that: 95 % on one side.
 const CHANCE: f64 = 1.645;
-/// Rows inside the sampled range that tell something of it.
+/// Least number of rows inside the sampled range that decides.
 const FEW: usize = 5;
 /// Largest ratio of the error to the expected error.
 const TIMES: f64 = 2.0;
 
 impl Judgement {
-    /// The best level that the measurements confirm of the model that is delivered, and why not a better one, a sentence each; no level if the
+    /// The best level that the measurements confirm for the delivered model, and reasons against a better one, a sentence each; no level if the
     /// calibration has no bounds to test.
     #[must_use]
     pub fn confirmed(&self) -> (Option<Level>, Vec<String>) {
@@ -32,10 +32,10 @@ impl Judgement {
         (Some(Level::DoNotUse), reasons)
     }
 
-    /// Why the measurements do not confirm this level of the model that is delivered; `None` if they do. *Good* requires it of all rows and of those
-    /// inside the sampled range, *use inside the sampled range* of the latter: at least 80 % of the errors inside their 95 % bounds, and the error (RMS)
-    /// at most twice the expected one. Fewer than five rows inside the sampled range decide nothing, and of more the share is below 80 % where chance
-    /// does not explain it.
+    /// Reason why the measurements do not confirm this level for the delivered model; `None` if they do. *Good* requires it of all rows and of those
+    /// inside the sampled range, *use inside the sampled range* of the latter: at least 80 % of the errors inside their 95 % bounds, and the error
+    /// (RMS) at most twice the expected one. Fewer than five rows inside the sampled range decide nothing; with more, a share counts as below 80 % if
+    /// chance does not explain it.
     #[must_use]
     pub fn falls_short(&self, required: Level) -> Option<String> {
         if required == Level::DoNotUse {
@@ -64,7 +64,7 @@ impl Judgement {
     }
 }
 
-/// Why errors contradict what was promised of them: a smaller share inside their bounds than this, or more than twice the expected error.
+/// Contradiction of errors to their predictive distribution: a smaller share inside their bounds than `share`, or more than twice the expected error.
 fn contradiction(
     (errors, kept): (&ModelAccuracy, &CoverageCheck),
     share: f64,
@@ -75,7 +75,7 @@ fn contradiction(
     errors.find_map(|(quantity, part, rms)| {
         let (what, unit) = (quantity.name(), quantity.unit().symbol());
         let PartCoverage { expected_rms, inside_bound95 } = part;
-        // Exact data leave only rounding.
+        // Residuals of exact data are rounding.
         if rms <= ROUNDING * 1e6 {
             None
         } else if inside_bound95 < share {

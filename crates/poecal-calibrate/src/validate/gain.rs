@@ -5,7 +5,7 @@ use crate::run::accuracy::Improvement;
 use crate::steps::level::Gain;
 
 impl Judgement {
-    /// Why the measurements do not show a clear gain over the nominal model; `None` if they do.
+    /// Reason why the measurements show no clear gain over the nominal model; `None` if they do.
     #[must_use]
     pub fn gain_doubt(&self) -> Option<String> {
         let Some(found) = self.improvement else {

@@ -20,7 +20,7 @@ use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// A calibration to be judged, and the parts of it to be refitted to the judging measurements.
+/// A calibration to be judged, and its parts to be refitted to the judging measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The calibrated robot with its named targets.
@@ -29,19 +29,19 @@ pub struct Subject<'a> {
     pub nominal: &'a Robot,
     /// Device frame of the calibration.
     pub base_from_device: Pose,
-    /// Those of further stations, in the order of the judging measurements.
+    /// Device frames of further stations, in the order of the judging measurements.
     pub further_base_from_device: &'a [Pose],
     /// Zeros and scales of the distances of the stations, in that order; empty if all are plain.
     pub ranges: &'a [Range],
-    /// What was known of the device's frame.
+    /// Prior knowledge of the device's frame.
     pub frame: DeviceFrameKnowledge,
     /// Noise by which positions and rotations are weighted in a refit.
     pub noise: Noise,
-    /// Refit the device frame.
+    /// True if the device frame is refitted.
     pub refit_frame: bool,
-    /// Refit every measured target.
+    /// True if every measured target is refitted.
     pub refit_tool: bool,
-    /// Predicted uncertainty of the calibration; of refitted parts, only the screws' part of it counts.
+    /// Predicted uncertainty of the calibration; for refitted parts, only the screws' part of it counts.
     pub uncertainty: Option<PredictedUncertainty<'a>>,
 }
 
@@ -51,7 +51,7 @@ pub struct Subject<'a> {
 pub enum Refitted {
     /// Device frame.
     DeviceFrame,
-    /// Places of the targets, and their orientations where measured.
+    /// Positions of the targets, and their orientations if measured.
     Tool,
 }
 
@@ -88,28 +88,28 @@ pub struct Judgement {
     pub promised: Option<CoverageCheck>,
     /// The same for rows inside the sampled range; `None` without such rows or without predicted bounds.
     pub in_sampled_range: Option<InSampledRange>,
-    /// Error of the nominal model over that of the delivered one on these rows, device frame and targets fitted for both ([`improvement`]); `None`
-    /// where the rows are too few for it, or where nobody asked.
+    /// Ratio of the error of the nominal model to that of the delivered one on these rows, device frame and targets fitted for both
+    /// ([`improvement`]); `None` if the rows are too few for it, or if it was not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub improvement: Option<Improvement>,
-    /// Whether the limits that were asked for are kept; `None` if none were.
+    /// Decision whether the requested limits are kept; `None` without limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<Acceptance>,
-    /// That the device stands elsewhere than at the calibration, where the rows show it.
+    /// Motion of the device since the calibration, if the rows show it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moved_device: Option<MovedDevice>,
     /// Scatter of the rows of one configuration; `None` if none was measured three times.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<RepeatScatter>,
-    /// Where the first device stands: as in the calibration, or as it was refitted.
+    /// Pose of the first device: as in the calibration, or as refitted.
     #[serde(skip)]
     pub base_from_device: Pose,
-    /// Errors of each row by the model that is delivered, in the order read: the corrected one, if there is one.
+    /// Errors of each row by the delivered model, in the order read: the corrected one, if there is one.
     #[serde(skip)]
     pub rows: Vec<JudgedRow>,
 }
 
-/// How far a device stands from where the calibration has it.
+/// Motion of a device from its pose in the calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MovedDevice {
     /// Distance, millimetres.
@@ -120,14 +120,14 @@ pub struct MovedDevice {
     pub before_rms: f64,
     /// The same with the frame refitted.
     pub after_rms: f64,
-    /// Whether it was refitted for that.
+    /// True if it was refitted for that reason.
     pub refitted: bool,
 }
 
 /// Errors of a model, and coverage of its predicted bounds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct JudgedModel {
-    /// Its errors.
+    /// Errors of the model.
     #[serde(flatten)]
     pub errors: ModelAccuracy,
     /// Coverage of the predicted bounds, if there are any.
@@ -212,8 +212,8 @@ pub fn judge(subject: &Subject<'_>, data: &Dataset) -> Result<Judgement> {
     })
 }
 
-/// Error of the nominal robot over that of the calibrated one on the same rows, with device frame and targets refitted for both: theory.md §9 (50).
-/// `None` where the rows are too few for it.
+/// Ratio of the error of the nominal robot to that of the calibrated one on the same rows, with device frame and targets refitted for both:
+/// theory.md §9 (50). `None` if the rows are too few for it.
 #[must_use]
 pub fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement> {
     let both =
@@ -227,7 +227,7 @@ pub fn improvement(subject: &Subject<'_>, data: &Dataset) -> Option<Improvement>
     Some(found)
 }
 
-/// Errors of a robot's predictions, with device frame and targets refitted as asked.
+/// Errors of a robot's predictions, with device frame and targets refitted as requested.
 pub(crate) fn judged_rows<'a>(
     subject: &Subject<'_>,
     robot: &'a Robot,
@@ -285,15 +285,15 @@ pub(crate) fn check_count(subject: &Subject<'_>, data: &Dataset) -> Result<()> {
         ))
 }
 
-/// Difference of two errors that are one, as a share: rounding of two fits of a frame.
+/// Relative difference of two equal errors: rounding of two fits of a frame.
 const SAME: f64 = 1e-6;
 
-/// What was found of the model that is delivered.
+/// Judgement of the delivered model.
 #[derive(Clone, Copy, Debug)]
 pub struct DeliveredModel<'a> {
-    /// Which it is.
+    /// Kind of the model.
     pub model: AcceptedModel,
-    /// Its errors.
+    /// Errors of the model.
     pub errors: &'a ModelAccuracy,
     /// Coverage of its predicted bounds, if there are any.
     pub promised: Option<&'a CoverageCheck>,
@@ -302,14 +302,14 @@ pub struct DeliveredModel<'a> {
 }
 
 impl Judgement {
-    /// The corrected model, unless it is the calibrated one but for rounding: without terms.
+    /// The corrected model, unless it equals the calibrated one within rounding because it has no terms.
     #[must_use]
     pub fn with_terms(&self) -> Option<&JudgedModel> {
         let other = self.calibrated.lead().rms;
         self.corrected.as_ref().filter(|model| (model.errors.lead().rms - other).abs() > SAME * other)
     }
 
-    /// The model that is delivered: the corrected one where there is one with terms, otherwise the calibrated one.
+    /// The delivered model: the corrected one if there is one with terms, otherwise the calibrated one.
     #[must_use]
     pub fn delivered(&self) -> DeliveredModel<'_> {
         match self.with_terms() {

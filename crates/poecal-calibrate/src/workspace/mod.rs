@@ -1,4 +1,4 @@
-//! How far programs for the nominal robot miss in the workspace, and which corrections of the joints mend it.
+//! Displacements of programs for the nominal robot in the workspace, and the joint corrections that compensate them.
 
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use poecal_arm::{Arm, MOST_JOINTS};
@@ -13,7 +13,7 @@ use poecal_model::robot::{Joint, JointKind, Robot};
 use poecal_numerics::distributions::median;
 use poecal_numerics::linalg::cholesky_6;
 
-/// Configurations that are compared.
+/// Compared configurations.
 const CONFIGURATIONS: usize = 192;
 /// Base and tool are fitted over every third of them.
 const FITTED: usize = 3;
@@ -24,18 +24,18 @@ const PRIMES: [f64; MOST_JOINTS] =
     [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0, 41.0, 43.0, 47.0, 53.0];
 /// Distance (m) and angle (rad) below which a pose counts as reached.
 const REACHED: f64 = 1e-9;
-/// Correction of a joint (rad, m) that is none of a robot like its drawing: another branch.
+/// Correction of a joint (rad, m) too large for a robot near its nominal model: another branch.
 const FAR: f64 = 0.6;
-/// Most steps of the iteration from a configuration to the one that mends it.
+/// Most steps of the iteration from a configuration to the corrected one.
 const STEPS: usize = 8;
-/// Fewest readings of an arm that can mend every displacement.
+/// Fewest readings of an arm that can compensate every displacement.
 const FREE: usize = 6;
 
-/// Displacement of the actual robot's tip from the nominal one's, `(B FK_nominal(q) T)⁻¹ FK_actual(q)`, over the sampled workspace. Base B and
-/// tool T are taught on the actual robot, so that it is the displacement by the joints; a program is mended by readings `q'` with
+/// Displacement of the actual robot's tip from the nominal one's, `(B FK_nominal(q) T)⁻¹ FK_actual(q)`, over the sampled workspace. Base B and tool T
+/// are taught on the actual robot, so that the joints alone cause the displacement. A program is corrected by readings `q'` with
 /// `FK_actual(q') = B FK_nominal(q) T`.
 pub struct Workspace {
-    /// Name of the joint whose axis the map is about; `None` is the base's z axis.
+    /// Name of the joint on whose axis the map is centred; `None` is the base's z axis.
     pub about: Option<String>,
     /// Side of the cells, metres.
     pub cell_m: f64,
@@ -43,22 +43,22 @@ pub struct Workspace {
     pub cells: Vec<WorkspaceCell>,
     /// All configurations together.
     pub all: Displacements,
-    /// Median and largest correction of each reading that moves the tip (rad, m), over configurations that are mended near where they were
-    /// meant; none of an arm with fewer than six, which cannot mend every displacement.
+    /// Median and largest correction of each reading that moves the tip (rad, m), over configurations with a correction near the intended one. Empty
+    /// for an arm with fewer than six, which cannot compensate every displacement.
     pub joints: Vec<(String, JointKind, Spread)>,
-    /// Configurations whose tip is off by less than is expected of the calibration itself.
+    /// Configurations whose displacement is smaller than the expected error of the calibration itself.
     pub needless: usize,
     /// Configurations with a corrected reading beyond the limits.
     pub beyond_limits: usize,
-    /// Configurations from which no small correction leads to the pose, since a singularity is near.
+    /// Configurations from which no small correction leads to the pose, because of a near singularity.
     pub unmended: usize,
 }
 
 /// A part of the workspace.
 pub struct WorkspaceCell {
-    /// Distance of the nominal tip from the axis, from, metres.
+    /// Lower end of the distance of the nominal tip from the axis, metres.
     pub radius_m: f64,
-    /// Its height along the axis above the base's origin, from, metres.
+    /// Lower end of its height along the axis above the base's origin, metres.
     pub height_m: f64,
     pub displaced: Displacements,
     /// Expected error of predictions here (root mean square, metres), `sqrt(mean tr P_p)` of theory.md §9 (40).
@@ -78,7 +78,7 @@ pub struct Displacements {
 /// Median and largest of some values.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spread {
-    /// Half of the values are smaller.
+    /// Median: half of the values are smaller.
     pub median: f64,
     /// The largest value.
     pub largest: f64,
@@ -100,8 +100,8 @@ impl Displacements {
     }
 }
 
-/// Displacements over the sampled workspace; `None` of a calibration that is not to be used, of one whose axes were held, and of robots whose
-/// tip not every joint moves.
+/// Displacements over the sampled workspace; `None` for a calibration that must not be used, for one whose axes were held, and for robots whose tip
+/// some joint does not move.
 pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
     if calibration.verdict.level <= Level::Located {
         return None;
@@ -158,7 +158,7 @@ pub fn workspace(calibration: &Calibration) -> Option<Workspace> {
     })
 }
 
-/// The cells of the workspace in which configurations are, which are sorted by them.
+/// The cells of the workspace that contain configurations; sorts the configurations by cell.
 fn cells(compared: &mut [Compared], cell_m: f64) -> Vec<WorkspaceCell> {
     let at = |it: &Compared| [it.height_m, it.radius_m].map(|value| (value / cell_m).floor() as i64);
     compared.sort_by_key(at);
@@ -175,7 +175,7 @@ fn cells(compared: &mut [Compared], cell_m: f64) -> Vec<WorkspaceCell> {
     compared.chunk_by(|one, other| at(one) == at(other)).filter_map(cell).collect()
 }
 
-/// Mean square errors of predicted places (of the first target, or the tip) in configurations, of these readings.
+/// Mean square errors of predicted positions (of the first target, or the tip) in configurations of these readings.
 fn expected_squares(
     robot: &Robot,
     readings: &[usize],
@@ -211,14 +211,14 @@ fn configuration(index: usize, allowed: &[[f64; 2]]) -> Vec<f64> {
     allowed.iter().zip(PRIMES).map(value).collect()
 }
 
-/// The axis that the map is about.
+/// Axis of the map.
 struct Axis {
     point: Vector3<f64>,
     direction: Vector3<f64>,
 }
 
 impl Axis {
-    /// Distance of a place from the axis, and height above the base's origin along it.
+    /// Distance of a position from the axis, and height above the base's origin along it.
     fn cylindrical(&self, place: &Vector3<f64>) -> (f64, f64) {
         let from_axis = place - self.point;
         let along = self.direction.dot(&from_axis);
@@ -244,7 +244,7 @@ fn cell(compared: &[Compared]) -> f64 {
         let values = compared.iter().map(of);
         values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
     };
-    // A robot whose tip stays where it is has one cell.
+    // A robot whose tip does not move has one cell.
     let least = (span(|it| it.radius_m).max(span(|it| it.height_m)) / MOST_CELLS).max(1e-3);
     let power = 10f64.powf(least.log10().floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= least);
@@ -257,14 +257,14 @@ struct Arms<'a> {
     actual: &'a Arm,
 }
 
-/// A configuration compared.
+/// A compared configuration.
 struct Compared {
-    /// Where the tip is meant to be: distance from the axis, height along it.
+    /// Intended position of the tip: distance from the axis, height along it.
     radius_m: f64,
     height_m: f64,
     moved_m: f64,
     turned_rad: f64,
-    /// Sizes of the corrections, where small ones mend it.
+    /// Sizes of the corrections, if small ones exist.
     mended: Option<Vec<f64>>,
     is_beyond_limits: bool,
     /// Expected mean square error of a prediction here, square metres.
@@ -276,7 +276,7 @@ impl Arms<'_> {
         (self.nominal.forward_kinematics(q), self.actual.forward_kinematics(q))
     }
 
-    /// Compares the actual tip with where it is meant to be.
+    /// Compares the actual tip with its intended pose.
     fn compare(&self, q: &[f64], meant: &Pose, actual: &Pose, axis: &Axis) -> Compared {
         let (radius_m, height_m) = axis.cylindrical(&meant.translation);
         let (moved_m, turned_rad) = actual.apart(meant);
@@ -304,8 +304,8 @@ impl Arms<'_> {
         }
     }
 
-    /// The configuration to which small corrections lead, with the actual tip where it is meant to be: Newton's iteration by the least
-    /// changes, `q ← q + Jᵀ (J Jᵀ)⁻¹ e`; `None` if it does not end near.
+    /// The configuration near this one with the actual tip at its intended pose: Newton's iteration by the least changes, `q ← q + Jᵀ (J Jᵀ)⁻¹ e`;
+    /// `None` if it does not end near.
     fn mended(&self, q: &[f64], meant: &Pose) -> Option<Vec<f64>> {
         let reach = self.actual.reach_m();
         let mut mended = q.to_vec();

@@ -1,4 +1,4 @@
-//! How far the start may be from the truth: random elbows whose axes are off by up to 40° and 200 mm.
+//! Basin of convergence: random elbows whose axes are off by up to 40° and 200 mm.
 
 use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal_fit::problem::Problem;
@@ -18,15 +18,15 @@ const NOISE: Noise = Noise::new(5e-5, 1e-4);
 const CONFIGURATIONS: usize = 60;
 /// Two fits that end at one optimum differ in cost by rounding, and by how exactly each has settled its noise ratio.
 const SAME_OPTIMUM: f64 = 1.001;
-/// The belief that axes are near the drawing holds what the data hardly tell where that is: with one that is off by many times what is
-/// believed, some units of some 200 in the sum of squares.
+/// The prior that axes are near nominal pulls weakly determined directions. If the nominal model is off by many times its tolerance, this amounts to
+/// some units of some 200 in the sum of squares.
 const SAME_WITH_A_BELIEF: f64 = 1.1;
 
-/// The noise by which that optimum is judged to be the right one: its mean squared whitened residual, one but for chance.
+/// Factor on the mean squared whitened residual by the true noise, up to which the optimum is the right one: it is one except for chance.
 const RIGHT_OPTIMUM: f64 = 1.5;
 
-/// Error of the start (deg, mm), usual trials, and the share of them that must reach the optimum. With the device anywhere, which only
-/// adds the registration to it, a third of the trials is run.
+/// Error of the start (deg, mm), usual trials, and the share of them that must reach the optimum. With an unknown device frame, which only adds the
+/// registration, a third of the trials is run.
 const BASINS: [(f64, f64, usize, f64); 4] =
     [(3.0, 15.0, 1000, 1.0), (10.0, 50.0, 300, 1.0), (20.0, 100.0, 300, 0.99), (40.0, 200.0, 300, 0.95)];
 
@@ -38,7 +38,7 @@ fn mean_square(result: &Calibration, data: &Dataset, robot: &Robot) -> f64 {
     Problem::new(session, rows, vec![], NOISE).normal(&result.models.calibrated).mean_square()
 }
 
-/// Whether the fit from a start that is off by the stated amounts ends where the fit from the truth ends.
+/// True if the fit from a start with these errors ends at the optimum of the fit from the truth.
 fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledge, seed: u64) -> bool {
     let simulation = Simulation {
         error_rotation_rad: deg.to_radians(),
@@ -53,7 +53,7 @@ fn reaches_the_optimum(deg: f64, mm: f64, kind: Kind, frame: DeviceFrameKnowledg
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let start = simulation.perturbed(&elbow(), &mut generator);
     let made = simulation.measure(&elbow(), elbow(), kind, &mut generator).unwrap();
-    // Every other start with the belief that it is nearly right, which none of these is.
+    // Every other start has the prior that it is nearly right, which none of these is.
     let usual = geometry();
     let (tolerance, same) =
         if seed.is_multiple_of(2) { (None, SAME_OPTIMUM) } else { (usual.tolerance, SAME_WITH_A_BELIEF) };

@@ -1,4 +1,4 @@
-//! What happens during a session: found, named, repaired where that is evident, and nothing is found where nothing happened.
+//! Events during a session are found, named, and repaired if they are evident; nothing is found in a session without events.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
@@ -12,16 +12,16 @@ use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
 use poecal_testing::trials::trials;
 
 const COUNT: usize = 80;
-/// What is said of readings that were all early.
+/// Part of the statement about readings that were all early.
 const EARLY: &str = "before they came to rest";
 
 fn session(seed: u64, kind: Kind) -> Simulated {
-    // Gears that give, so that the robot has errors of its own beside the noise.
+    // Compliant gears, so that the robot has errors of its own beside the noise.
     let simulation = Simulation { count: COUNT, seed, noise_position_m: 5e-5, ..Simulation::default() };
     simulation.run(&elbow(), kind).unwrap()
 }
 
-/// The measured places of the rows from one on, moved.
+/// The measured positions moved from one row on.
 fn moved(data: &mut Dataset, first: usize, by: impl Fn(usize, Vector3<f64>) -> Vector3<f64>) {
     for (row, observation) in data.observations.iter_mut().enumerate().skip(first) {
         observation.measurement = Measurement::point(by(row, observation.measurement.position().unwrap()));
@@ -33,7 +33,8 @@ fn found(robot: &Robot, data: &Dataset, options: &CalibrationOptions) -> (Calibr
     (calibration, data.into_owned())
 }
 
-/// Error of the first target's distances between places of the truth, which no frame changes. `slipped` is what the second joint reads more now.
+/// Error of the first target's distances between positions of the truth, which no frame changes. `slipped` is the increase of the second joint's
+/// reading.
 fn error_mm(made: &Simulated, calibration: &Calibration, slipped: f64) -> f64 {
     let rows: Vec<&[f64]> = (0..COUNT).map(|row| made.data.readings(row)).collect();
     let target = calibration.targets[0].tip_from_target.translation;
@@ -80,7 +81,7 @@ fn a_move_of_the_device_of_a_target_of_a_zero_and_a_drift_are_repaired() {
                 assert_eq!((event.kind, event.from_row), (kind, from_row), "{}", event.statement);
                 assert!((own - size).abs() < within, "{}", event.statement);
                 assert!(event.error_after_mm.unwrap() < 0.8 * event.error_before_mm.unwrap());
-                // Half of the rows determine the arm with six numbers more: not by much worse.
+                // Half of the rows determine the arm with six numbers more: the error increases only a little.
                 assert!(error < 1.35 * usual + 0.01, "{words}: {error} mm, clean {usual} mm");
                 assert_eq!(repaired.len(), COUNT);
                 repaired
@@ -130,7 +131,7 @@ fn configurations_that_are_wrong_as_a_whole_are_left_out() {
     let clean = session(3, Kind::POSE);
     let (calibration, _) = found(&clean.nominal, &clean.data, &CalibrationOptions::default());
     let usual = error_mm(&clean, &calibration, 0.0);
-    // Read a degree before the arm was there.
+    // Readings taken a degree before the arm was there.
     let wrong = [7, 20, 33, 51, 64];
     let data = with_readings(&clean.data, |row, readings| {
         if wrong.contains(&row) {
@@ -159,7 +160,7 @@ fn without_repairs_an_evident_move_is_a_reason_not_to_use_the_result() {
     assert!(calibration.repairs.is_empty() && data == made.data);
     assert_eq!((event.kind, event.error_after_mm), (EventKind::Device, None));
     assert_eq!(calibration.verdict.reasons.first(), Some(&event.statement));
-    // What the library calibrates as it is given, it says too.
+    // Plain `calibrate`, which repairs nothing, reports the event too.
     let plain = calibrate(&made.nominal, &made.data, &CalibrationOptions::default()).unwrap();
     assert!(
         plain.repairs.is_empty() && plain.warnings.iter().any(|it| it.contains("shifted by")),
@@ -201,7 +202,7 @@ fn a_mistake_that_explains_more_is_named_and_nothing_is_repaired() {
     }
 }
 
-/// Joints that turn at one speed and are read a constant time before they are there.
+/// Joints that turn at one speed and are read a constant time early.
 #[test]
 fn readings_that_are_all_early_are_named_with_their_angle() {
     for (seed, early_deg) in [(1, 0.05), (2, 0.2), (3, 0.1)] {
@@ -220,7 +221,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
         println!("{early_deg} deg: {said:?} {:?}", calibration.repairs);
         let [said] = said[..] else { panic!("{:?}", calibration.warnings) };
         assert!(said.contains(&format!("{early_deg:.2} deg")), "{said}");
-        // The other way round nothing was early.
+        // In reverse order no reading was early.
         let data = with_readings(&made.data, |row, readings| {
             if row + 1 < COUNT {
                 let after = made.data.readings(row + 1);
@@ -234,7 +235,7 @@ fn readings_that_are_all_early_are_named_with_their_angle() {
     }
 }
 
-/// What rounding makes is noise, up to half of what is left: the robot is better than the rows say.
+/// Rounding counts as noise, up to half of the residuals: the robot is better than its rows suggest.
 #[test]
 fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
     for seed in trials(6).at_least(3).seeds() {
@@ -247,7 +248,7 @@ fn the_rounding_of_readings_is_noise_and_no_error_of_the_robot() {
         assert!(calibration.warnings.iter().any(|it| it.contains("are rounded to 0.1 deg")));
         let left_mm = calibration.accuracy.held_out.unwrap().calibrated.position_mm().rms;
         let expected_mm = calibration.verdict.expected_error_mm.unwrap();
-        // The truth is of points of the tip, which no row shows exactly: of distances of two.
+        // The truth concerns points of the tip, which no row shows exactly, so distances of pairs are compared.
         let error_mm = error_mm(&made, &calibration, 0.0);
         println!(
             "seed {seed}: {left_mm:.3} mm left, {expected_mm:.3} mm expected, {error_mm:.3} mm of distances"

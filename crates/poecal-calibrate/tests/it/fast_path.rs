@@ -1,5 +1,5 @@
-//! The hot path against the general path: Gram matrix, gradient and cost on many problems, by every set of instructions that this
-//! machine has, and with any number of threads.
+//! The hot path against the general path: Gram matrix, gradient and cost on many problems, by every instruction set of this machine, and with any
+//! number of threads.
 
 use crate::reference;
 use nalgebra::Vector3;
@@ -37,12 +37,12 @@ fn robots() -> Vec<(String, Robot)> {
     robots
 }
 
-/// How a problem differs from the plainest one.
+/// Differences of a problem from the plainest one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Case {
     rows: usize,
     targets: usize,
-    /// Further places that the device stood at, each with an unknown frame.
+    /// Further stations of the device, each with an unknown frame.
     further: usize,
     device: bool,
     weights: bool,
@@ -53,14 +53,14 @@ struct Case {
     late: usize,
     /// Only every second axis is unknown.
     some_axes: bool,
-    /// Nothing is unknown but the place of the first target, or not even that.
+    /// Nothing is unknown except the position of the first target, or not even that.
     place_only: bool,
     nothing: bool,
     /// The last rows are turned by this much, radians.
     turned_rad: f64,
 }
 
-/// More rows than are sorted at a time, of which only some late ones are of a kind of their own.
+/// More rows than are sorted at a time; only some late ones are of another kind.
 fn many() -> Case {
     Case { rows: 9000, targets: 3, stated: true, late: 8500, ..Case::default() }
 }
@@ -172,7 +172,7 @@ fn parameters(robot: &Robot, data: &Dataset, case: &Case) -> Vec<Parameter> {
     free
 }
 
-/// Largest difference of Gram matrix, gradient and cost, each relative to what its numbers are made of.
+/// Largest difference of Gram matrix, gradient and cost, each relative to the size of its summands.
 fn difference(fast: &Normal, general: &Normal) -> f64 {
     let n = general.dim();
     let size = |k: usize| general.gram[k * n + k].sqrt();
@@ -219,7 +219,7 @@ fn both_paths_agree() {
                     }
                     let gradient = problem.gradient(&session.estimate).unwrap();
                     assert_eq!((&gradient.gradient, gradient.cost), (&fast.gradient, fast.cost), "{name}");
-                    // What is left out of this one is about rotations alone, and of `JᵀJ` alone.
+                    // The approximation omits terms of rotations alone, and of `JᵀJ` alone.
                     let nearly = problem.nearly_normal(&session.estimate);
                     assert_eq!((&nearly.gradient, nearly.cost), (&fast.gradient, fast.cost), "{name}");
                     assert!(kind != Kind::POINT || nearly == fast, "{name}");
@@ -242,8 +242,8 @@ fn sums_do_not_depend_on_threads() {
     assert!((2..5).all(|threads| of(threads) == of(1)));
 }
 
-/// Fits go by few passes (many rows begin on a sample, last steps go by gradients alone, the very last one by the model); here is what
-/// one plain minimisation finds whose every step sees all of every row.
+/// Fits use few passes (many rows begin on a sample, last steps use gradients alone, the very last one the model); the reference is one plain
+/// minimisation whose every step uses all rows in full.
 #[test]
 fn few_passes_have_the_same_optimum() {
     let cases = [50, 50, 50, 500, 6000].into_iter().zip(1..);
@@ -263,7 +263,7 @@ fn few_passes_have_the_same_optimum() {
         let problem = Problem::new(session, rows.clone(), free, NOISE);
         let strict = Options { decrement: 1e-12, ..Options::default() };
         let (plain, normal, _) = minimize(&Plain(&problem), start, &strict);
-        // What a prediction gains by going on from the quick optimum, against what noise leaves open.
+        // Improvement of a prediction by further steps from the quick optimum, compared with the uncertainty due to noise.
         let rest = problem.normal(&quick);
         let apart = farthest(&session, &rows, &quick, &plain);
         let excess = (rest.cost - normal.cost) / normal.mean_square();
@@ -319,7 +319,7 @@ fn refits_have_the_same_optimum() {
         let (mut worst, mut iterations): (f64, usize) = (0.0, 0);
         let mut generator = ChaCha8Rng::seed_from_u64(7);
         for trial in 0..40 {
-            // One in four is far off, so that shared steps do not serve.
+            // One in four has large errors, so that shared steps do not suffice.
             let scale = if trial % 4 == 3 { 300.0 } else { 1.0 };
             let mut data = made.data.clone();
             for observation in &mut data.observations {
@@ -371,7 +371,7 @@ impl LeastSquares for Plain<'_> {
     }
 }
 
-/// Largest distance between the places that two estimates predict, metres.
+/// Largest distance between the positions that two estimates predict, metres.
 fn farthest(session: &estimate::Session<'_>, rows: &[u32], a: &Estimate, b: &Estimate) -> f64 {
     let errors = |estimate| session.errors(rows, estimate);
     errors(a).iter().zip(errors(b)).map(|(a, b)| (a.position_m() - b.position_m()).norm()).fold(0.0, larger)

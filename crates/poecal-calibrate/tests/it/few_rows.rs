@@ -32,7 +32,7 @@ fn few_configurations_are_all_fitted_unless_something_else_is_asked_for() {
     assert_eq!((&found.held_out_rows[..], found.accuracy.few_configurations), (&[7][..], None));
 }
 
-/// Cross-validation predicts each row once, and says apart of which it had nothing alike.
+/// Cross-validation predicts each row once, and reports separately the rows outside the range of the others.
 #[test]
 fn rows_beyond_the_range_of_the_others_are_reported_apart() {
     let made = Simulation { count: 200, seed: 8, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
@@ -53,7 +53,7 @@ fn rows_beyond_the_range_of_the_others_are_reported_apart() {
         [found.random.rms, found.inside, outside.rms].map(|it| it.get(Quantity::Position).unwrap());
     println!("{} rows outside: {outside_m} m, inside {inside} m, all {random} m", outside.rows);
     assert!((1..12).contains(&outside.rows));
-    // The squares of both together are those of all.
+    // The squares of both together equal those of all.
     let count = (rows.len(), outside.rows);
     let sum = (count.0 - count.1) as f64 * inside.powi(2) + count.1 as f64 * outside_m.powi(2);
     assert!((sum / (count.0 as f64 * random.powi(2)) - 1.0).abs() < 1e-9);

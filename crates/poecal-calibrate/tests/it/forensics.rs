@@ -1,4 +1,4 @@
-//! Mistakes put into simulated sessions are named, and clean sessions are left in peace.
+//! Mistakes put into simulated sessions are named, and clean sessions raise no alarm.
 
 use poecal_testing::sessions::geometry;
 use std::collections::BTreeSet;
@@ -29,7 +29,7 @@ const KINDS: [DiagnosisKind; 12] = [
     DiagnosisKind::DuplicateRows,
 ];
 
-/// Half a file of another export.
+/// Half of a file with another export.
 #[test]
 fn a_mistake_of_a_part_of_the_rows_is_named_with_these_rows() {
     for seed in trials(4).at_least(2).seeds() {
@@ -69,7 +69,7 @@ fn found(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     )
 }
 
-/// Root mean square position error of the nominal robot with device and targets found, metres.
+/// Root mean square position error of the nominal robot with fitted device and targets, metres.
 fn registered_m(session: &Session, data: &Dataset) -> f64 {
     let packed = Packed::from_dataset(&session.robot, data);
     let rows: Vec<u32> = data.all_rows();
@@ -84,9 +84,9 @@ fn registered_m(session: &Session, data: &Dataset) -> f64 {
     1e-3 * (2.0 * cost / data.len() as f64).sqrt()
 }
 
-/// A drawn session with a mistake of the kind that belongs to the index. What a session cannot have is drawn again, and so are joint
-/// zeros that are not gross, the registered error being below 2.5 times that of the clean session: a calibration takes them in, as
-/// it is meant to (the zero of the first and last joint, and of slides that only shift the base, move nothing at all).
+/// A drawn session with a mistake of the kind that belongs to the index. Impossible mistakes are drawn again, and so are joint zeros that are not
+/// gross (registered error below 2.5 times that of the clean session), since a calibration is meant to absorb them. The zero of the first and last
+/// joint, and of slides that only shift the base, moves nothing at all.
 fn mistaken(index: u64) -> (Session, DiagnosisKind, Dataset, String) {
     let kind = KINDS[index as usize % KINDS.len()];
     for attempt in 0.. {
@@ -114,7 +114,7 @@ fn mistakes_are_named() {
     });
 }
 
-/// A header that states the unit of one of three columns wrongly.
+/// A header with a wrong unit for one of three columns.
 #[test]
 fn a_column_in_another_unit_is_named_alone() {
     for seed in trials(12).seeds() {
@@ -134,7 +134,7 @@ fn a_column_in_another_unit_is_named_alone() {
     }
 }
 
-/// An elbow of which each reading of a joint is that of the data plus so many times that of the joint before.
+/// An elbow in which each reading of a joint is that of the data plus a multiple of the reading before.
 fn coupled(session: &Session, column: usize, own: f64, factor: f64) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());
     data.targets.clone_from(&session.data.targets);
@@ -172,7 +172,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
         let session = Session::drawn(500 + seed);
         let joints = &session.robot.joints;
         let is_per_cent = seed % 2 == 0 && joints.iter().all(|it| it.limits.is_some());
-        // Of per cent read as degrees, or of one gear.
+        // Factors of percentages read as degrees, or of one gear.
         let factors: Vec<f64> = joints
             .iter()
             .enumerate()
@@ -189,7 +189,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
         let (kinds, words) = (found.iter().map(|it| it.kind).collect::<Vec<_>>(), &session.words);
         let is_right = kinds == [DiagnosisKind::JointScale]
             && joints.iter().zip(&factors).all(|(joint, factor)| {
-                // Of nominal screws: two figures of the factor.
+                // The factor is determined with nominal screws, so only two of its digits are compared.
                 *factor == 1.0 || {
                     let text =
                         found[0].statement.split(&format!("{}: ", joint.name)).nth(1).unwrap_or_default();
@@ -203,7 +203,7 @@ fn readings_in_per_cent_and_of_other_gears_are_named_with_their_factors() {
     assert!(named as f64 >= 0.7 * sessions.count as f64, "{wrong:#?}");
 }
 
-/// A session whose readings are of other sizes.
+/// A session whose readings have other sizes.
 fn scaled(session: &Session, factors: &[f64]) -> Dataset {
     let mut data = Dataset::new(session.data.reading_names().to_vec());
     data.targets.clone_from(&session.data.targets);
@@ -215,7 +215,7 @@ fn scaled(session: &Session, factors: &[f64]) -> Dataset {
     data
 }
 
-/// What `poecal calibrate` names.
+/// Diagnoses of `poecal calibrate`.
 fn told_with_calibration(session: &Session, data: &Dataset) -> Vec<Diagnosis> {
     let frame = if session.device_free { DeviceFrameKnowledge::Unknown } else { DeviceFrameKnowledge::Base };
     calibrate(&session.robot, data, &CalibrationOptions { frame, ..Default::default() }).unwrap().diagnosis
@@ -243,7 +243,7 @@ fn check_and_calibrate_name_the_same_mistakes() {
     assert!(different.is_empty(), "{different:#?}");
 }
 
-/// A session of an elbow whose rows see so many targets in turn, with the sign of one joint wrong or not.
+/// A session of an elbow whose rows see this number of targets in turn, with the sign of one joint wrong or not.
 fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
     let mut session = Session::drawn(0);
     let made = Simulation { count: 3 * targets, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
@@ -258,7 +258,7 @@ fn of_targets(targets: usize, sign: f64) -> (Session, Dataset) {
     (session, data)
 }
 
-/// Each target had unknowns of its own in every fit of every supposition, and each pair was a supposition: hours.
+/// Formerly each target had unknowns of its own in every fit of every hypothesis, and each pair was a hypothesis: the search took hours.
 #[test]
 fn a_thousand_targets_are_looked_through() {
     let targets = trials(1000).at_least(300).count.min(1000);
@@ -278,7 +278,7 @@ fn a_thousand_targets_are_looked_through() {
     );
 }
 
-/// An elbow and 600 rows of 30 targets, each at a place of its own.
+/// An elbow and 600 rows of 30 targets, each at a position of its own.
 fn of_many_places() -> (Session, Dataset) {
     let (session, _) = of_targets(30, 1.0);
     let made = Simulation { count: 600, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();

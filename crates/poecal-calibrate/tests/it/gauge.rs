@@ -1,4 +1,4 @@
-//! Of the many ways to write one robot: predictions are the same in all, and the one chosen is nearest to nominal.
+//! Gauge freedom: predictions are the same in all parameterisations of one robot, and the chosen one is nearest to nominal.
 
 use poecal_arm::lie::{Pose, rotation};
 use poecal_calibrate::{Calibration, CalibrationOptions, calibrate, delivered, radian_m};
@@ -18,9 +18,9 @@ use rand_core::SeedableRng;
 
 /// Far above rounding at some metres, far below any device.
 const SAME: f64 = 1e-9;
-/// A gauge is settled to what its own iteration asks for.
+/// A gauge is settled to the tolerance of its own iteration.
 const SETTLED: f64 = 1e-9;
-/// Open directions are settled in a few rounds, each a thousandth of the one before; the last may leave nanometres.
+/// Undetermined directions are settled in a few rounds, each a thousandth of the one before; the last may leave nanometres.
 const STAYS: f64 = 1e-7;
 
 fn robots() -> Vec<Robot> {
@@ -56,7 +56,7 @@ fn apart(a: &Pose, b: &Pose, (shift, turn): (f64, f64)) -> (f64, f64) {
     (larger(shift, (a.translation - b.translation).norm()), larger(turn, angle))
 }
 
-/// What the gauge makes smallest, of the screws: tilts as arcs, and shifts seen from the nominal joint's origin (m²).
+/// Objective of the gauge: tilts of the screws as arcs, and shifts seen from the nominal joint's origin (m²).
 fn deviation(estimate: &Estimate, robot: &Robot) -> f64 {
     let length_m = robot.reach_m() / 3.0;
     estimate.screws().iter().zip(&robot.joints).fold(0.0, |sum, (screw, joint)| {
@@ -111,7 +111,7 @@ fn joint_deviation(result: &Calibration, joint: usize) -> f64 {
     (screw - result.nominal.joints[joint].screw.twist().to_vector()).norm()
 }
 
-/// A joint that stands still leaves its own axis open, or some combination with its neighbours: nominal is kept there.
+/// A joint that does not move leaves its own axis undetermined, or some combination with its neighbours: nominal is kept there.
 #[test]
 fn what_the_data_leave_open_stays_nominal() {
     for (value, joint) in [(0.0, 2), (0.6, 2), (0.6, 0), (-1.1, 5)] {
@@ -128,7 +128,7 @@ fn what_the_data_leave_open_stays_nominal() {
         let result = calibrated(&made);
         let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
         let deviation = joint_deviation(&result, joint);
-        // At zero the joint's own axis is open, and nothing else: it is exactly nominal. Elsewhere the later axes go with it.
+        // At zero only the joint's own axis is undetermined: it is exactly nominal. Elsewhere the later axes follow it.
         assert!(value != 0.0 || deviation < STAYS, "{deviation:e}");
         println!(
             "joint {} at {value}: rank {} of {}, held out {held_out_m:.1e} m, its screw {deviation:.1e} off nominal",
@@ -143,7 +143,7 @@ fn what_the_data_leave_open_stays_nominal() {
     }
 }
 
-/// Targets of a session: name, whether a frame, and place in the tip frame.
+/// Targets of a session: name, whether a frame, and pose in the tip frame.
 type Target = (Option<&'static str>, bool, Pose);
 
 fn session(robot: &Robot, targets: &[Target]) -> Simulated {
@@ -164,7 +164,7 @@ fn session(robot: &Robot, targets: &[Target]) -> Simulated {
     made
 }
 
-/// The robot that is written, its tip and its targets, against the estimate that was fitted.
+/// The written robot, its tip and its targets, compared with the fitted estimate.
 #[test]
 fn calibrated_robot_predicts_what_the_estimate_predicts() {
     let shifted = |x: f64| Pose::from_xyz_rpy([x, 0.1, 0.2], [0.3, -1.0, 2.0]);
@@ -204,7 +204,7 @@ fn calibrated_robot_predicts_what_the_estimate_predicts() {
     }
 }
 
-/// An unnamed target is the tip; otherwise the tip stands on the last joint as nominally.
+/// An unnamed target is the tip; otherwise the tip stays on the last joint as nominally.
 fn check_tip(result: &Calibration, targets: &[Target]) {
     let unnamed = result.targets.iter().find(|target| target.name.is_none());
     let nominal = result.nominal.last_joint_from_tip();
@@ -213,7 +213,7 @@ fn check_tip(result: &Calibration, targets: &[Target]) {
     match unnamed {
         Some(target) => {
             assert!(apart(&target.tip_from_target, &Pose::identity(), (0.0, 0.0)).0 < SAME);
-            // Its place was some 0.2 m from the nominal tip.
+            // Its position was some 0.2 m from the nominal tip.
             assert!((found.translation - nominal.translation).norm() > 0.1);
             assert!(targets[0].1 || turn < SAME);
         }
@@ -222,18 +222,19 @@ fn check_tip(result: &Calibration, targets: &[Target]) {
             let placed = result.targets.iter().zip(targets);
             for (target, (_, _, truth)) in placed {
                 let off = target.tip_from_target.translation - truth.translation;
-                // As far off as the tip itself: its error is the target's, seen from the nominal tip.
+                // The error of the target, seen from the nominal tip, equals that of the tip itself.
                 assert!(off.norm() < 0.05, "{off}");
             }
         }
     }
 }
 
-/// The share by which the distances of two models may exceed what a rigid motion of one leaves of them: tip and target have one base.
+/// Share by which the distances of two models may exceed those after a rigid motion of one: tip and target have one base.
 const OF_THE_BASE: f64 = 1.1;
 
-/// Of a session, the distances (RMS, metres) between the tips and between the targets of the calibrated and the corrected model in the base frame, each
-/// with what is left of it after the best rigid motion; and by how much the corrected robot predicts otherwise than the fit in the device's frame.
+/// Distances (RMS, metres) between the tips and between the targets of the calibrated and the corrected model of a session in the base frame, each
+/// with the remaining distance after the best rigid motion. The last number is the difference of the corrected robot's predictions from the fit's in
+/// the device's frame.
 fn both_models(robot: &Robot, kind: Kind, seed: u64, move_tip: bool) -> ([(f64, f64); 2], f64) {
     let simulation = Simulation { count: 60, seed, terms: Sizes::COMMON, ..Simulation::default() };
     let made = simulation.run(robot, kind).unwrap();

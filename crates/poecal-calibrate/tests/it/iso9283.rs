@@ -1,4 +1,4 @@
-//! Figures of ISO 9283 of simulated tests: how often intervals hold, bias, and rows that are wrong.
+//! Figures of ISO 9283 of simulated tests: coverage of intervals, bias, and wrong rows.
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
@@ -30,7 +30,7 @@ struct Known {
     /// Standard deviations of the robot's own scatter along axes that `axes` turns, metres.
     scatter: Vector3<f64>,
     axes: Matrix3<f64>,
-    /// The same of angles, radians.
+    /// Standard deviation of the robot's own scatter of angles, radians.
     turning: f64,
     noise_m: f64,
     noise_rad: f64,
@@ -76,7 +76,7 @@ impl Known {
         rows
     }
 
-    /// True lengths of the mean errors, in the stated frame or in one that is fitted to the means.
+    /// True lengths of the mean errors, in the stated frame or in a frame fitted to the means.
     fn accuracy(&self, is_fitted: bool) -> Vec<f64> {
         let commands = commands();
         let reached: Vec<Vector3<f64>> = commands.iter().zip(&self.errors).map(|(a, b)| a + b).collect();
@@ -165,7 +165,7 @@ fn intervals_hold_as_often_as_they_say() {
         let mean = known.turns.iter().sum::<Vector3<f64>>() / 5.0;
         for (k, figure) in figures(&found, FigureName::Ap, true).into_iter().enumerate() {
             let turn = known.turns[k / 3] - if is_fitted { mean } else { Vector3::zeros() };
-            // The second order of mean turns of a thousandth.
+            // Tolerance for the second order of mean turns of a thousandth.
             shares[4].add(figure.measured.from - 1e-6, figure.measured.to + 1e-6, turn[k % 3]);
         }
         for figure in figures(&found, FigureName::Rp, true) {
@@ -185,7 +185,7 @@ fn intervals_hold_as_often_as_they_say() {
     }
 }
 
-/// At 30 cycles, raw and without the noise of the instrument.
+/// Bias at 30 cycles, raw and without the noise of the instrument.
 #[test]
 fn figures_are_unbiased_at_thirty_cycles() {
     let trials = trials(1000);
@@ -278,7 +278,7 @@ fn wrong_rows_are_named() {
     missing.remove(52);
     let found = iso9283(&missing, None).unwrap();
     assert!(found.warnings[0].contains("found no row of pose P3 in cycle 11"), "{:?}", found.warnings);
-    // All rows of two poses have each other's names.
+    // All rows of two poses have exchanged names.
     let renamed = rows.iter().map(|row| {
         let mut row = row.clone();
         let commands = commands();

@@ -1,4 +1,4 @@
-//! What this crate does, seen from outside: one program, since linking it once takes less than linking one for each subject.
+//! Behaviour of this crate, tested from outside: one program, since linking it once takes less than linking one for each subject.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 

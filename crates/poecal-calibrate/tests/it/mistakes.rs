@@ -16,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
-/// A session of a robot that is not quite as its model says.
+/// A session of a robot that differs slightly from its model.
 pub(crate) struct Session {
     pub(crate) robot: Robot,
     pub(crate) data: Dataset,
@@ -50,8 +50,8 @@ pub(crate) fn between(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 }
 
 impl Session {
-    /// A session drawn by its seed: robot, errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 30 to 200 rows of one to three targets, poses
-    /// or points or both, random configurations or a smooth path, device anywhere or at the base.
+    /// A session drawn by its seed: robot, errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 30 to 200 rows of one to three targets, poses or points
+    /// or both, random configurations or a smooth path, device anywhere or at the base.
     pub(crate) fn drawn(seed: u64) -> Session {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xf0e5_1c00);
         let g = &mut generator;
@@ -67,7 +67,7 @@ impl Session {
         let kind = pick(g, 3);
         let device_free = uniform(g) < 0.75;
         let smooth = uniform(g) < 0.25;
-        // Reflectors stand beside the flange: one on the last axis would not tell that axis from a still one.
+        // Reflectors are beside the flange: one on the last axis would not distinguish a moving axis from a still one.
         let nominal: Vec<Pose> = (0..targets)
             .map(|_| Pose::new(simulate::random::rotation(g), direction(g) * between(g, 0.06, 0.15)))
             .collect();
@@ -134,7 +134,7 @@ impl Session {
         })
     }
 
-    /// The data with a mistake of a kind, and what it is; `None` if this session cannot have it.
+    /// The data with a mistake of a kind, and its description; `None` if this session cannot have it.
     pub(crate) fn mistaken(&self, kind: DiagnosisKind, seed: u64) -> Option<(Dataset, String)> {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x3157_a4e5);
         let g = &mut generator;
@@ -245,7 +245,7 @@ impl Session {
                     }
                 };
                 let turns = uniform(g) < 0.5;
-                // A mirrored SCARA is one whose slide goes the other way, since all its axes are parallel.
+                // A mirrored SCARA is one with a reversed slide, since all its axes are parallel.
                 let same = self.robot.name == "scara" && (turns || !poses || words == "axis 2");
                 let mirrored = |pose: Pose| {
                     let turned = if turns { mirror * pose.rotation * mirror } else { pose.rotation };
@@ -370,16 +370,16 @@ fn from_angles(convention: usize, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
     }
 }
 
-/// One session that was looked at: what it is, whether what was found is right, and that.
+/// An examined session: its description, the decision whether the finding is right, and the finding.
 pub(crate) struct Looked {
-    /// What is counted together.
+    /// Label by which sessions are counted together.
     pub(crate) label: String,
     pub(crate) words: String,
     pub(crate) is_right: bool,
     pub(crate) found: Vec<Diagnosis>,
 }
 
-/// Looks at sessions with a mistake in each: 95 % must be right.
+/// Examines sessions with a mistake in each: 95 % of the findings must be right.
 pub(crate) fn assert_mistakes_are_named(sessions: Trials, look: impl Fn(u64) -> Looked + Sync) {
     let count = sessions.count;
     let looked: Vec<Looked> = sessions.seeds().into_par_iter().map(&look).collect();
@@ -401,7 +401,7 @@ pub(crate) fn assert_mistakes_are_named(sessions: Trials, look: impl Fn(u64) -> 
     assert!(right as f64 >= (0.95 - sessions.more_of_a_share(0.95)) * count as f64, "{right} of {count}");
 }
 
-/// Looks at sessions without a mistake, by their words and what is found: 1 % may raise an alarm.
+/// Examines sessions without a mistake, by their words and findings: 1 % may raise an alarm.
 pub(crate) fn assert_no_alarms(sessions: Trials, look: impl Fn(u64) -> (String, Vec<Diagnosis>) + Sync) {
     let count = sessions.count;
     let alarms: Vec<String> = (sessions.seeds())

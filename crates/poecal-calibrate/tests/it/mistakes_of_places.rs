@@ -1,4 +1,4 @@
-//! Mistakes in sessions of anchors, spheres, sockets, planes, gravity and pairs are named, and clean ones are left in peace.
+//! Mistakes in sessions of anchors, spheres, sockets, planes, gravity and pairs are named, and clean ones raise no alarm.
 
 use crate::mistakes::{Looked, assert_mistakes_are_named, assert_no_alarms, between, pick};
 use poecal_arm::lie::Pose;
@@ -15,7 +15,7 @@ use rand_core::SeedableRng;
 const SOCKETS_M: f64 = 0.2;
 const SPHERE_M: f64 = 0.05;
 
-/// Sessions, each with the mistakes that it can have.
+/// Sessions, each with its possible mistakes.
 const CASES: [(Kind, DiagnosisKind); 16] = [
     (Kind::DISTANCE, DiagnosisKind::PlacesSwapped),
     (Kind::DISTANCE, DiagnosisKind::LengthUnit),
@@ -35,14 +35,14 @@ const CASES: [(Kind, DiagnosisKind); 16] = [
     (Kind::RELATIVE, DiagnosisKind::InvertedPose),
 ];
 
-/// A session of a robot that is not quite as its model says.
+/// A session of a robot that differs slightly from its model.
 struct Session {
     robot: Robot,
     data: Dataset,
     words: String,
 }
 
-/// A robot whose tool stands beside its last axis.
+/// A robot whose tool is beside its last axis.
 fn robot(index: usize) -> Robot {
     let mut robot = match index % 5 {
         0 => elbow(),
@@ -55,8 +55,8 @@ fn robot(index: usize) -> Robot {
     robot
 }
 
-/// A session drawn by its seed: errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 60 to 180 rows. Where
-/// a robot does not reach its places, another is drawn.
+/// A session drawn by its seed: errors of 0.5 to 2 degrees and 1 to 3 mm, noise, 60 to 180 rows. If a robot does not reach its positions, another is
+/// drawn.
 fn drawn(kind: Kind, seed: u64) -> Session {
     let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x9_1ace5);
     let simulation = Simulation {
@@ -95,7 +95,7 @@ fn each(data: &mut Dataset, mut change: impl FnMut(usize, &mut Observation)) {
     data.observations.iter_mut().enumerate().for_each(|(row, observation)| change(row, observation));
 }
 
-/// The session's data with a mistake of a kind, and what it is.
+/// The session's data with a mistake of a kind, and its description.
 fn mistaken(session: &Session, kind: DiagnosisKind, seed: u64) -> (Dataset, String) {
     let g = &mut ChaCha8Rng::seed_from_u64(seed ^ 0x0ddb_a115);
     let mut data = session.data.clone();
@@ -180,7 +180,7 @@ fn part(count: usize, g: &mut ChaCha8Rng) -> (usize, usize) {
     (start, start + (count as f64 * between(g, 0.1, 0.4)) as usize)
 }
 
-/// Rows of one place that name another: a part of the session, or both names exchanged in it.
+/// Rows of one anchor that name another: a part of the session, or both names exchanged in it.
 fn renamed(data: &mut Dataset, g: &mut ChaCha8Rng) -> String {
     let places = data.station_count();
     let (first, both) = (pick(g, places), uniform(g) < 0.5);

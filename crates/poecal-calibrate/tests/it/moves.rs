@@ -1,4 +1,4 @@
-//! What moves within a session is named rightly, with its place and size, and nothing is named where nothing moved.
+//! Motions within a session are named rightly, with their row and size, and nothing is named if nothing moved.
 
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ fn session(robot: &Robot, kind: Kind, count: usize, seed: u64) -> Simulated {
     simulated(robot, kind, count, 7000 + seed)
 }
 
-/// Each measurement as seen after a motion of the device, which the row says.
+/// Each measurement as seen after a motion of the device, a function of the row.
 fn changed(made: &Simulated, motion: impl Fn(usize) -> Pose) -> Dataset {
     let mut data = made.data.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
@@ -40,12 +40,12 @@ fn says(found: &Calibration, words: &str) -> bool {
     found.warnings.iter().any(|warning| warning.contains(words))
 }
 
-/// What is said, for messages.
+/// All statements, for messages.
 fn said(found: &Calibration) -> String {
     format!("{:?}\n{:?}\n{:?}", found.verdict, found.warnings, found.diagnosis)
 }
 
-/// Also where every row counts in full, the move is as far as it was.
+/// Asserts that with full weight of every row the motion has the same size.
 fn assert_size_by_least_squares(robot: &Robot, data: &Dataset) {
     let options = CalibrationOptions { robust: Robust::Off, ..Default::default() };
     let found = calibrate(robot, data, &options).unwrap();
@@ -97,7 +97,7 @@ fn a_device_moved_halfway_is_named_with_its_row() {
     }
 }
 
-/// Rows of two files, the second seen from another place.
+/// Rows of two files, the second seen from another pose.
 fn two_files(made: &Simulated, place: Pose, first: usize) -> Dataset {
     let mut data = changed(made, |row| if row < first { Pose::identity() } else { place });
     data.files = vec![PathBuf::from("monday.csv"), PathBuf::from("tuesday.csv")];
@@ -142,7 +142,7 @@ fn a_device_moved_far_within_a_file_is_named() {
             let statement = statement.unwrap_or_else(|| panic!("{kind:?} {count} {from}: {}", said(&found)));
             let row: usize =
                 statement.split("from row ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
-            // The first fitted row after it.
+            // First fitted row after the motion.
             assert!((from + 1..from + 8).contains(&row), "{from}: {statement}");
             assert!(!says(&found, "wrong unit"), "{}", said(&found));
             assert_eq!(found.verdict.level, Level::DoNotUse);
@@ -187,7 +187,7 @@ fn a_knocked_nest_is_named_with_target_and_row() {
                 statement.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
             };
             let (row, far) = (number("from row "), number("is shifted by "));
-            // The first row of this target after the knock.
+            // First row of this target after the knock.
             let first = (from..).find(|row| row % 3 == 1).unwrap() + 1;
             assert_eq!(row as usize, first, "{statement}");
             assert!((far - 0.8).abs() < 0.25, "{statement}");
@@ -215,7 +215,7 @@ fn a_slow_drift_is_called_a_drift() {
     }
 }
 
-/// Whether a change is named.
+/// True if a change is named.
 fn is_doubted(found: &Calibration) -> bool {
     ["moved", "drift", "knocked", "do not share", "another device frame"]
         .iter()
@@ -245,7 +245,7 @@ fn nothing_is_named_in_sessions_where_nothing_moved() {
     assert!(doubted.is_empty(), "{doubted:#?}");
 }
 
-/// Configurations one after the other along each joint, of a robot whose links give: its errors go with time, since the joints do.
+/// Configurations ordered along each joint, of a robot with compliant links: its errors vary with time, since the joints do.
 #[test]
 fn an_orderly_session_of_a_robot_that_gives_is_not_called_a_drift() {
     for seed in 0..6 {

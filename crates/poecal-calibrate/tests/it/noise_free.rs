@@ -1,4 +1,4 @@
-//! Without noise a calibration is exact: it predicts configurations that it has not seen, and its rank is what theory says.
+//! Without noise a calibration is exact: it predicts configurations that it has not seen, and its rank is that of theory.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist};
@@ -30,11 +30,11 @@ const IDENTIFIED: [[f64; 6]; 6] = [
 ];
 /// The same table's last row: the point on the tool, m.
 const IDENTIFIED_POINT: [f64; 3] = [0.839_010_0, -0.005_030_0, 0.724_974_0];
-/// Iterations that lou2009 reports are 6 and 10; the step here is the same, in better coordinates.
+/// Iterations reported by lou2009 are 6 and 10; the step here is the same, in better coordinates.
 const ELBOW_ITERATIONS: [(Kind, usize, usize); 2] = [(Kind::POSE, 30, 5), (Kind::POINT, 100, 7)];
 
-/// Exact points of the elbow whose tool is off by this across the last axis, on which the nominal one lies: they hardly determine it, so that the
-/// prior pulls. lou2009 needs 10 iterations of its points.
+/// Exact points of the elbow whose tool is displaced by this across the last axis, on which the nominal one lies: they hardly determine the axis, so
+/// that the prior biases it. lou2009 needs 10 iterations for its points.
 const TOOL_ERROR_M: f64 = 9e-3;
 const POINTS: usize = 80;
 const POINT_ITERATIONS: usize = 7;
@@ -51,7 +51,7 @@ const EXACT: Simulation = Simulation {
     gravity: Vector3::new(0.0, 0.0, -1.0),
 };
 
-/// The elbow as lou2009 identified it. The paper gives no orientation of its tip: the nominal one.
+/// The elbow as lou2009 identified it. The paper states no orientation of its tip: the nominal one is used.
 fn actual_elbow() -> Robot {
     let screws: Vec<Screw> = IDENTIFIED
         .iter()
@@ -71,7 +71,7 @@ fn simulated_elbow(kind: Kind, count: usize) -> Simulated {
     simulation.measure(&elbow(), actual_elbow(), kind, &mut ChaCha8Rng::seed_from_u64(7)).unwrap()
 }
 
-/// 4r+2p+6 for poses and 4r+2p+3 for points.
+/// Structural rank: 4r+2p+6 for poses and 4r+2p+3 for points.
 fn structural_rank(robot: &Robot, kind: Kind) -> usize {
     let screws: usize = robot.joints.iter().map(|j| if j.kind == JointKind::Revolute { 4 } else { 2 }).sum();
     screws + if kind == Kind::POINT { 3 } else { 6 }
@@ -88,7 +88,7 @@ fn papers_elbow_is_calibrated_in_fewer_iterations_than_in_the_paper() {
         let options = CalibrationOptions {
             frame: DeviceFrameKnowledge::Base,
             held_out: Some(50.0 / (fitted + 50) as f64),
-            // The paper believes nothing of the drawing.
+            // The paper has no prior.
             tolerance: None,
             ..Default::default()
         };
@@ -132,7 +132,7 @@ fn exact_points_of_the_elbow_take_few_iterations_whatever_its_errors() {
     assert!(most.max().unwrap() <= POINT_ITERATIONS);
 }
 
-/// The nominal point lies on nominal axis 6: turning that axis and shifting it do the same to the point.
+/// The nominal point lies on nominal axis 6: turning and shifting that axis have the same effect on the point.
 #[test]
 fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let made = simulated_elbow(Kind::POINT, 100);
@@ -147,7 +147,7 @@ fn elbow_has_rank_25_where_a_fit_of_points_starts() {
     let problem = Problem::new(session, (0..100).collect(), free, noise);
     let estimate = delivered(robot, &made.data);
     let setup = Setup { session, rows: problem.rows(), estimate: &estimate, layout: problem.layout(), noise };
-    // The residual at the start is not noise: the rank wanted is that of the Jacobian itself.
+    // The residual at the start is not noise: the rank is that of the Jacobian itself.
     let found = identifiability(&setup, &problem.normal(&estimate).gram, 0.0);
     println!("rank {} of {}", found.rank, found.parameters);
     found.unidentifiable.iter().for_each(|direction| println!("    {}", direction.description));

@@ -1,4 +1,4 @@
-//! Faults of robots and of sessions are planted in the rows that are fitted; clean rows of the same robot judge what was promised.
+//! Faults of robots and of sessions are planted in the fitted rows; clean rows of the same robot judge the predicted bounds.
 
 use poecal_testing::sessions::geometry;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 const SESSIONS: usize = 240;
 const NOISE_M: f64 = 5e-5;
 
-/// A row: readings in radians, place in metres.
+/// A row: readings in radians, position in metres.
 #[derive(Clone)]
 struct Row {
     readings: Vec<f64>,
@@ -32,7 +32,7 @@ fn below(generator: &mut ChaCha8Rng, count: usize) -> usize {
     (generator.next_u64() % count as u64) as usize
 }
 
-/// What the robot does that its model does not describe: in all rows, those that judge too.
+/// Effects of the robot that its model does not describe, in all rows, including those that judge.
 fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
     let kind =
         one(generator, &["none", "none", "none", "gear", "ripple", "backlash", "sag", "scale", "rounded"]);
@@ -71,7 +71,7 @@ fn physical(rows: &mut [Row], generator: &mut ChaCha8Rng) -> &'static str {
     kind
 }
 
-/// What goes wrong in a session: in the fitted rows alone.
+/// Faults of a session, in the fitted rows alone.
 fn fault(rows: &mut Vec<Row>, generator: &mut ChaCha8Rng) -> &'static str {
     let faults = [
         "none",
@@ -175,7 +175,7 @@ fn dataset(rows: &[Row]) -> Dataset {
     data
 }
 
-/// The level, and whether predicted bounds were exceeded: fewer than 80 % of the errors inside, or more than twice the expected error.
+/// The level, and a mark of exceeded bounds: fewer than 80 % of the errors inside, or more than twice the expected error.
 type Outcome = (Level, Option<bool>);
 
 fn session(seed: u64) -> (String, bool, Option<Outcome>) {
@@ -199,7 +199,7 @@ fn session(seed: u64) -> (String, bool, Option<Outcome>) {
         2 => CalibrationOptions { robust: Robust::Off, ..usual },
         _ => usual,
     };
-    // Noise that is stated too large or too small is one of the faults.
+    // A stated noise that is too large or too small is one of the faults.
     let sigma_m = NOISE_M * one(&mut generator, &[1.0, 1.0, 1.0, 0.2, 5.0]);
     let options = CalibrationOptions {
         sigma: ByQuantity::default().with(Quantity::Position, is_stated.then_some(sigma_m)),
@@ -254,7 +254,7 @@ fn promises_of_good_calibrations_are_kept() {
     }
     for is_stated in [false, true] {
         let (count, broken) = levels.get(&(is_stated, Level::Good)).copied().unwrap_or_default();
-        // Enough of them to see one in ten.
+        // Enough of them to detect one in ten.
         let enough = 25.0 / SESSIONS as f64 - sessions.more_of_a_share(25.0 / SESSIONS as f64);
         assert!(count as f64 >= enough * sessions.count as f64, "{count}");
         let share = 0.03 + sessions.more_of_a_share(0.03);

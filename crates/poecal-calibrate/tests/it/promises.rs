@@ -1,4 +1,4 @@
-//! What is promised of predictions holds: bounds, expected errors and verdicts, with noise stated or not, few rows or many.
+//! Predicted uncertainty holds: bounds, expected errors and verdicts, with noise stated or not, few rows or many.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -18,11 +18,11 @@ const NOISE_M: f64 = 5e-5;
 const NOISE_RAD: f64 = 1e-4;
 /// Predictions judged for each fit.
 const PREDICTIONS: usize = 40;
-/// What scatters from session to session: the share of the errors inside their bounds, and how many times as wide as needed these are.
+/// Scatter between sessions of the share of the errors inside their bounds, and of the ratio of these bounds to the needed ones.
 const OF_ONE_SESSION: f64 = 0.15;
 const OF_ONE_WIDTH: f64 = 0.4;
 
-/// A session with errors that a drawing leaves.
+/// A session with errors that remain in a nominal model.
 fn session(count: usize, seed: u64, kind: Kind) -> Simulated {
     let simulation = Simulation {
         count,
@@ -44,7 +44,7 @@ fn everything() -> CalibrationOptions {
     CalibrationOptions { held_out: Some(0.0), ..geometry() }
 }
 
-/// Errors of predictions of the true place with their 95 % bounds, metres; `real` makes the joint values of readings.
+/// Errors of predictions of the true position with their 95 % bounds, metres; `real` makes the joint values of readings.
 fn judged(
     found: &Calibration,
     made: &Simulated,
@@ -71,11 +71,11 @@ fn judged(
         .collect()
 }
 
-/// Share of the errors inside their bounds, and how many times as wide as needed these are.
+/// Share of the errors inside their bounds, and ratio of the bounds to the needed ones.
 fn coverage(errors: &[(f64, f64)]) -> (f64, f64) {
     let inside = errors.iter().filter(|(error, bound)| error <= bound).count() as f64 / errors.len() as f64;
     let mut ratios: Vec<f64> = errors.iter().map(|(error, bound)| bound / error).collect();
-    // The bound divided by this would hold in just 95 of 100 cases.
+    // The bound divided by this would hold in exactly 95 of 100 cases.
     ratios.sort_by(f64::total_cmp);
     (inside, ratios[ratios.len() / 20])
 }
@@ -109,7 +109,7 @@ fn bounds_hold_where_nothing_is_unmodelled() {
     }
 }
 
-/// What gears leave: each joint off by the first two harmonics of its angle.
+/// Remaining errors of gears: each joint is off by the first two harmonics of its angle.
 fn harmonics(seed: u64, size_rad: f64) -> impl Fn(&[f64]) -> Vec<f64> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x6ea5);
     let of: Vec<[f64; 4]> =
@@ -122,7 +122,7 @@ fn harmonics(seed: u64, size_rad: f64) -> impl Fn(&[f64]) -> Vec<f64> {
     }
 }
 
-/// The session measured again with the joints really where `real` says.
+/// The session measured again with the real joint values of `real`.
 fn remeasured(made: &Simulated, kind: Kind, seed: u64, real: &impl Fn(&[f64]) -> Vec<f64>) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x5e);
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -173,7 +173,7 @@ fn bounds_hold_with_errors_that_the_model_does_not_describe() {
     }
 }
 
-/// Noise that hangs together in time is seen, and allowed for.
+/// Noise that is correlated in time is detected, and allowed for.
 #[test]
 fn noise_that_is_correlated_in_time_is_seen() {
     let (mut seen, mut errors) = (0, Vec::new());
@@ -216,7 +216,7 @@ fn noise_that_is_correlated_in_time_is_seen() {
     assert!(false_alarms as f64 <= (0.02 + clean.more_of_a_share(0.02)) * clean.count as f64);
 }
 
-/// Rows of one configuration are one configuration: 14 of them, six times each, with links that give.
+/// Rows of one configuration count as one configuration: 14 of them, six times each, with compliant links.
 #[test]
 fn repeated_rows_promise_no_more_than_their_configurations() {
     let (mut all, mut promised, mut found_squares) = (Vec::new(), 0.0, 0.0);
@@ -249,7 +249,8 @@ fn repeated_rows_promise_no_more_than_their_configurations() {
     assert!(inside > 0.9 - sessions.more(OF_ONE_SESSION) && ratio < 1.2 + sessions.more(0.3));
 }
 
-/// Repeated measurements that scatter as much as the others show that the residuals are noise; without them they are the robot's.
+/// Repeated measurements that scatter as much as the others show that the residuals are noise; without them the residuals count as errors of the
+/// robot.
 #[test]
 fn repeats_show_what_is_noise() {
     let made = session(40, 3, Kind::POINT);
@@ -274,7 +275,7 @@ fn repeats_show_what_is_noise() {
     assert_eq!(whose(3), Attribution::Repeats);
 }
 
-/// Twelve rows ten times over: nothing is grossly off, and it is no session to rely on.
+/// Twelve rows, each copied ten times: no error is gross, and the session is not reliable.
 #[test]
 fn copied_rows_are_no_rows() {
     let made = session(12, 4, Kind::POINT);
@@ -312,11 +313,11 @@ fn joints_of_one_reading_are_drawn_together() {
     let (measured, range) =
         (found.trust.expected.measured.unwrap().sigma_m, found.trust.expected.range.unwrap().sigma_m);
     println!("measured {:.4}, anywhere {:.4} mm", 1e3 * measured, 1e3 * range);
-    // Anywhere is where it was measured: both are random within the limits.
+    // "Anywhere" is the measured range: both are random within the limits.
     assert!((0.7..1.4).contains(&(range / measured)));
 }
 
-/// A noise that is no noise of this session is judged, and never good.
+/// A stated noise that contradicts the session is judged, and never good.
 #[test]
 fn absurd_noise_is_never_good() {
     for sigma_m in [0.05, 100.0, 1e-9] {
@@ -329,7 +330,7 @@ fn absurd_noise_is_never_good() {
         let rms = found.accuracy.held_out.unwrap().calibrated.position_mm().rms;
         println!("{sigma_m} m: {rms:.4} mm, {:?} {:?}", found.verdict, found.warnings);
         assert!(found.verdict.level < Level::Good && !found.warnings.is_empty());
-        // Positions that weigh little beside rotations are fitted by these, which is what was asked for.
+        // If positions weigh little beside rotations, rotations decide their fit, as requested.
         assert!(rms < 5.0);
     }
 }

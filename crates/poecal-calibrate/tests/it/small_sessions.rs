@@ -1,4 +1,4 @@
-//! Sessions of few rows, or of rows that see only lengths: no absurd target, no fear without a cause, bounds of what is asked.
+//! Sessions of few rows, or of rows that see only lengths: no absurd target, no unfounded warning, bounds of the requested quantities.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_arm::lie::Pose;
@@ -9,7 +9,7 @@ use poecal_model::robot::{Limits, Robot, Sizes};
 use poecal_model::simulate::{Kind, Simulated, Simulation, elbow};
 use poecal_testing::trials::trials;
 
-/// What the warning of a target says whose place is open.
+/// Part of the warning about a target whose position is undetermined.
 const OPEN: &str = "leave the place of the target on the last link open";
 
 /// An elbow arm whose wrist hardly turns, as on a carriage that reaches along a wall.
@@ -81,12 +81,12 @@ fn a_target_far_from_the_model_is_found_there() {
     }
 }
 
-/// Places of a target by a robot, in rows of readings.
+/// Positions of a target by a robot, in rows of readings.
 fn places(robot: &Robot, target: &Pose, data: &Dataset) -> Vec<Vector3<f64>> {
     (0..data.len()).map(|row| (robot.forward_kinematics(data.readings(row)) * *target).translation).collect()
 }
 
-/// Root mean square distance of places after the best small motion, and with `grows` the best size.
+/// Root mean square distance of positions after the best small motion, and with `grows` the best size.
 fn apart_m(found: &[Vector3<f64>], actual: &[Vector3<f64>], grows: bool) -> f64 {
     let columns = if grows { 7 } else { 6 };
     let by = DMatrix::from_fn(3 * found.len(), columns, |row, column| {
@@ -131,7 +131,7 @@ fn what_no_row_sees_is_in_no_bound_of_lengths() {
             expected += of.measured.unwrap().sigma_m.powi(2);
             let predicted = places(robot, &targets[0].tip_from_target, &made.data);
             let actual = places(&made.actual, &Pose::identity(), &made.data);
-            // Nothing tells noise from errors of the model here.
+            // No measurement separates noise from errors of the model here.
             let noise_m2 = 3.0 * simulation.noise_position_m.powi(2);
             found += apart_m(&predicted, &actual, grows).powi(2) + noise_m2;
             let size = calibration
@@ -142,7 +142,7 @@ fn what_no_row_sees_is_in_no_bound_of_lengths() {
         }
         let ratio = (expected / found).sqrt();
         println!("{kind:?}: expected over found {ratio:.2}");
-        // Terms that may be there are in the bounds and not in every robot; the gauge alone made this ratio ten and more.
+        // Possible terms are in the bounds and not in every robot; the gauge alone made this ratio ten and more.
         assert!((0.7..1.6).contains(&ratio), "{kind:?}: {ratio}");
     }
 }
@@ -163,6 +163,6 @@ fn few_rows_that_help_are_used() {
         }
     }
     println!("{refused} of {better} refused");
-    // One by chance of some tens.
+    // One failure by chance in some tens.
     assert!(better > 10 && refused <= 1 + better / 20, "{refused} of {better}");
 }

@@ -1,5 +1,4 @@
-//! No initial guess: wherever the device stands and whatever the tool is, registration ends at the optimum that a registration
-//! from the truth reaches.
+//! No initial guess: for any device frame and any tool, registration ends at the optimum that a registration from the truth reaches.
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, rotation};
@@ -22,19 +21,19 @@ use rayon::prelude::*;
 /// Cases of each kind, and the share of them that must end at the optimum.
 const CASES: usize = 300;
 const SHARE: f64 = 0.99;
-/// Two searches that end at one optimum differ in cost by what they leave undone.
+/// Two searches that end at one optimum differ in cost by their termination.
 const SAME_OPTIMUM: f64 = 1.001;
 /// Largest offset of a target from the nominal tip, metres; its orientation is any.
 const OFFSET_M: f64 = 0.5;
 const ROWS: usize = 60;
 const NOISE: Noise = Noise::new(5e-5, 2e-4);
-/// Metres that a radian counts.
+/// Metres per radian.
 const LENGTH_M: f64 = 0.4;
 
-/// Readings of one configuration; the number says which of the session.
+/// Readings of one configuration; the number is its index in the session.
 type Configure = fn(&Robot, usize, &mut ChaCha8Rng) -> Vec<f64>;
 
-/// A kind of session: which targets are seen (as frames or not), on which robots and in what configurations.
+/// A kind of session: the visible targets (as frames or not), the robots and the configurations.
 struct Session {
     name: &'static str,
     targets: &'static [(Option<&'static str>, bool)],
@@ -115,14 +114,14 @@ fn small_volume(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64>
     middle.iter().take(robot.joints.len()).map(|&value| around(value, generator)).collect()
 }
 
-/// The gantry slides, its wrist keeps still.
+/// The gantry slides, its wrist stays still.
 fn wrist_still(robot: &Robot, _: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
     let mut readings = random_configuration(robot, generator);
     readings[3..].copy_from_slice(&[0.3, -0.5, 0.9]);
     readings
 }
 
-/// The elbow's wrist (axes -x, y, -x at zero) turned so that the nominal tip keeps one orientation wherever the arm is.
+/// The elbow's wrist (axes -x, y, -x at zero) turned so that the nominal tip keeps one orientation for any position of the arm.
 fn one_orientation(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
     let mut readings = random_configuration(robot, generator);
     readings[3..].copy_from_slice(&[0.0; 3]);
@@ -136,7 +135,7 @@ fn one_orientation(robot: &Robot, generator: &mut ChaCha8Rng) -> Vec<f64> {
     readings
 }
 
-/// Measurements of a robot that is off its nominal model, with the truth as an estimate of nominal screws.
+/// Measurements of a robot that differs from its nominal model, with the truth as an estimate of nominal screws.
 fn measure(session: &Session, robot: &Robot, generator: &mut ChaCha8Rng) -> (Dataset, Estimate) {
     let actual = Simulation::default().perturbed(robot, generator);
     let device_from_base = Pose::new(random::rotation(generator), random::direction(generator) * 3.0);
@@ -182,7 +181,7 @@ fn cost_from_truth(session: estimate::Session<'_>, rows: &[u32], truth: Estimate
     minimize(&problem, truth, &Options::default()).1.cost
 }
 
-/// Cost reached without a guess over that reached from the truth.
+/// Ratio of the cost reached without a guess to that reached from the truth.
 fn excess(session: &Session, seed: u64) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let robot = (session.robots)(seed);

@@ -1,4 +1,4 @@
-//! A device that stood at several places: each has a frame of its own, the robot and its targets are one.
+//! A device at several stations: each has a frame of its own, the robot and its targets are common.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -10,12 +10,12 @@ use poecal_model::simulate::{Kind, Simulated, Simulation, elbow, gantry, random,
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 
-/// Another place of the device, in the first one's frame.
+/// Another pose of the device, in the first one's frame.
 fn moved(station: usize) -> Pose {
     Pose::from_xyz_rpy([1.5, -2.0 * station as f64, 0.3], [0.2, -0.1, 1.1 * station as f64])
 }
 
-/// The measurement as the device sees it from another place.
+/// The measurement as the device sees it from another pose.
 fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
     let pose = *place * measurement.pose();
     if measurement.sees_orientation() {
@@ -25,7 +25,7 @@ fn seen_from(place: &Pose, measurement: &Measurement) -> Measurement {
     }
 }
 
-/// The rows of a session dealt out to several places.
+/// The rows of a session distributed over several stations.
 fn dealt(made: &Simulated, stations: usize) -> Dataset {
     let mut data = made.data.clone();
     let parts = data.len().div_ceil(stations);
@@ -48,7 +48,7 @@ fn fit(robot: &Robot, data: &Dataset) -> Calibration {
     calibrate(robot, data, &CalibrationOptions { held_out: Some(0.0), ..Default::default() }).unwrap()
 }
 
-/// Root mean square distance from the truth in configurations that no fit saw, metres, in the first place's frame.
+/// Root mean square distance from the truth in configurations that no fit saw, metres, in the first station's frame.
 fn unseen_m(simulation: &Simulation, made: &Simulated, kind: Kind, calibration: &Calibration) -> f64 {
     let unseen = simulation.held_out(made, kind, 300).unwrap();
     let packed = Packed::from_dataset(&made.nominal, &unseen);
@@ -126,7 +126,7 @@ fn each_further_place_adds_six_to_the_rank() {
             let expected = plain + 6 * (stations - 1);
             assert_eq!(found.identifiability.parameters, expected);
             assert_eq!(found.identifiability.rank, expected, "{}", robot.name);
-            // The same rank, by another way: what each row means to the fit.
+            // The same rank, by another path: the leverage of each row.
             let dims = data.observations.iter().map(|row| row.measurement.dim() as f64);
             let leverages = row_influence(&found, &data, &data.all_rows());
             let sum: f64 = leverages.iter().zip(dims).map(|(row, dim)| row.leverage * dim).sum();
@@ -180,7 +180,7 @@ fn places_that_cannot_be_found_are_refused() {
     );
 }
 
-/// A place that held-out rows alone name is found from these, with the robot as it was fitted by the others.
+/// A station that only held-out rows name is determined from these, with the robot as the others fitted it.
 #[test]
 fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
     let robot = elbow();
@@ -193,7 +193,7 @@ fn the_frame_of_a_held_out_place_is_found_from_its_own_rows() {
     assert_eq!(found.identifiability.rank, 24 + 3);
     let held_out = found.accuracy.held_out.unwrap();
     println!("{:.4} mm", held_out.calibrated.position_mm().rms);
-    // The noise of the measurements, and that of a fit of 60 points.
+    // The noise of the measurements, and the uncertainty of a fit of 60 points.
     assert!(held_out.calibrated.position_mm().rms < 3.0 * 3f64.sqrt() * 1e3 * simulation.noise_position_m);
     assert!(held_out.registered.position_mm().rms > 1.0);
 }
@@ -243,7 +243,7 @@ fn the_noise_of_each_instrument_is_found() {
         assert!((ratio / expected).ln().abs() < 0.15, "{ratio} instead of {expected}");
     }
     assert!((first[Quantity::Position] / simulation.noise_position_m).ln().abs() < 0.15);
-    // With one noise for both the better instrument is hardly heard.
+    // With one noise for both, the better instrument has hardly any weight.
     let unseen = unseen_m(&simulation, &made, Kind::POSE, &found);
     let mut stated = data.clone();
     stated.observations.iter_mut().for_each(|row| row.stated.set(Quantity::Position, Some(0.36e-3)));

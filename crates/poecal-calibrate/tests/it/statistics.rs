@@ -1,4 +1,4 @@
-//! With noise: the error of predictions is what the Cramér-Rao bound allows.
+//! With noise, the error of predictions attains the Cramér-Rao bound.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_arm::lie::rotation;
@@ -20,11 +20,11 @@ const RUNS: usize = 1000;
 const FITTED: usize = 60;
 const PREDICTED: usize = 50;
 const NOISE: Noise = Noise::new(5e-5, 2e-4);
-/// Largest deviation from the bound in that many runs: chance alone makes some 1 % of it.
+/// Largest deviation from the bound in that many runs: chance alone causes some 1 % of it.
 const TOLERANCE: f64 = 0.05;
 /// Standard deviation of one run's mean square over the bound: 1 % times √1,000.
 const OF_ONE_RUN: f64 = 0.32;
-/// Metres that a radian counts; any does.
+/// Metres per radian; any value serves.
 const LENGTH_M: f64 = 0.5;
 
 /// Mean squared error of position (m²) and rotation (rad²).
@@ -64,7 +64,7 @@ fn bound(truth: &Estimate, data: &Dataset, unseen: &Packed, robot: &Robot, kind:
     sums
 }
 
-/// Derivatives of the target's place and orientation by all unknowns: three rows each.
+/// Derivatives of the target's position and orientation by all unknowns: three rows each.
 fn sensitivities(layout: &Layout, chain: &Chain) -> ([DVector<f64>; 3], [DVector<f64>; 3]) {
     let zero = || std::array::from_fn(|_| DVector::zeros(layout.dim()));
     let (mut shift, mut turn): ([DVector<f64>; 3], [DVector<f64>; 3]) = (zero(), zero());
@@ -101,7 +101,7 @@ fn truth(made: &Simulated) -> Estimate {
     Estimate::new(&made.actual, vec![made.actual.home], made.device_from_base)
 }
 
-/// One calibration with default settings, and what the bound allows it.
+/// One calibration with default settings, and its Cramér-Rao bound.
 fn run(kind: Kind, seed: u64) -> (Squares, Squares) {
     let simulation = Simulation {
         noise_position_m: NOISE[Quantity::Position],
@@ -153,7 +153,7 @@ fn errors_of_pose_calibrations_are_at_the_bound() {
     judge("poses, rotation (µrad)", runs, found.1, allowed.1);
 }
 
-/// Points say nothing of the target's orientation: positions alone are judged.
+/// Points do not determine the target's orientation: positions alone are judged.
 #[test]
 fn errors_of_point_calibrations_are_at_the_bound() {
     let (runs, found, allowed) = runs(Kind::POINT);

@@ -1,4 +1,4 @@
-//! A joint with a bad transmission, or with an axis farther off than the others', is named; a sound robot is left alone.
+//! A joint with a bad transmission, or with a larger axis error than the others, is named; a sound robot raises no suspicion.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -105,11 +105,11 @@ fn an_axis_that_stands_out_is_named() {
         }
     }
     println!("{right} of {all} axes named, {others} others");
-    // With the device anywhere, an error of the first axis is one of all the others too.
+    // With the device anywhere, an error of the first axis is also one of all the others.
     assert!(right + 2 >= all && others <= 2);
 }
 
-/// What of a robot is off beside its usual errors.
+/// Fault of a robot beside its usual errors.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     Nothing,
@@ -121,7 +121,7 @@ enum Fault {
 const ZERO_RAD: f64 = 0.2 * std::f64::consts::PI / 180.0;
 const AXIS_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
-/// A robot with a fault of some size, and a session of it with usual errors of all axes, joints that give, and a device anywhere.
+/// A session of a robot with a fault of some size, usual errors of all axes, compliant joints, and a device anywhere.
 fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa_017);
     let sign = if random::uniform(&mut generator) < 0.5 { -1.0 } else { 1.0 };
@@ -155,14 +155,14 @@ fn faulty_session(robot: &Robot, fault: Fault, seed: u64) -> Dataset {
     simulation.run(&actual, kind).unwrap().data
 }
 
-/// The robot with its tip beside the last axis, where a reflector shows how the last joint turns.
+/// The robot with its tip beside the last axis, so that a reflector shows the turn of the last joint.
 fn with_tool(robot: Robot) -> Robot {
     let tool = Pose::from_translation(Vector3::new(0.1, 0.05, 0.1));
     Robot { home: robot.home * tool, ..robot }
 }
 
-/// A fault is that of its joint whatever the device's frame and the tool are: zeros between the first joint, which the base has, and the last, which
-/// the tool has, and axes of all joints.
+/// A fault is attributed to its joint for any device frame and tool: zeros between the first joint, whose zero the base absorbs, and the last, whose
+/// zero the tool absorbs, and axes of all joints.
 #[test]
 fn the_joint_that_is_off_is_named() {
     let robots = [elbow(), seven_axis()].map(with_tool);

@@ -1,4 +1,4 @@
-//! What is stated of uncertainty holds in a Monte Carlo, and stays quiet about discrepancy where there is only noise.
+//! Stated uncertainty holds in a Monte Carlo simulation, and reports no discrepancy if there is only noise.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::rotation;
@@ -20,25 +20,25 @@ const FITS: usize = 1040;
 /// Predictions judged for each fit.
 const PREDICTIONS: usize = 20;
 
-/// What one fit's predictions came to.
+/// Counts of one fit's predictions.
 #[derive(Clone, Copy, Default)]
 struct Tally {
-    /// Components of position and rotation inside ± 1.96 standard deviations, of how many.
+    /// Components of position and rotation inside ± 1.96 standard deviations, and their number.
     inside: usize,
     of: usize,
-    /// Distances within their bound, of how many.
+    /// Distances within their bound, and their number.
     bounded: usize,
     predictions: usize,
     /// Mean `eᵀ P⁻¹ e` of the positions.
     nees: f64,
-    /// Whether errors beyond noise were claimed.
+    /// True if errors beyond noise were claimed.
     claimed: bool,
 }
 
 fn one(robot: &Robot, kind: Kind, seed: u64) -> Tally {
     let made = Simulation { count: 70, seed, ..Simulation::default() }.run(robot, kind).unwrap();
     let simulated = Simulation::default();
-    // Nothing unmodelled: the noise is stated, and nothing is believed of the drawing.
+    // Nothing is unmodelled: the noise is stated, and there is no prior.
     let options = CalibrationOptions {
         held_out: Some(0.0),
         tolerance: None,
@@ -117,10 +117,10 @@ fn stated_intervals_hold() {
     println!(
         "{fits} fits: {components:.4}, {distances:.4}, NEES {nees:.3}, {claims} with errors beyond noise"
     );
-    // Predictions of one fit err alike: its share is 1 for most, and little for some.
+    // Errors of predictions of one fit are correlated: its share is 1 for most fits, and small for some.
     let near = 0.02 + trials.more(0.1);
     assert!((components - 0.95).abs() < near && (distances - 0.95).abs() < near);
-    // The 95 % band of the mean of that many χ² of 3 degrees of freedom.
+    // The 95 % band of the mean of `fits` values of χ² with 3 degrees of freedom.
     assert!((nees - 3.0).abs() < 1.96 * (6.0 / fits as f64).sqrt());
     assert!((claims as f64) < (0.04 + trials.more_of_a_share(0.04)) * fits as f64);
 }
@@ -133,8 +133,7 @@ fn same_bytes_whatever_the_threads() {
     assert!(format!("{:?}", once.trust) == format!("{:?}", again.trust));
 }
 
-/// A robot whose links sag, which the model does not describe: predictions elsewhere err by more than the noise says, and by no more than is
-/// stated.
+/// A robot whose links sag, which the model does not describe: prediction errors elsewhere exceed the noise, and stay within the stated uncertainty.
 #[test]
 fn errors_that_the_model_does_not_describe_are_stated() {
     let robot = elbow();
@@ -180,7 +179,7 @@ fn errors_that_the_model_does_not_describe_are_stated() {
     assert!(share > 0.9 - sessions.more(0.1));
 }
 
-/// Drawn anew, noise spreads predictions as the covariance says: the drawings use neither its variance nor that rows are alike.
+/// Resampled noise spreads predictions as the covariance states: the samples use neither its variance nor the equality of rows.
 #[test]
 fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
     let mut ratios = Vec::new();
@@ -197,11 +196,12 @@ fn drawing_rows_anew_agrees_with_the_covariance_where_there_is_only_noise() {
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
     let (least, most) = ratios.iter().fold((f64::MAX, 0.0_f64), |(a, b), &r| (a.min(r), b.max(r)));
     println!("drawn anew over formal: mean {mean:.3}, {least:.2} to {most:.2}");
-    // One step with the information of all rows neglects that a drawing's own information varies: some per cent too small with few rows.
+    // One step with the information of all rows neglects that each sample's own information varies: the result is some per cent too small with few
+    // rows.
     assert!((0.9..1.1).contains(&mean) && least > 0.7 && most < 1.4);
 }
 
-/// Errors that neighbours share are no white noise: six rows that err alike tell little more than one, which drawing anew sees.
+/// Errors that neighbours share are no white noise: six rows with a common error determine little more than one, which the bootstrap shows.
 #[test]
 fn drawing_rows_anew_sees_what_neighbours_share() {
     let robot = elbow();
@@ -225,11 +225,11 @@ fn drawing_rows_anew_sees_what_neighbours_share() {
     let bootstrap = found.trust.bootstrap.unwrap();
     let ratio = bootstrap.sigma_m / bootstrap.formal_sigma_m;
     println!("six alike: drawn anew {:.4} mm, {ratio:.2} times the formal", 1e3 * bootstrap.sigma_m);
-    // Rows that are all alike in groups of six would make it the root of six, 2.4; neighbourhoods of four see about the root of four.
+    // Rows that are all alike in groups of six would make it the root of six, 2.4; neighbourhoods of four show about the root of four.
     assert!((1.5..2.6).contains(&ratio));
 }
 
-/// Least shares of the measurements in what is known of the axes' tilts and shifts.
+/// Least determined shares of the axes' tilts and shifts.
 fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> [Option<f64>; 2] {
     let options = CalibrationOptions { tolerance, ..geometry() };
     let found = calibrate(robot, data, &options).unwrap();
@@ -239,8 +239,8 @@ fn least_shares(robot: &Robot, data: &Dataset, tolerance: Option<Tolerance>) -> 
     [least(|it| it.tilt_from_data), least(|it| it.shift_from_data)]
 }
 
-/// Points far beyond the unknowns say nearly all; a tolerance far below the noise of what they tell says nearly all else; no tolerance says
-/// nothing. Touched planes do not tell the size, which the tolerance alone gives.
+/// With points far beyond the unknowns the determined share is nearly 1; with a tolerance far below the noise of the data it is nearly 0; without a
+/// tolerance there is none. Touched planes do not determine the size, which the tolerance alone supplies.
 #[test]
 fn what_the_data_said_and_what_the_tolerance_said_are_told_apart() {
     let tolerance = |angle_rad, length_m| Some(Tolerance { angle_rad, length_m });

@@ -1,4 +1,4 @@
-//! The verdict and the warnings say what is wrong with a session, and nothing of a sound one.
+//! The verdict and the warnings report the faults of a session, and none for a sound one.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -15,7 +15,7 @@ fn session(count: usize, seed: u64) -> Simulated {
     simulated(&elbow(), Kind::POSE, count, seed)
 }
 
-/// The same poses, moved and read as these functions say.
+/// The same poses, moved and read as these functions state.
 fn changed(
     made: &Simulated,
     shift: impl Fn(usize) -> Vector3<f64>,
@@ -75,7 +75,7 @@ fn rows_that_are_known_to_be_wrong_do_not_decide() {
 fn a_few_rows_of_another_form_do_not_doubt_the_input() {
     for seed in some([71, 72, 73]) {
         let made = session(80, seed);
-        // As a board whose pose is mistaken for its mirror image: every sixteenth position is on the other side of the device.
+        // A board whose pose is mistaken for its mirror image: every sixteenth position is on the other side of the device.
         let flipped = |row: usize| match row % 16 {
             0 => -2.0 * made.data.observations[row].measurement.pose().translation,
             _ => Vector3::zeros(),
@@ -84,7 +84,7 @@ fn a_few_rows_of_another_form_do_not_doubt_the_input() {
         println!("{:?}", found.verdict);
         assert_eq!(found.robustness.suspects().collect::<Vec<_>>(), [0, 16, 32, 48, 64]);
         assert_eq!(found.verdict.level, Level::Good);
-        // Without them it would be another robot.
+        // Without these rows it would be another robot.
         let error_mm = found.accuracy.training.registered.position_mm().rms;
         assert!(error_mm > 0.15 * 1e3 * made.data.spread_m(&made.data.all_rows()), "{error_mm}");
     }
@@ -107,7 +107,7 @@ fn a_device_that_was_moved_is_named_with_its_place() {
 fn noise_in_a_wrong_unit_is_doubted() {
     let made = session(80, 9);
     let smaller = "times smaller than the stated noise";
-    // Up to 5 cm, 100 m, and as far as a number goes.
+    // Factors up to 5 cm, 100 m, and the largest numbers.
     for (factor, words) in
         [(1e-3, "times the stated noise"), (1e3, smaller), (2e6, smaller), (1e12, smaller), (1.0, "")]
     {
@@ -164,7 +164,7 @@ fn stragglers_do_not_count_as_coverage() {
     assert!(found.verdict.reasons.iter().any(|reason| reason.contains("joint2 was moved through")));
 }
 
-/// Mistakes that a fit absorbs, or that it cannot: none of them is to be used.
+/// Mistakes that a fit absorbs or cannot absorb: none of the results may be used.
 #[test]
 fn what_is_not_this_robot_is_not_to_be_used() {
     let made = Simulation { count: 80, seed: 12, device_anywhere: true, ..Simulation::default() }
@@ -177,7 +177,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
         assert_eq!(found.verdict.level, Level::DoNotUse, "{name}");
     };
     let anywhere = DeviceFrameKnowledge::Unknown;
-    // Another robot of as many joints: axes elsewhere, and turned.
+    // Another robot with the same number of joints: its axes are shifted and turned.
     let mut other = elbow();
     for (k, joint) in other.joints.iter_mut().enumerate() {
         let away = 0.15 * Vector3::new((k as f64).sin(), (2.0 * k as f64).cos(), 0.3);
@@ -204,7 +204,7 @@ fn what_is_not_this_robot_is_not_to_be_used() {
     level("angles of another unit", &elbow(), &scrambled, anywhere);
 }
 
-/// Rows to judge by that are fitted rows over again are refused, in other digits too.
+/// Judging rows that are copies of fitted rows are refused, with other digits too.
 #[test]
 fn copies_are_nothing_to_judge_by() {
     let made = session(40, 7);
@@ -222,7 +222,7 @@ fn copies_are_nothing_to_judge_by() {
     assert!(error.to_string().contains("40 of 40 held-out rows that repeat fitted rows"));
 }
 
-/// The registered figures are the best that tool and frame do for positions, whatever the orientations are like.
+/// The registered figures are the best that tool and frame achieve for positions, for any orientations.
 #[test]
 fn registered_positions_are_the_best_there_are() {
     for seed in 0..10 {

@@ -16,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
-/// Configurations over which the truth is taken.
+/// Configurations over which the truth is averaged.
 const JUDGED: usize = 1000;
 
 /// A position for each configuration.
@@ -27,7 +27,7 @@ struct Truth {
     nominal: Robot,
     data: Dataset,
     options: CalibrationOptions,
-    /// Mean square of the noise that residuals have and that was not stated, square metres: it counts as the robot's.
+    /// Mean square of the noise that residuals have and that was not stated, square metres: it counts as error of the robot.
     noise_m2: f64,
     /// Position of the target in the device frame.
     at: Box<Positions>,
@@ -106,7 +106,7 @@ fn photographed(seed: u64) -> Truth {
     Truth { nominal: made.nominal, data: made.data, options, noise_m2: 0.0, at: Box::new(at) }
 }
 
-/// What is delivered: the estimate and its expected errors.
+/// Delivered model: the estimate and its expected errors.
 fn delivered(found: &Calibration) -> (&Robot, Estimate, &Expectations) {
     match found.correction.as_deref().filter(|it| it.has_terms()) {
         Some(it) => (&it.model.robot, it.estimate.clone(), &it.expected),
@@ -160,7 +160,7 @@ fn inside(data: &Dataset, seed: u64) -> Vec<Vec<f64>> {
 }
 
 struct Trial {
-    /// Expected over true errors: in the measured configurations, inside their ranges.
+    /// Ratio of expected to true errors: in the measured configurations, inside their ranges.
     ratios: [f64; 2],
     /// True errors inside the ranges, millimetres: nominal, delivered.
     inside_mm: [f64; 2],
@@ -194,7 +194,7 @@ impl Trial {
         self.inside_mm[1] < self.inside_mm[0]
     }
 
-    /// Whether it is used where programs run.
+    /// True if it is recommended for programs.
     fn is_recommended(&self) -> bool {
         self.level >= Level::InsideSampledRange && self.gain == Some(Gain::Clear)
     }
@@ -229,7 +229,7 @@ fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
         assert_eq!(losses, 0);
         let least = if name == "tracker" { 0.9 } else { 0.75 };
         assert!(recommended as f64 >= (least - sessions.more_of_a_share(0.2)) * gains as f64);
-        // Where few rows leave joint terms open, more is expected than is there, and never much less.
+        // If few rows leave joint terms undetermined, the expected error exceeds the true one, and is never much smaller.
         assert!(all.iter().all(|it| it.ratios[1] > 0.4));
         // The ratios of single sessions scatter by a half.
         let more = sessions.more(0.5);
@@ -237,7 +237,7 @@ fn expected_errors_inside_the_ranges_are_true_and_gains_are_gains() {
     }
 }
 
-/// A second session of the robot that a first one calibrated, with `changed` done to it in between; what the calibration of the first says to it.
+/// Calibration of a second session of the robot that a first one calibrated, with the robot `changed` in between.
 fn again(seed: u64, changed: impl Fn(Robot) -> Robot) -> Calibration {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xa6a1);
     let mut terms = Sizes::NONE;
@@ -264,7 +264,7 @@ fn is_confirmed(found: &Calibration) -> bool {
     *level > Level::Located && confirmed.is_some()
 }
 
-/// A calibrated robot that is as it was is confirmed or improved, and never refused; one whose zero is off by 0.05 deg is not confirmed.
+/// An unchanged calibrated robot is confirmed or improved, and never refused; one whose zero is off by 0.05 deg is not confirmed.
 #[test]
 fn a_calibrated_robot_is_confirmed_unless_a_zero_moved() {
     let sessions = trials(40);
@@ -273,7 +273,7 @@ fn a_calibrated_robot_is_confirmed_unless_a_zero_moved() {
     let moved: Vec<Calibration> = (sessions.seeds().into_par_iter())
         .map(|seed| {
             again(seed, |mut robot| {
-                // The zero of the first joint is the choice of the base.
+                // The zero of the first joint is absorbed by the base.
                 robot.joints[1 + (seed % 4) as usize].reading.offset += 0.05f64.to_radians();
                 robot
             })
@@ -284,12 +284,12 @@ fn a_calibrated_robot_is_confirmed_unless_a_zero_moved() {
     println!("moved:");
     let wrongly = moved.iter().filter(|it| is_confirmed(it)).count();
     println!("{confirmed} of {} confirmed, {refused} refused; {wrongly} with a zero off", same.len());
-    // One in forty may be by chance.
+    // One in forty may fail by chance.
     let confirmed_least = same.len() - same.len().div_ceil(40);
     assert!(confirmed >= confirmed_least && (refused, wrongly) == (0, 0));
 }
 
-/// A robot whose axes are held is located, whatever the rows say of it.
+/// A robot whose axes are held is located, whatever its rows determine.
 #[test]
 fn a_held_robot_is_located() {
     let truth = tracked(3);

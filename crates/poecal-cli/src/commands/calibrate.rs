@@ -88,7 +88,7 @@ pub(crate) fn calibrate(arguments: &Calibrate, typed: &[OsString], console: &Con
     Ok(code.max(told))
 }
 
-/// The table, how to see more of it, and what to do next.
+/// The table, the option for more of it, and the next step.
 fn table(file: &CalibrationFile, detail: Detail, console: &Console) -> String {
     if detail == Detail::Full {
         return report::summary(file, detail);
@@ -98,7 +98,7 @@ fn table(file: &CalibrationFile, detail: Detail, console: &Console) -> String {
     short.table + &labelled("more", &format!("--verbose: {}", short.left)) + &next
 }
 
-/// All warnings and diagnoses: what JSON says of them is not where people read.
+/// All warnings and diagnoses: people do not read those in the JSON.
 fn doubts(file: &CalibrationFile) -> Vec<String> {
     let found = file.diagnosis.iter().map(|diagnosis| &diagnosis.statement);
     file.warnings.iter().chain(found).cloned().collect()
@@ -114,7 +114,7 @@ fn code(arguments: &Calibrate, calibration: &Calibration) -> u8 {
     if worse || has_no_gain || refused || level == Level::DoNotUse || !converged { WORSE } else { DONE }
 }
 
-/// What is stated of the session.
+/// Statements about the session.
 fn record(arguments: &Calibrate) -> Result<Record> {
     Record::from_pairs(arguments.record.iter().map(|(key, text)| (key.as_str(), text.as_str())))
 }
@@ -133,7 +133,7 @@ fn stated_model(arguments: &Calibrate) -> Result<&Path> {
     }
 }
 
-/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Reports what was read.
+/// Reads and joins the files; with `--validate`, those rows are held out and all others fitted. Reports the input.
 fn read_measurements(
     arguments: &Calibrate,
     model: &Model,
@@ -143,7 +143,7 @@ fn read_measurements(
     refuse_repeats(&arguments.measurements)?;
     refuse_repeats(&arguments.validate)?;
     refuse_fitted(&arguments.validate, &arguments.measurements)?;
-    // With --validate the sets are given by the files' roles.
+    // With --validate the files' roles determine the sets.
     let ignore_sets = !arguments.validate.is_empty();
     let options = model.reads(ReadOptions { ignore_sets, ..reading? });
     let meaning = arguments.reading.meaning.files();
@@ -206,7 +206,7 @@ fn options(arguments: &Calibrate, console: &Console) -> Result<CalibrationOption
     })
 }
 
-/// The tolerance by a maker's calibration of the arm.
+/// The tolerance from a maker's calibration of the arm.
 fn makers_tolerance(path: &Path, console: &Console) -> Result<Tolerance> {
     let found = AbbCalibration::read(path)?;
     let tolerance = found.tolerance(path)?;
@@ -226,10 +226,10 @@ fn makers_tolerance(path: &Path, console: &Console) -> Result<Tolerance> {
     Ok(tolerance)
 }
 
-/// Folder of the results where none is named.
+/// Folder of the results if none is named.
 const FOLDER: &str = "poecal-out";
 
-/// The folder of the results: a new one, unless it is named or may be written over.
+/// The folder of the results: a new one, unless it is named or may be overwritten.
 fn folder(arguments: &Calibrate) -> PathBuf {
     match &arguments.out {
         Some(folder) => folder.clone(),
@@ -258,8 +258,7 @@ impl Places {
     }
 }
 
-/// The report with the shapes of the robot, whose meshes are looked for from the place of the calibration; of those that are not there, a
-/// note.
+/// The report with the shapes of the robot, whose meshes are searched from the folder of the calibration; missing ones are noted.
 pub(super) fn page(
     file: &CalibrationFile,
     rows: &Residuals,

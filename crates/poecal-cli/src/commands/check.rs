@@ -1,4 +1,4 @@
-//! `poecal check`: how files are read.
+//! `poecal check`: interpretation of files.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -44,7 +44,7 @@ pub(crate) fn check(arguments: &Check, console: &Console) -> Result<u8> {
     Ok(DONE)
 }
 
-/// The command that makes one table of files that were joined.
+/// The command that makes one table from joined files.
 fn next(arguments: &Check, model: &Path, file: &MeasurementFile) -> String {
     if file.join.is_none() {
         return String::new();

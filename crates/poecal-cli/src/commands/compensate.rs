@@ -68,7 +68,7 @@ pub(crate) fn compensate(arguments: &Compensate, console: &Console) -> Result<u8
     Ok(if summary.is_whole() && !worse { DONE } else { WORSE })
 }
 
-/// How far readings may be changed.
+/// Largest permitted changes of readings.
 fn change(arguments: &Compensate) -> ChangeOptions {
     ChangeOptions { most_change: arguments.max_correction, nearest: arguments.nearest }
 }
@@ -78,7 +78,7 @@ fn is_sliding(robot: &Robot, name: &str) -> bool {
     joint.is_some_and(|joint| joint.kind == JointKind::Prismatic)
 }
 
-/// The language of a robot program; `None` of a table.
+/// The language of a robot program; `None` for a table.
 fn language(arguments: &Compensate) -> Result<Option<Language>> {
     match arguments.language {
         Some(ProgramLanguage::Table) => Ok(None),
@@ -135,7 +135,7 @@ fn robot_program(
     Ok(if summary.is_whole() { DONE } else { WORSE })
 }
 
-/// Tools and frames as the words of the command line say them.
+/// Tools and frames as stated on the command line.
 fn given(arguments: &Compensate, language: Language) -> Result<Given> {
     let mut given = Given::default();
     for words in &arguments.tool_data {
@@ -156,7 +156,7 @@ fn given(arguments: &Compensate, language: Language) -> Result<Given> {
     Ok(given)
 }
 
-/// Values of a robot's factors: those that are stated, else their references.
+/// Values of a robot's factors: the stated ones, else their references.
 fn factors(robot: &Robot, stated: &[String], console: &Console) -> Result<Vec<f64>> {
     let names: Vec<&str> = robot.factors.iter().map(|it| it.name.as_str()).collect();
     let mut values: Vec<f64> = robot.factors.iter().map(|it| it.reference).collect();

@@ -1,4 +1,4 @@
-//! `poecal export`: a robot in the forms that others read.
+//! `poecal export`: a robot in the forms of other programs.
 
 use std::path::{Path, PathBuf};
 
@@ -92,7 +92,7 @@ pub(crate) fn export(arguments: &Export, console: &Console) -> Result<u8> {
     let options = ExportOptions { hash: arguments.hash.clone(), motors };
     let exported = export::export(&model, format, &options)?;
     let beside = match (&exported.beside, &arguments.place.out) {
-        // Beside a device there is no file.
+        // No file is written beside a device.
         (Some(text), Some(out)) if out != Path::new("-") && !out.starts_with("/dev") => {
             let mut name = out.clone().into_os_string();
             name.push(".joints.json");

@@ -1,4 +1,4 @@
-//! `poecal fleet`: a folder of robots, worked off by processes of one thread each.
+//! `poecal fleet`: a folder of robots, processed by processes of one thread each.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
@@ -59,7 +59,7 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
             all.into_iter().filter(|it| arguments.shard.is_none_or(|shard| it.is_of_shard(shard))).collect();
         own.sort_by(|a, b| a.date.cmp(&b.date).then_with(|| a.cmp(b)));
         if arguments.watch.is_some() {
-            // A file that is still being written is another at the next look.
+            // A file that is still being written differs at the next look.
             own.retain(|it| {
                 let Some(sha256) = it.sha256() else { return false };
                 seen.insert(it.path.clone(), sha256.clone()) == Some(sha256)
@@ -82,7 +82,7 @@ pub(crate) fn fleet(arguments: &Fleet, console: &Console) -> Result<u8> {
     }
 }
 
-/// How many robots passed and failed.
+/// Numbers of robots that passed and failed.
 #[derive(Clone, Copy, Default)]
 struct Counts {
     passed: usize,
@@ -90,7 +90,7 @@ struct Counts {
     before: usize,
 }
 
-/// Calibrates what the ledger does not have.
+/// Calibrates the robots that the ledger does not have.
 fn work_off(
     station: &Station,
     all: &[Found],
@@ -150,7 +150,7 @@ fn work_off(
     Ok(Counts { passed, now: failed, before: failed_before })
 }
 
-/// Finds the robots that the ledger does not have, with their rows, and counts those before that failed.
+/// Finds the robots that the ledger does not have, with their rows, and counts the earlier ones that failed.
 fn find_open(
     station: &Station,
     all: &[Found],
@@ -163,7 +163,7 @@ fn find_open(
     for found in all {
         open.push((found.clone(), begun(station, found, shared)));
     }
-    // A file that was refused as another robot's is tried again where it is no longer.
+    // A file that was refused as another robot's is tried again if it no longer is.
     let doubles = doubled(&open.iter().map(|it| &it.1).collect::<Vec<_>>(), ledger);
     let mut doubles = doubles.iter();
     open.retain(|(_, row)| {
@@ -176,7 +176,7 @@ fn find_open(
     (open, failed)
 }
 
-/// Of each robot why it is refused, where the ledger has another file of it.
+/// Reason of refusal for each robot, if the ledger has another file of it.
 fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Vec<Option<String>> {
     open
         .iter()
@@ -192,7 +192,7 @@ fn find_changed(open: &[(Found, LedgerRow)], ledger: &Ledger, again: bool) -> Ve
         .collect()
 }
 
-/// Calibrates one robot after the other, of those that no other thread took, until there is none.
+/// Calibrates robots in sequence, of those that no other thread took, until none remains.
 fn calibrate_next(
     (station, prior): (&Station, &[OsString]),
     open: &[(Found, LedgerRow)],
@@ -215,7 +215,7 @@ fn calibrate_next(
     }
 }
 
-/// A row that was calibrated, which fails where it is of another robot of the line.
+/// A row that was calibrated; it fails if it is of another robot of the line.
 fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> LedgerRow {
     if row.exit >= REFUSED {
         return row;
@@ -234,11 +234,11 @@ fn held_against_the_line(station: &Station, row: LedgerRow, ledger: &Ledger) -> 
 /// Code of a refused calibration.
 const REFUSED: u8 = 2;
 
-/// What all robots share.
+/// Inputs that all robots share.
 struct Shared {
     /// SHA-256 of models and settings.
     sha256: BTreeMap<String, String>,
-    /// What the line says of its next robot, as options.
+    /// Estimate of the line's next robot, as options.
     prior: Vec<OsString>,
 }
 
@@ -309,7 +309,7 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let mut words: Vec<OsString> = vec!["calibrate".into(), model.into(), found.path.clone().into()];
     words.extend(["--out".into(), results.clone().into_os_string()]);
-    // A process of a fleet that was killed may still be at work on this robot.
+    // A process of a killed fleet run may still be at work on this robot.
     words.extend(["--force", "--quiet", "--threads", "1", "--wait", "120s"].map(OsString::from));
     words.extend(limits::stated().into_iter().map(|it| format!("--limit={it}").into()));
     if let Some(settings) = &station.settings {
@@ -323,7 +323,7 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
     let (code, said) = ran(words);
     let sentence = || {
-        // As the ledger has the path, wherever the program was started.
+        // The path as in the ledger, independent of the current folder.
         let said = said.replace(&found.path.display().to_string(), &row.file);
         let line = said.lines().rev().find_map(|line| line.strip_prefix("error: "));
         line.map_or_else(|| format!("the calibration ended with code {code}"), str::to_owned)
@@ -337,7 +337,7 @@ fn calibrated(station: &Station, found: &Found, row: LedgerRow, prior: &[OsStrin
     }
 }
 
-/// Runs the program with these words: its code, and what it said of errors. Within another program, such as Python, in this process.
+/// Runs the program with these words, and returns its code and its error messages. Within another program, such as Python, it runs in this process.
 fn ran(words: Vec<OsString>) -> (u8, String) {
     let own = std::env::current_exe().ok();
     let is_own =
@@ -357,7 +357,7 @@ fn ran(words: Vec<OsString>) -> (u8, String) {
     (said.code, said.err)
 }
 
-/// Ledgers that are named, or that of the station.
+/// Rows of the named ledgers, or of the station's.
 fn rows(station: &Station, ledgers: &[PathBuf]) -> Result<Vec<LedgerRow>> {
     if ledgers.is_empty() {
         read_ledgers(std::slice::from_ref(&station.ledger))

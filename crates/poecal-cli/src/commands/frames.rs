@@ -1,4 +1,4 @@
-//! What `poecal hand-eye` and `poecal tcp` have in common.
+//! Common parts of `poecal hand-eye` and `poecal tcp`.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::args::{ChainArgs, OutFrames};
 use crate::console::Console;
 use crate::{DONE, WORSE, style};
 
-/// The model whose joint readings are read, if one is stated.
+/// The model of the joint readings, if one is stated.
 pub(super) fn model(path: Option<&PathBuf>, chain: &ChainArgs, console: &Console) -> Result<Option<Model>> {
     chain.refuse_without(path.map(PathBuf::as_path))?;
     path.map(|path| read_model(path, &chain.selection(), console)).transpose()
@@ -23,7 +23,7 @@ pub(super) fn row_name(names: &[String]) -> impl Fn(usize) -> String {
     move |row| names.get(row).cloned().unwrap_or_else(|| format!("row {}", row + 1))
 }
 
-/// What is printed and written.
+/// Output to be printed and written.
 pub(super) struct Frames {
     /// Name and text of the result as JSON.
     pub(super) json: (&'static str, String),

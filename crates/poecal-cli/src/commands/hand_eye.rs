@@ -1,4 +1,4 @@
-//! `poecal hand-eye`: where a camera is, from poses of the flange and of what the camera saw.
+//! `poecal hand-eye`: pose of a camera, from poses of the flange and of the observed target.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -56,7 +56,7 @@ pub(crate) fn hand_eye(arguments: &HandEye, typed: &[OsString], console: &Consol
     arguments.out.put(place, found, console)
 }
 
-/// What the joint readings of the poses add.
+/// Additional results from the joint readings of the poses.
 fn by_joints(robot: &Robot, poses: &PosePairs, found: &Found, arguments: &HandEye) -> Result<ArmByJoints> {
     let data = session_of(robot, &poses.joints, &poses.target, found)?;
     ArmByJoints::new((robot, &data), found, arm_too(robot, &data), with_arm(arguments))
@@ -84,7 +84,7 @@ fn with_arm(arguments: &HandEye) -> String {
     words.join(" ")
 }
 
-/// Refuses a direction of what has none.
+/// Refuses a direction for poses that have none.
 fn refuse_without_use(arguments: &HandEye) -> Result<()> {
     if arguments.robot.is_some() && arguments.flange.is_some() {
         return ErrorKind::Option
@@ -93,7 +93,7 @@ fn refuse_without_use(arguments: &HandEye) -> Result<()> {
     Ok(())
 }
 
-/// Refuses options of corners where there are none, and of poses where there are corners.
+/// Refuses options of corners without corners, and options of poses with corners.
 fn refuse_unread(arguments: &HandEye, is_of_corners: bool) -> Result<()> {
     if is_of_corners && arguments.target.is_some() {
         return ErrorKind::Option

@@ -1,4 +1,4 @@
-//! `poecal plan --rows`: identifiability by measurements in given configurations.
+//! `poecal plan --rows`: identifiability by measurements in stated configurations.
 
 use poecal_calibrate::DeviceFrameKnowledge;
 use poecal_fit::analysis::{PlannedSession, identify as foresee, identify_measured};
@@ -25,7 +25,7 @@ pub(super) fn identify(arguments: &Plan, console: &Console) -> Result<u8> {
         device_free: arguments.fit.device_frame == DeviceFrameKnowledge::Unknown,
     };
     let has_pictures = !options.cameras.is_empty() || !options.boards.is_empty();
-    // Errors to expect of what is chosen freely: of other kinds the workspace that they cover is not known.
+    // Expected errors for kinds that are chosen freely: for others the covered workspace is not known.
     let mut expected = None;
     let found = if session.kind.is_touched() || has_pictures {
         let file = measurements::read(&arguments.rows, &model.robot, &options)?;

@@ -1,4 +1,4 @@
-//! `poecal import`: measurements of any form as a table of our own, and how they were read.
+//! `poecal import`: measurements of any form as a table of poecal's own form, and the settings of their reading.
 
 use std::fmt::Write as _;
 use std::io::Read as _;
@@ -57,7 +57,7 @@ pub(crate) fn import(arguments: &Import, console: &Console) -> Result<u8> {
     Ok(console.say_of(&text, &arguments.out))
 }
 
-/// How files were read, as settings that read them again in the same way.
+/// The interpretation of the files, as settings that read them again in the same form.
 fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     let folder = arguments.out.parent().unwrap_or(Path::new(""));
     let here = |path: &Path| quoted(&relative(folder, path).display().to_string());
@@ -99,7 +99,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
         (meaning.contact == PlaneContact::Flush).then(|| quoted(word_of(CONTACT, &meaning.contact))),
     );
     text("train_where", reading.train_where.as_deref().map(quoted));
-    // What was found is stated.
+    // Recognised values are stated.
     text("join", meaning.join.or(file.join).map(|join| quoted(word_of(JOIN, &join))));
     let units = meaning.columns.units.clone().map_or_else(
         || file.is_in_degrees.then(|| "deg".to_owned()),
@@ -115,7 +115,7 @@ fn map(arguments: &Import, model: &Path, file: &MeasurementFile) -> String {
     out
 }
 
-/// Adds how each file was read, and what was said of them, as comments.
+/// Adds the interpretation of each file, and the messages about it, as comments.
 fn describe(out: &mut String, file: &MeasurementFile) {
     for understood in &file.understood {
         let form = understood.form.map(|it| format!(", {it}")).unwrap_or_default();
@@ -143,7 +143,7 @@ fn describe(out: &mut String, file: &MeasurementFile) {
 /// Names and checksums of the files that made a table, by the settings that were written beside it.
 fn known_inputs(settings: &Path) -> Vec<(String, String)> {
     let mut text = String::new();
-    // They were read before.
+    // Their messages were printed before.
     if disk::here().open(settings).and_then(|it| it.take(LARGEST).read_to_string(&mut text)).is_err() {
         return Vec::new();
     }
@@ -191,7 +191,7 @@ fn shown_name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A path as it is called in a folder, with `/` in it.
+/// A path relative to a folder, with `/` in it.
 fn relative(folder: &Path, path: &Path) -> PathBuf {
     let home = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let (home, whole) = (actual(home), actual(path));
@@ -200,7 +200,7 @@ fn relative(folder: &Path, path: &Path) -> PathBuf {
         own.next();
         other.next();
     }
-    // On another drive there is no way.
+    // There is no path to another drive.
     if own.clone().any(|part| matches!(part, Component::Prefix(_))) {
         return whole;
     }

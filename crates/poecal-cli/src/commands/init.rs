@@ -50,7 +50,7 @@ pub(crate) fn init(arguments: &Init, console: &Console) -> Result<u8> {
     Ok(console.say_of(&words, &written.folder))
 }
 
-/// Writes the mapping of a file's columns, and says how it is used.
+/// Writes the mapping of a file's columns, and states its use.
 fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console: &Console) -> Result<u8> {
     let guess = guess_columns(file, &of.robot, &arguments.column)?;
     if arguments.json {
@@ -77,7 +77,7 @@ fn columns(arguments: &Init, (model, file): (&Path, &Path), of: &Model, console:
     Ok(console.say_of(&words, &written.folder))
 }
 
-/// Writes a table to fill, and says which command reads it; `{}` is its place there.
+/// Writes a table to fill, and names the command that reads it; `{}` is its path there.
 fn table(
     arguments: &Init,
     (name, text): (&'static str, String),

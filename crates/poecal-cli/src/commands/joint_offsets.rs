@@ -1,4 +1,4 @@
-//! `poecal export --offset`: a robot whose joints read something else.
+//! `poecal export --offset`: a robot whose joints have other readings.
 
 use poecal_model::offsets::into_screws;
 use poecal_model::robot::{JointKind, Robot};
@@ -9,7 +9,7 @@ use poecal_results::model::Model;
 use crate::console::Console;
 use crate::quantity::signed;
 
-/// The model with offsets of its joints in the screws, and a warning where others follow such a joint.
+/// The model with offsets of its joints in the screws, and a warning if others follow such a joint.
 pub(super) fn with_offsets(model: Model, stated: &[String], console: &Console) -> Result<Model> {
     if stated.is_empty() {
         return Ok(model);

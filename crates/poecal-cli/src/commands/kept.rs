@@ -11,14 +11,14 @@ use crate::console::Console;
 /// The history that a check is appended to.
 pub(super) struct Kept {
     pub(super) checks: History,
-    /// Whether it was asked for: then it must be written.
+    /// True if it was requested: then it must be written.
     is_asked: bool,
-    /// Whether it is written at all, or why not.
+    /// True if it is written at all, or the reason why not.
     is_kept: std::result::Result<bool, poecal_numerics::error::Error>,
 }
 
 impl Kept {
-    /// The history that was asked for, or the one beside a calibration.
+    /// The requested history, or the one beside a calibration.
     pub(super) fn read(asked: Option<&ReportPlace>, calibration: &Path) -> Result<Self> {
         let nothing = |is_kept| Kept { checks: History::default(), is_asked: false, is_kept };
         match asked {
@@ -26,7 +26,7 @@ impl Kept {
             Some(ReportPlace::File(path)) => {
                 Ok(Kept { checks: History::read(path)?, is_asked: true, is_kept: Ok(true) })
             }
-            // Beside a calibration that is no file there is no place.
+            // A calibration that is no file has no folder beside it.
             None if !calibration.is_file() => Ok(nothing(Ok(false))),
             None => Ok(match History::read(&calibration.with_file_name(HISTORY)) {
                 Ok(checks) => Kept { checks, is_asked: false, is_kept: Ok(true) },
@@ -35,7 +35,7 @@ impl Kept {
         }
     }
 
-    /// Appends a check with its time, by what writes it to a history.
+    /// Appends a check with its time, by the function `write`.
     pub(super) fn append(
         &mut self,
         write: impl FnOnce(&mut History, &str) -> Result<()>,

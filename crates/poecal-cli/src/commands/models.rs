@@ -1,4 +1,4 @@
-//! A robot model, with what its file states beyond what is read.
+//! A robot model, with the statements of its file that are not read.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use poecal_results::model::Model;
 
 use crate::console::Console;
 
-/// Reads a model, and warns of what its file states of links and joints that is not read, or that others understand differently.
+/// Reads a model, and warns of statements of its file about links and joints that are not read, or that other programs interpret differently.
 pub(super) fn read_model(path: &Path, selection: &ChainSelection, console: &Console) -> Result<Model> {
     let model = Model::read(path, selection)?;
     warn_of(&model, path, console);

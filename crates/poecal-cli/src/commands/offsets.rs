@@ -1,4 +1,4 @@
-//! `poecal offsets`: the joint offsets with which one model comes nearest to another.
+//! `poecal offsets`: the joint offsets of the best fit of one model to another.
 
 use std::ffi::OsStr;
 

@@ -1,4 +1,4 @@
-//! `poecal plan`: which configurations to measure, how many, and what error to expect.
+//! `poecal plan`: choice and number of configurations to measure, and the expected error.
 
 use std::path::PathBuf;
 
@@ -198,7 +198,7 @@ fn visits(arguments: &Plan, place: Option<FilePlace>, console: &Console) -> Resu
     deliver(&arguments.place, (table, place), (text, arguments.json), console)
 }
 
-/// Delivers a list and what is said of it.
+/// Delivers a list and its remarks.
 fn deliver(
     out: &OutFile,
     (table, place): (String, Option<FilePlace>),
@@ -236,7 +236,7 @@ pub(super) fn readings(
     Ok(joints.readings)
 }
 
-/// The fit that will be made of so many configurations of a kind.
+/// The planned fit of so many configurations of a kind.
 pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) -> Result<PlannedFit> {
     let tolerance = match &arguments.tolerance {
         BelievedTolerance::None => Some(Tolerance::WIDE),
@@ -260,7 +260,7 @@ pub(super) fn fit(arguments: &FitArgs, model: &Model, kind: Kind, count: u32) ->
     })
 }
 
-/// What a configuration must fulfil.
+/// Conditions on a configuration.
 fn conditions(arguments: &Plan, model: &Model, console: &Console) -> Result<Conditions> {
     let it = &arguments.conditions;
     let (capsules, notes) = if it.self_collision { capsules_of(model) } else { Default::default() };

@@ -1,4 +1,4 @@
-//! `poecal tcp`: where the tip of a tool is, from poses of the flange in which it touched a fixed point.
+//! `poecal tcp`: position of a tool's tip, from poses of the flange in which it touched a fixed point.
 
 use std::ffi::OsString;
 

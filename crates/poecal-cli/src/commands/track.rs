@@ -1,4 +1,4 @@
-//! `poecal track`: whether a robot is as it was calibrated.
+//! `poecal track`: detection of a robot's change since its calibration.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -80,7 +80,7 @@ pub(crate) fn track(arguments: &Track, typed: &[OsString], console: &Console) ->
     Ok(if found.state == State::Changed { WORSE } else { DONE })
 }
 
-/// The places of what is written: of a plan or a calibration of one joint, and of the page of a visit.
+/// Places of the output: of a plan or a recalibration of one joint, and of the page of a visit.
 fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, Option<FilePlace>)> {
     if arguments.out.is_some() && arguments.plan.is_none() && arguments.recalibrate.is_none() {
         return ErrorKind::Option
@@ -96,7 +96,7 @@ fn reserve(arguments: &Track, console: &Console) -> Result<(Option<FilePlace>, O
     ))
 }
 
-/// Writes a calibration of which one joint was calibrated anew, and says so.
+/// Writes a calibration with one joint recalibrated, and reports that.
 fn deliver(found: &Repaired, before: &CalibrationFile, place: FilePlace, console: &Console) -> Result<u8> {
     let text = report::recalibrated(found, before);
     place.write(vec![found.file.to_text()?.into()])?;
@@ -105,7 +105,7 @@ fn deliver(found: &Repaired, before: &CalibrationFile, place: FilePlace, console
     Ok(DONE)
 }
 
-/// Chooses witness configurations, and prints what they would show.
+/// Chooses witness configurations, and prints their detectable shifts.
 fn plan(
     arguments: &Track,
     visited: &Visited,

@@ -30,7 +30,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
         if error.kind() == ErrorKind::Model { error.in_file(&arguments.calibration) } else { error }
     };
     let calibrated = file.robot().map_err(in_file)?;
-    // Every row counts, whatever its set.
+    // Every row counts, in any set.
     let controller = file.controller.clone();
     let mut options = ReadOptions { ignore_sets: true, controller, ..arguments.meaning.options()? };
     if let Some(known) = &file.pictures {
@@ -80,7 +80,7 @@ pub(crate) fn validate(arguments: &Validate, typed: &[OsString], console: &Conso
     Ok(if refused || fails || !missing.is_empty() { WORSE.max(told) } else { told })
 }
 
-/// What is required and not shown by the measurements, a sentence each.
+/// Requirements that the measurements do not show, a sentence each.
 fn required_and_missing(arguments: &Validate, judgement: &Judgement) -> Vec<String> {
     let level = arguments.require.and_then(|required| {
         let reason = judgement.falls_short(required)?;
@@ -90,7 +90,7 @@ fn required_and_missing(arguments: &Validate, judgement: &Judgement) -> Vec<Stri
     level.into_iter().chain(gain.map(|why| format!("not what --require-gain asks for: {why}"))).collect()
 }
 
-/// What was judged, and by what.
+/// The judged calibration and the measurements that judge it.
 fn inputs(
     arguments: &Validate,
     typed: &[OsString],

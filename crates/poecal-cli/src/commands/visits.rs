@@ -1,4 +1,4 @@
-//! Earlier rows of a calibrated robot, and which configurations to measure at its visits: of `poecal track` and of `poecal plan --purpose drift`.
+//! Earlier rows of a calibrated robot, and configurations to measure at its visits: for `poecal track` and `poecal plan --purpose drift`.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use poecal_storage::named_files::refuse_repeats;
 
 use crate::console::Console;
 
-/// A calibration with what its rows mean and what is known of its visits.
+/// A calibration with the interpretation of its rows and the knowledge of its visits.
 pub(super) struct Visited {
     pub(super) file: CalibrationFile,
     pub(super) robot: Robot,
@@ -23,7 +23,7 @@ pub(super) struct Visited {
     pub(super) earlier: EarlierRows,
 }
 
-/// What is stated of the visits.
+/// Statements about the visits.
 pub(super) struct Stated<'a> {
     pub(super) calibration: &'a Path,
     pub(super) reference: &'a [PathBuf],
@@ -63,8 +63,8 @@ impl Visited {
         Ok(Visited { file, robot, meaning, options, earlier })
     }
 
-    /// Chooses so many configurations, of the earlier rows or of a file of joint readings: what they would show, and the table to fill in. `option` is
-    /// what asked for it.
+    /// Chooses `count` configurations, of the earlier rows or of a file of joint readings: their detectable shifts, and the table to fill in.
+    /// `option` is the option that requested it.
     pub(super) fn planned(
         &self,
         option: &str,
@@ -91,12 +91,12 @@ impl Visited {
 /// The earlier rows.
 pub(super) struct EarlierRows {
     pub(super) read: Option<MeasurementFile>,
-    /// Whether they are those of the calibration.
+    /// True if they are those of the calibration.
     is_own: bool,
 }
 
 impl EarlierRows {
-    /// Those that are named, or else those of the calibration where they still are.
+    /// The named rows, or else those of the calibration if they still exist.
     fn read(
         calibration: &Path,
         reference: &[PathBuf],

@@ -17,9 +17,9 @@ use crate::console::Console;
 use crate::quantity::Workspace;
 use crate::{DONE, WORSE};
 
-/// How often the file is looked at.
+/// Pause between two looks at the file.
 const PAUSE: Duration = Duration::from_millis(100);
-/// A file that so many looks in a row find wrong in the same way is wrong, and is not written again at the moment.
+/// Number of consecutive looks with the same fault from which on a file is faulty, and not being written at the moment.
 const LOOKS: u32 = 20;
 
 pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
@@ -81,7 +81,7 @@ pub(crate) fn watch(arguments: &Watch, console: &Console) -> Result<u8> {
     }
 }
 
-/// The file, which is waited for unless it is read once.
+/// The file; unless it is read once, its creation is awaited.
 fn opened(arguments: &Watch, console: &Console) -> GrowingFile {
     let file = GrowingFile::new(&arguments.measurements);
     if arguments.batch {
@@ -93,7 +93,7 @@ fn opened(arguments: &Watch, console: &Console) -> GrowingFile {
     file.waited_for()
 }
 
-/// Whether a file may be wrong because it is being written: `trouble` is what was wrong at the last look, and how often in a row.
+/// True if a file may be wrong because it is being written: `trouble` is the fault of the last look, and its number in sequence.
 fn is_for_a_moment(sentence: &str, trouble: &mut (String, u32)) -> bool {
     if trouble.0 == sentence {
         trouble.1 += 1;

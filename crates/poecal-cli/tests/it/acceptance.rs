@@ -1,4 +1,4 @@
-//! `--accept` and `--record`: decisions with their exit codes, texts of certificates, and what is refused.
+//! `--accept` and `--record`: decisions with their exit codes, texts of certificates, and refused words.
 
 use poecal_calibrate::{AcceptedModel, AcceptedRows, Decision};
 use poecal_model::simulate::Kind;
@@ -26,7 +26,7 @@ fn limits_are_kept_exceeded_or_neither() {
     assert_eq!((found.by, found.limits.len()), (AcceptedRows::HeldOut, 1));
     let judged =
         if found.model == AcceptedModel::Corrected { own.corrected.unwrap() } else { own.calibrated };
-    // The table's figure, but for rounding of sums.
+    // The table's figure, except for rounding of sums.
     assert!((limit.found / judged.position_mm().rms - 1.0).abs() < 1e-9);
     println!("{limit:?}");
     let to = limit.to.unwrap();
@@ -47,7 +47,7 @@ fn limits_are_kept_exceeded_or_neither() {
     assert_eq!(by, AcceptedRows::CrossValidation);
 }
 
-/// Without a noise that is stated or repeated, the largest error that was seen is the robot's: it bounds the maximum from below.
+/// Without a noise that is stated or repeated, the largest observed error is the robot's: it bounds the maximum from below.
 #[test]
 fn a_maximum_is_no_less_than_was_seen_but_for_noise_that_is_shown() {
     let folder = session(Kind::POSE);
@@ -59,11 +59,11 @@ fn a_maximum_is_no_less_than_was_seen_but_for_noise_that_is_shown() {
     println!("{unknown:?}");
     let of_noise = unknown.to.unwrap() - unknown.found;
     assert!(of_noise > 0.0 && unknown.from >= 0.9 * unknown.found && unknown.from <= unknown.found);
-    // A noise that is stated is taken off, and no more than it is added.
+    // A stated noise is subtracted, and no more than the amount that was added.
     let stated = largest("--sigma-position 0.01mm --sigma-rotation 0.01mrad");
     println!("{stated:?}");
     let taken_off = stated.found - stated.from;
-    // Of three numbers, in the largest of the rows: at least the bound for one of them, 2.795 times the noise, and at most 2 times that.
+    // In the largest row of three numbers: at least the bound for one of them, 2.795 times the noise, and at most 2 times that.
     assert!((0.02795..0.0559).contains(&taken_off), "{taken_off}");
     assert!((stated.to.unwrap() - stated.found - 0.02795).abs() < 2e-5);
 }

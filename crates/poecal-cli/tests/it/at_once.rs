@@ -1,4 +1,4 @@
-//! Two runs that write to one place, folders in which something else lies, and files that change.
+//! Two runs that write to one place, folders with other files, and files that change.
 
 use std::fs;
 use std::path::Path;
@@ -82,7 +82,7 @@ fn the_lock_of_a_killed_run_is_taken_over_with_a_line() {
     assert!(!folder.path(".fleet.jsonl.poecal-lock").exists());
 }
 
-/// Of two runs at once each robot is calibrated once, and each check is in the history.
+/// With two runs at once each robot is calibrated once, and each check is in the history.
 #[test]
 fn nothing_is_lost_and_nothing_twice() {
     let folder = line(2);
@@ -140,7 +140,8 @@ fn a_calibration_of_somebody_else_stays() {
     assert!(folder.read("fleet.jsonl").contains("found a file that poecal did not write"));
 }
 
-/// What is no regular file of the inbox is named with the reason: a pipe was waited for, and a line of a linked file was in the ledger.
+/// An object that is no regular file of the inbox is named with the reason. Earlier a pipe was waited for, and a line of a linked file was in the
+/// ledger.
 #[cfg(unix)]
 #[test]
 fn an_inbox_has_regular_files() {
@@ -217,7 +218,7 @@ fn a_log_that_is_written_again_is_waited_for() {
     assert_eq!(out.lines().count(), rows, "{out}{err}");
     assert!(err.contains("log.csv: waits for its first lines"), "{err}");
     assert!(!err.contains("read again from the first"), "{err}");
-    // What stays wrong ends it.
+    // A lasting fault ends it.
     folder.write("log.csv", part(12) + "1,2\n");
     let run = folder.run("watch robot.urdf log.csv");
     assert!(run.code == 2 && run.err.contains("found 2 cell"), "{}", run.err);
@@ -243,7 +244,7 @@ fn a_torn_line_of_a_history_is_set_aside() {
         let own = checks.lines().filter(|line| line.ends_with('}')).count();
         assert_eq!(own, count, "{checks}");
     }
-    // A file of somebody else is none.
+    // A file of another program is no history.
     for text in ["{\"a\": 1}", "hello", "{\"a\": 1}\n{"] {
         folder.write("h.jsonl", text);
         assert_eq!(folder.run(words).code, 2, "{text}");

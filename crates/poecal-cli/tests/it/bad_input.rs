@@ -29,7 +29,7 @@ const FLOATING: &str = r#"<robot name="robot">
 const HEADER: &str = "a,lift,b,x,y,z\n";
 const ROW: &str = "0.1,0.2,0.3,0.7,0.1,0.5\n";
 
-/// A folder with a robot, measurements, and what else the cases name.
+/// A folder with a robot, measurements, and other files that the cases name.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
@@ -40,8 +40,8 @@ fn folder() -> Folder {
     folder
 }
 
-/// One bad file and the sentence that it gets. Where a test of the library has the whole sentence, its beginning stands here, with `…`: the
-/// place and what was found.
+/// One bad file with its sentence. If a test of the library has the whole sentence, only its beginning is here, with `…`: the place and what was
+/// found.
 struct Case {
     arguments: &'static str,
     bad: String,
@@ -52,12 +52,12 @@ fn case(arguments: &'static str, bad: impl Into<String>, sentence: &'static str)
     Case { arguments, bad: bad.into(), sentence }
 }
 
-/// Runs every case and tells all that differ.
+/// Runs every case and prints all that differ.
 fn check(cases: &[Case]) {
     let mut differences = Vec::new();
     for Case { arguments, bad, sentence } in cases {
         let folder = folder();
-        // The name's ending tells the form, and the sentence begins with the name where a file is at fault.
+        // The extension determines the form, and the sentence begins with the name if a file is at fault.
         let name = arguments.split(' ').find(|word| word.starts_with("bad.")).unwrap_or("bad.csv");
         folder.write(name, bad);
         let before = folder.listing();

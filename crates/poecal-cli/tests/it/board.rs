@@ -1,4 +1,4 @@
-//! `poecal detect --print`: pages with boards, and what a ruler says of them.
+//! `poecal detect --print`: pages with boards, and their ruler measurements.
 
 use crate::folder::Folder;
 

@@ -4,7 +4,7 @@ use poecal_model::simulate::Kind;
 
 use crate::session::session;
 
-/// It says what is stated, beside what the calibration states, and the checksum of its file.
+/// The statements of the record are printed beside those of the calibration, with the checksum of its file.
 #[test]
 fn a_certificate_states_the_session_and_its_result() {
     let folder = session(Kind::POINT);

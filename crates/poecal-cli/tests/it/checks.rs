@@ -10,7 +10,7 @@ use crate::session::{session, write_measurements};
 fn checked() -> Folder {
     let folder = session(Kind::POINT);
     folder.done("calibrate robot.urdf measurements.csv");
-    // The same robot and device, in configurations that follow on those of the calibration.
+    // The same robot and device, in configurations that follow those of the calibration.
     write_measurements(
         &folder,
         "all.csv",
@@ -45,7 +45,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
     assert_eq!((&found["schema"], &found["count"]), (&"poecal-validation-1".into(), &40.into()));
     assert_eq!((&found["record"]["operator"], &found["record"]["serial"]), (&"Mia".into(), &"4711".into()));
     assert_eq!(found["inputs"]["sha256"].as_object().unwrap().len(), 2);
-    // Each row beside its bound: their share is the one that is stated.
+    // Each row is beside its bound: their share is the stated one.
     let rows = folder.read("spring/errors.csv");
     let head: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
     let column = |name: &str| head.iter().position(|it| *it == name).unwrap();
@@ -72,7 +72,7 @@ fn a_repeat_measurement_has_its_own_record_and_report() {
         assert!(page.contains(words), "{words}");
     }
     assert!(!page.contains("<script"));
-    // The same command again refuses; with --force it gives the same bytes.
+    // The same command again refuses; with --force it writes the same bytes.
     let run = folder.run(command);
     assert_eq!(run.code, 2, "{}", run.err);
     folder.done(&format!("{command} --force"));
@@ -100,7 +100,7 @@ fn the_history_gets_a_line_a_check() {
     folder.done(&format!("{check} spring.csv --refit device --quiet"));
     folder.done(&format!("{check} spring.csv --refit device --quiet --json"));
     assert_eq!(history(&folder, "poecal-out/history.jsonl").len(), 1, "the same check is there once");
-    // A run that was killed left half a line.
+    // A killed run left an incomplete line.
     let cut = folder.read("poecal-out/history.jsonl") + "{\"time\": \"2026-";
     folder.write("poecal-out/history.jsonl", cut);
     folder.done(&format!("{check} autumn.csv --refit device --quiet --report autumn.html"));
@@ -116,7 +116,7 @@ fn the_history_gets_a_line_a_check() {
     // The report of the second has the first.
     let page = folder.read("autumn.html");
     assert!(page.contains("Checks of this calibration") && page.contains(lines[0]["time"].as_str().unwrap()));
-    // A calibration again into the same folder keeps the history, which is none of the new calibration.
+    // A calibration again into the same folder keeps the history, which does not belong to the new calibration.
     folder.done("calibrate robot.urdf measurements.csv spring.csv --device-frames per-file --force --quiet");
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 3);
     folder.done(&format!("{check} autumn.csv --refit device --quiet --report again.html"));
@@ -126,7 +126,7 @@ fn the_history_gets_a_line_a_check() {
     folder.done(&format!("{check} spring.csv --refit device --quiet --history cell.jsonl"));
     folder.done(&format!("{check} spring.csv --refit device --quiet --refit tool --history none"));
     assert_eq!((history(&folder, "cell.jsonl").len(), folder.read("poecal-out/history.jsonl")), (1, before));
-    // A file that is none is not written to.
+    // A file that is no history is not written to.
     let rows = folder.read("spring.csv");
     let run = folder.run(&format!("{check} spring.csv --refit device --history spring.csv"));
     assert_eq!(
@@ -134,7 +134,7 @@ fn the_history_gets_a_line_a_check() {
         "error: spring.csv: found a file without a check, expected the history of checks or nothing\n"
     );
     assert_eq!((run.code, folder.read("spring.csv")), (2, rows));
-    // Where the usual one cannot be kept, the check is done all the same, and that is said.
+    // If the default history cannot be kept, the check is done nevertheless, and a note states that.
     std::fs::remove_file(folder.path("poecal-out/history.jsonl")).unwrap();
     std::fs::create_dir(folder.path("poecal-out/history.jsonl")).unwrap();
     let run = folder.run(&format!("{check} spring.csv --refit device"));

@@ -30,7 +30,7 @@ fn calibrate_writes_its_folder_and_tells_three_models() {
     assert_eq!(folder.listing().into_keys().collect::<Vec<_>>(), expected);
     let held_out = calibration(&folder, "poecal-out").accuracy.held_out.unwrap();
     println!("held out, calibrated: {:?}", held_out.calibrated);
-    // Simulated noise: 0.05 mm and 0.01 degrees a component.
+    // Simulated noise: 0.05 mm and 0.01 degrees for each component.
     assert!(held_out.calibrated.position_mm().rms < 0.2 && held_out.nominal.position_mm().rms > 5.0);
     assert!(held_out.calibrated.rotation_deg().unwrap().rms < 0.04);
 }
@@ -142,7 +142,7 @@ fn what_is_held_out_can_be_said() {
     for stated in ["--train-where stage=1", "--validate other.csv"] {
         let run = folder.run(&format!("calibrate robot.urdf measurements.csv --force {stated} --held-out 0"));
         assert_eq!(run.code, 0, "{}", run.err);
-        // Beside --validate no more is held out than that file.
+        // With --validate no more is held out than that file.
         let rows =
             if stated.starts_with("--validate") { "\nheld out      25 rows" } else { "no row was held out" };
         assert!(run.out.contains(rows), "{}", run.out);
@@ -161,7 +161,7 @@ fn json_is_the_file_and_quiet_is_silent() {
     assert_eq!((run.code, run.out.as_str(), run.err.as_str()), (0, "", ""));
     let run = folder.run("calibrate robot.urdf measurements.csv --out poecal-out");
     assert_eq!(run.code, 2, "an existing folder was overwritten");
-    // Where none is named, the next is new.
+    // If none is named, the next is new.
     folder.done("calibrate robot.urdf measurements.csv");
     assert_eq!(out, folder.read("poecal-out-2/calibration.json"));
     folder.write("poecal-out/residuals.csv", "old");
@@ -201,7 +201,7 @@ fn predictions_are_those_of_the_model() {
         assert_eq!(predicted[3..], pose.quaternion_xyzw());
         assert!(predicted[6] >= 0.0);
     }
-    // In the device's frame, predictions are what was measured, but for the noise.
+    // In the device's frame, predictions equal the measurements, except for the noise.
     let out = folder
         .done("predict poecal-out/calibration.json measurements.csv --output-frame device --out seen.csv");
     assert_eq!(out, "");
@@ -316,7 +316,7 @@ fn a_result_that_does_not_arrive_is_an_error_unless_its_reader_has_gone() {
     ] {
         let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let run = folder.run_into(arguments, full);
-        // 2 says that nothing was written.
+        // 2 states that nothing was written.
         assert_eq!(run.code, if arguments.contains("--force") { 1 } else { 2 }, "poecal {arguments}");
         assert!(run.err.contains("error: standard output cannot be written to ("), "{}", run.err);
         let run = folder.run_unread(arguments);

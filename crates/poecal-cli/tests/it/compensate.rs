@@ -50,7 +50,7 @@ fn everything_but_the_readings_stays_and_the_tip_is_where_it_was_meant() {
     }
     folder.write("commanded.csv", plain(&written));
     let reached = numbers(&folder.done("predict results/calibration.json commanded.csv"), 0);
-    // Meant with base and tool of the actual robot.
+    // Programmed with base and tool of the actual robot.
     let file = CalibrationFile::read(folder.path("results/calibration.json")).unwrap();
     let actual = file.corrected().map_or_else(|| file.robot(), |it| it.robot()).unwrap();
     let taught = file.taught(&actual).unwrap().robot;
@@ -82,7 +82,7 @@ fn standard_output_and_pipes_give_the_same_bytes_and_json_the_same_figures() {
     let piped =
         folder.run_with_input("compensate --max-correction 20deg results/calibration.json -", PROGRAM);
     assert_eq!((piped.code, piped.out), (0, written));
-    // Without what the calibration found there is nothing to correct.
+    // Without a calibration's findings there is nothing to correct.
     folder.write("same.csv", "joint1,joint2,joint3,joint4,joint5,joint6\n0.1,0.2,0.3,0.4,0.5,0.6\n");
     let other =
         folder.done("compensate --max-correction 20deg results/calibration.json same.csv --model calibrated");
@@ -125,7 +125,7 @@ fn what_cannot_be_corrected_is_told_and_nothing_is_written() {
     assert_eq!(folder.listing(), before);
 }
 
-/// The arm of the drawing reaches farther than the one that was measured, in some direction.
+/// The nominal arm reaches farther than the actual one, in some direction.
 #[test]
 fn poses_out_of_reach_are_listed_or_come_near() {
     let folder = folder();

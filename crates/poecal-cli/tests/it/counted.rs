@@ -1,4 +1,4 @@
-//! Controllers that count other readings than the model has: what a mapping said holds in every later command.
+//! Controllers whose counts differ from the model's readings: the statement of a mapping holds in every later command.
 
 use std::fmt::Write as _;
 
@@ -12,17 +12,17 @@ const MAP: &str = "[units]\nangle = \"deg\"\n[joints]\njoint1 = { columns = { A1
     joint3 = { columns = { A2 = 1, A3 = 1 } }\njoint4 = \"A4\"\njoint5 = { columns = { A5 = 0.5 } }\njoint6 = \"A6\"\n";
 const LEVEL: &str = "third_axis = \"level\"\n[units]\nangle = \"deg\"\n";
 
-/// What the controller of [`MAP`] counts at joint values, degrees.
+/// Counts of the controller of [`MAP`] at joint values, degrees.
 fn counted(q: &[f64]) -> Vec<f64> {
     vec![5.0 - q[0], q[1], q[2] - q[1], q[3], 2.0 * q[4], q[5]]
 }
 
-/// The joint values at what it counts.
+/// The joint values at these counts.
 fn uncounted(c: &[f64]) -> Vec<f64> {
     vec![5.0 - c[0], c[1], c[1] + c[2], c[3], 0.5 * c[4], c[5]]
 }
 
-/// What a controller counts whose third axis counts from the level: axes 2 and 3 of this robot point the other way round.
+/// Counts of a controller whose third axis counts from the level: axes 2 and 3 of this robot turn in the opposite sense.
 fn from_level(q: &[f64]) -> Vec<f64> {
     let mut c = q.to_vec();
     c[2] -= q[1];
@@ -63,7 +63,7 @@ fn largest(found: &[Vec<f64>], wanted: &[Vec<f64>]) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// Degrees by which commands may differ of two calibrations of one session whose readings round otherwise.
+/// Degrees by which commands of two calibrations of one session may differ, since the readings are rounded differently.
 const ROUNDING_DEG: f64 = 1e-6;
 
 #[test]
@@ -92,7 +92,7 @@ fn tables_are_read_and_written_as_the_controller_counts() {
     let back: Vec<Vec<f64>> = numbers(&made, 0).iter().map(|it| uncounted(it)).collect();
     println!("commands differ by up to {:.1e} deg", largest(&back, &plain));
     assert!(largest(&back, &plain) < ROUNDING_DEG && largest(&back, &q) > 1e-3);
-    // Judged by the same rows without a word on their columns.
+    // Judged by the same rows without a statement about their columns.
     let judged = folder.done("validate results/calibration.json controller.csv --json");
     let wanted = folder.done("validate plain/calibration.json measurements.csv --json");
     let rms = |text: &str| {
@@ -100,7 +100,7 @@ fn tables_are_read_and_written_as_the_controller_counts() {
         found["calibrated"]["position_mm"]["rms"].as_f64().unwrap_or_else(|| panic!("{found:#}"))
     };
     assert!((rms(&judged) - rms(&wanted)).abs() < 1e-6, "{judged}\n{wanted}");
-    // A table of the model's own readings is taken as such, and said.
+    // A table of the model's own readings is recognised as such, and a note states that.
     let run = folder.run("predict results/calibration.json plain.csv");
     assert!(
         largest(&numbers(&run.out, 0), &meant) < 1e-9 && run.err.contains("joint3 = A2 + A3"),
@@ -238,11 +238,11 @@ fn a_third_axis_is_stated_where_rows_do_not_show_it() {
     let by_map = folder.done("compensate --max-correction 20deg results/calibration.json job.ls");
     let apart = largest(&joints("ls", &stated), &joints("ls", &by_map));
     assert!(apart < 3e-6, "{apart}");
-    // The same mapping again says the same.
+    // The same mapping again has the same result.
     let again = folder.done("validate results/calibration.json controller.csv --columns map.toml --json");
     let without = folder.done("validate results/calibration.json controller.csv --json");
     assert_eq!(again.replace(" --columns map.toml", ""), without);
-    // Rows in which joint 2 hardly moves do not show it.
+    // Rows in which joint 2 hardly moves do not determine it.
     let file = folder.read("plain/calibration.json");
     let mut found: serde_json::Value = serde_json::from_str(&file).unwrap();
     for joint in found["coverage"].as_array_mut().unwrap() {
@@ -380,7 +380,7 @@ fn exports_say_what_the_controller_counts() {
     let found: serde_json::Value = serde_json::from_str(&offsets.out).unwrap();
     let of = |list: &str, at: usize| found[list][at]["offset_deg"].as_f64().unwrap();
     assert_eq!(found["counted"][2]["joint"], "A3");
-    // Of joint3 = A2 + A3 and joint1 = 5 - A1.
+    // Rows of joint3 = A2 + A3 and joint1 = 5 - A1.
     assert!((of("counted", 2) - (of("joints", 2) - of("joints", 1))).abs() < 1e-12);
     assert!((of("counted", 0) + of("joints", 0)).abs() < 1e-12 && of("joints", 0).abs() > 0.0);
     let lerobot = folder.run("export results/calibration.json --format lerobot");

@@ -24,7 +24,7 @@ fn session(folder: &Folder, count: usize, moved: usize) {
     session_of(folder, (SPEC, Board::chessboard("board", [7, 5], 0.036).unwrap()), count, moved);
 }
 
-/// The same of another board, drawn by its words; the arm looks at its points.
+/// The same session with another board, drawn by its words; the arm points at its points.
 fn session_of(folder: &Folder, (spec, board): (&str, Board), count: usize, moved: usize) {
     let model = Model::read(elbow(), &ChainSelection::default()).unwrap();
     let lens = poecal_model::camera::Lens {
@@ -94,10 +94,10 @@ fn pictures_calibrate_an_arm_in_three_commands() {
     let line = out.lines().find(|line| line.starts_with("held out")).unwrap();
     println!("{line}");
     let px: f64 = line.split_whitespace().nth(4).unwrap().parse().unwrap();
-    // Rendered corners are 0.05 px off by themselves, and 21 pictures determine the arm to about as much more.
+    // Rendered corners have errors of 0.05 px by themselves, and 21 pictures determine the arm to about as much more.
     assert!(line.contains("pictures") && px < 0.3, "{line}");
     folder.done("report results/calibration.json --out again.html");
-    // The lens unknown: the same with the size of the pictures alone.
+    // With an unknown lens: the same with the size of the pictures alone.
     let words = words.replace("lens.csv", "unknown:960x600").replace("results", "unknown");
     let out = folder.done(&words);
     let line = out.lines().find(|line| line.starts_with("found")).unwrap();
@@ -127,7 +127,7 @@ fn a_board_in_a_file_is_the_one_in_words() {
     assert!(!folder.path("results").exists());
 }
 
-/// The root mean square that the held-out pictures of a calibration are off, pixels.
+/// The root mean square error of a calibration's held-out pictures, pixels.
 fn held_out_px(out: &str) -> f64 {
     let line = out.lines().find(|line| line.starts_with("held out")).unwrap();
     println!("{line}");
@@ -232,7 +232,7 @@ fn both_programs_have_the_points_of_a_board_at_the_same_places() {
             assert!(off < 1e-12, "{spec}: {} is {off} m off", one.name);
         }
     }
-    // Of loose tags each is a board of its own.
+    // With loose tags each is a board of its own.
     let tag = read_boards("tags:36h11:50mm").unwrap().remove(0);
     let points = Layout::new(&"tags:36h11:50mm".parse().unwrap()).points();
     for (one, (name, other)) in points[48..52].iter().zip(tag.names.iter().zip(&tag.points)) {
@@ -254,7 +254,7 @@ fn a_board_that_moved_once_is_named() {
     assert!(run.out.contains("moved") && run.out.contains("20.") || run.out.contains("19."), "{}", run.out);
 }
 
-/// The board that a message names in place of a wrong one is found when it is taken.
+/// The board that a message names instead of a wrong one is found with the new words.
 #[test]
 fn the_board_that_a_message_names_is_found() {
     let folder = Folder::new();

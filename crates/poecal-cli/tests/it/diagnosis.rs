@@ -1,4 +1,4 @@
-//! Mistakes in the input are told as people look for them.
+//! Mistakes in the input are reported in the words by which people search for them.
 
 use std::fmt::Write as _;
 
@@ -163,7 +163,7 @@ fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them(
     let run = folder.run("calibrate robot.urdf percent.csv --out results");
     println!("{}", run.err);
     assert_eq!(run.code, 2);
-    // As the sentence says.
+    // As the sentence advises.
     let mut called = made;
     for joint in 1..=6 {
         called = called.replacen(&format!("joint{joint}"), &format!("joint{joint}[deg]"), 1);
@@ -185,7 +185,7 @@ fn readings_in_per_cent_of_the_range_are_named_with_the_mapping_that_reads_them(
     assert!(told.starts_with("verdict       good"), "{told}");
 }
 
-/// A file that moves a joint beyond the tip link says which link to state instead; nothing is said where the column is of no joint.
+/// For a file that moves a joint beyond the tip link, the message names the link to state instead; there is no message if the column is of no joint.
 #[test]
 fn readings_of_a_joint_beyond_the_tip_link_are_named() {
     let folder = session(Kind::POINT);

@@ -1,11 +1,11 @@
-//! The shipped example is what its README says, and simulated sessions hold what they promise.
+//! The shipped example agrees with its README, and simulated sessions have their stated errors.
 
 use std::fs;
 
 use crate::folder::Folder;
 use crate::project::{printed, root, run};
 
-/// The command that a text file's first line says it was made by.
+/// The command in the first line of a text file by which it was made.
 fn command(text: &str) -> &str {
     text.lines().next().unwrap().strip_prefix("# simulated by: poecal ").unwrap()
 }

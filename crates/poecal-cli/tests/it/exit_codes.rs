@@ -1,4 +1,4 @@
-//! What the program ends with: 0 usable, 1 results that should not be used, 2 refused, 3 no result.
+//! Exit codes: 0 usable, 1 results that should not be used, 2 refused, 3 no result.
 
 use poecal_model::simulate::Kind;
 

@@ -25,7 +25,7 @@ fn line(count: usize) -> Folder {
 
 fn ledger(folder: &Folder) -> Vec<String> {
     let lines = folder.read("fleet.jsonl");
-    // The time alone is another.
+    // Only the time differs.
     let without = |line: &str| {
         let (before, after) = line.split_once("\"time\":\"").unwrap();
         format!("{before}{}", after.split_once('"').unwrap().1)
@@ -62,7 +62,7 @@ fn a_line_is_worked_off_once_and_restarts_where_it_was() {
     assert_eq!(folder.read("fleet.csv").lines().count(), 4);
 }
 
-/// Wherever the program is started, the ledger has the same paths, and nothing is done twice.
+/// Independent of the current folder, the ledger has the same paths, and nothing is done twice.
 #[test]
 fn paths_are_from_the_station() {
     let folder = line(2);
@@ -116,7 +116,7 @@ fn limits_are_of_a_figure_and_in_its_unit() {
     }
 }
 
-/// The prior of the line is that of all robots but those that are measured in full, and what it was is in the ledger and in the report.
+/// The prior of the line is used for all robots but those that are measured in full, and it is in the ledger and in the report.
 #[test]
 fn the_prior_of_a_line_is_written_and_used() {
     let folder = line(3);
@@ -142,7 +142,7 @@ fn the_prior_of_a_line_is_written_and_used() {
     let rows = ledger(&folder);
     let own =
         |serial: &str| rows.iter().find(|row| row.contains(&format!("\"serial\":\"{serial}\""))).unwrap();
-    // Twenty divides nothing: it is measured in full.
+    // Twenty divides zero: it is measured in full.
     assert!(own("SN0").contains("\"by_prior\":false") && own("SN1").contains("\"by_prior\":true"));
     assert!(own("SN1").contains("prior.toml") && !own("SN0").contains("prior.toml"));
     let run = folder.run("fleet report station.toml");
@@ -191,7 +191,8 @@ fn a_station_that_is_none_is_refused_in_a_sentence() {
     assert!(run.code == 2 && run.err.contains("a newer poecal wrote it"), "{}", run.err);
 }
 
-/// The clock of the station jumped back: what was done is not done again, and the report is in the order measured, the same to the last byte.
+/// The clock of the station jumped back: finished robots are not done again, and the report is in the order of measurement, the same to the last
+/// byte.
 #[test]
 fn a_clock_that_jumped_changes_neither_what_is_done_nor_the_report() {
     let folder = line(3);
@@ -246,7 +247,7 @@ fn robots_that_were_exchanged_are_named_by_the_ledger_and_others_are_not() {
     let folder = two_visits(3);
     let run = folder.run("fleet station.toml");
     assert!(!run.err.contains("exchanged"), "{}", run.err);
-    // The second visit of the first robot under the number of the second one, and the other way round.
+    // The second visit of the first robot under the number of the second one, and vice versa.
     let folder = two_visits(3);
     let (first, second) = ("inbox/SN0/2026-09-01.csv", "inbox/SN1/2026-09-02.csv");
     let (one, other) = (folder.read(first), folder.read(second));
@@ -275,7 +276,7 @@ fn robots_that_were_exchanged_are_named_by_the_ledger_and_others_are_not() {
         run.out
     );
     assert_eq!(run.out.lines().filter(|it| it.starts_with("another     SN")).count(), 2);
-    // Under its own number each is itself again.
+    // Under its own number each is recognised again.
     for (path, number) in [(first, 0), (second, 1)] {
         std::fs::remove_file(folder.path(path)).unwrap();
         let made = folder.read(&format!("made{number}/measurements.csv"));
@@ -302,13 +303,13 @@ fn one_file_under_two_serial_numbers_is_refused_under_the_second() {
         "{words}"
     );
     assert!(!words.contains("SN0 2026-01-01: ") && !folder.path("results/SN7").exists());
-    // It was that of the second one: it is calibrated once the first one is gone.
+    // It was a copy of the second one's: it is calibrated once the first one is gone.
     std::fs::remove_file(folder.path("inbox/SN0/2026-01-01.csv")).unwrap();
     std::fs::remove_file(folder.path("fleet.jsonl")).unwrap();
     let run = folder.run("fleet station.toml");
     assert!(run.code == 0 && run.out.contains("2 of 2 robots passed"), "{}{}", run.out, run.err);
     std::fs::remove_file(folder.path("inbox/SN7/2026-01-09.csv")).unwrap();
-    // Beside a robot that is done already only the copy is refused.
+    // Beside a robot that is already done only the copy is refused.
     folder.write("inbox/SN7/2026-01-09.csv", folder.read("inbox/SN1/2026-01-02.csv"));
     let run = folder.run("fleet station.toml");
     assert!(

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 
 pub(crate) use crate::files::Folder;
 
-/// What a run of the program gave.
+/// Result of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: i32,
@@ -75,7 +75,7 @@ impl Folder {
         command
     }
 
-    /// As [`Folder::run`], for a run that must end well; gives its standard output.
+    /// As [`Folder::run`], for a run that must succeed; returns its standard output.
     pub(crate) fn done(&self, arguments: &str) -> String {
         let run = self.run(arguments);
         assert_eq!(run.code, 0, "poecal {arguments}\n{}{}", run.out, run.err);

@@ -1,4 +1,4 @@
-//! `poecal hand-eye` and `poecal tcp`: every form of poses gives the same frames, and mistakes are named.
+//! `poecal hand-eye` and `poecal tcp`: every form of poses results in the same frames, and mistakes are named.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use poecal_arm::lie::{Pose, rotation};
 use crate::folder::Folder;
 use crate::session::calibration;
 
-/// Poses of the flange and of the target, from numbers without noise but for one thousandth of a degree.
+/// Poses of the flange and of the target, from numbers without noise except for one thousandth of a degree.
 pub(crate) fn session(count: usize) -> Vec<(Pose, Pose)> {
     let camera = Pose::from_xyz_rpy([0.04, -0.06, 0.09], [0.05, -0.1, 1.5]);
     let board = Pose::from_xyz_rpy([0.7, 0.1, 0.02], [0.02, 0.03, 0.4]);
@@ -135,7 +135,7 @@ fn every_form_of_poses_gives_the_same_camera() {
     }
 }
 
-/// Of exact poses a calibration that holds the arm locates the camera where hand-eye does, and exports it in the same forms.
+/// From exact poses a calibration that holds the arm locates the camera as hand-eye does, and exports it in the same forms.
 #[test]
 fn a_calibration_exports_the_transform_that_hand_eye_finds() {
     let folder = Folder::new();
@@ -224,7 +224,7 @@ fn mistakes_are_refused_in_one_line_and_nothing_is_written() {
     write("names.csv", "a1,b1,c1", &|_| vec![0.0; 3]);
     table(&folder, "three.csv", &kuka, (0..3).map(usual));
     write("left.csv", &kuka, &|k| {
-        // The sign of y, wherever it is.
+        // The sign of y, in any column.
         let mut arm = rows[k].0;
         arm.translation.y *= -1.0;
         for other in [0, 2] {
@@ -284,7 +284,7 @@ fn tips_of_tools_are_found_with_their_direction_and_wrong_touches() {
     assert!(number(&found["axis"]["direction"][2]) > 0.9999, "{found}");
     assert_eq!(found["outliers"], serde_json::json!(["line 6"]));
     assert!(found["tool"]["matrix"].is_array(), "{found}");
-    // One tip shows no direction, and no touch a mass: none of both is printed.
+    // A single tip determines no direction, and no touch a mass: neither is printed.
     let one: Vec<&str> = lines
         .iter()
         .filter(|it| !it.ends_with("shaft"))
@@ -399,7 +399,7 @@ fn corners_of_pictures_give_the_same_camera_whichever_corner_is_named_first() {
         "hand-eye arm.csv corners.csv --camera in-hand --lens unknown:720x600 --markers chessboard:6x5:30mm",
     );
     assert!(said.contains("\nlens          fx ") && said.contains(": camera within "), "{said}");
-    // The lens that was found is one that can be stated, and gives the same camera.
+    // The fitted lens can be stated, and results in the same camera.
     fs::copy(folder.path("found/lens.csv"), folder.path("again.csv")).unwrap();
     let again: serde_json::Value = serde_json::from_str(
         &folder.done(&format!("hand-eye arm.csv corners.csv {run}").replace("lens.csv", "again.csv")),

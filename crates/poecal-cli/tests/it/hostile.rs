@@ -9,7 +9,7 @@ use poecal_results::model::Model;
 use crate::folder::{Folder, Run};
 use crate::session::ROBOT;
 
-/// Joints of the elbow as they are called here; one forges a verdict.
+/// Joints of the elbow with their hostile names; one forges a verdict.
 const NAMES: [&str; 6] = [
     "\u{9b}2J\u{9d}0;PWNED\u{9c}",
     "=cmd|'/C calc'!A0",
@@ -94,7 +94,7 @@ fn names_and_cells_reach_people_as_they_can_see_them() {
     assert!(check.contains("\\u{9b}2J\\u{9d}0;PWNED\\u{9c}: revolute"), "{check}");
     assert!(check.contains("J6\\u{a}verdict") && check.contains("\\u{202e}J4\\u{2066}rtl"), "{check}");
     assert!(check.contains("\\u{1b}[5mextra\\u{202d}"), "{check}");
-    // What a spreadsheet would run is marked, and read back as it is.
+    // A cell that a spreadsheet would run is marked, and read back unchanged.
     let residuals = folder.read("out/residuals.csv");
     assert!(residuals.lines().any(|line| line.contains(",'=1+1,fit,'=1+1,")), "{residuals}");
     let predicted = folder.done(&format!("predict robot.urdf points.csv {with}"));
@@ -169,7 +169,7 @@ fn no_table_has_a_cell_that_a_spreadsheet_would_run() {
         let is_own = path.extension().is_some_and(|it| it == "csv")
             && !path.ends_with("points.csv")
             && !path.to_string_lossy().contains("inbox");
-        // What is corrected in place keeps the cells of its input.
+        // A table that is corrected in place keeps the cells of its input.
         let Some(content) = content.filter(|_| is_own && !path.ends_with("corrected.csv")) else { continue };
         tables.push(path.file_name().unwrap().to_string_lossy().into_owned());
         let text = String::from_utf8(content).unwrap();

@@ -1,9 +1,9 @@
-//! `poecal plan --rows`: what measuring would tell.
+//! `poecal plan --rows`: determination of the unknowns by planned measurements.
 
 use crate::folder::Folder;
 use crate::offsets::COLUMN;
 
-/// Readings of many configurations: the turn's, the slide's where it moves, and the nod's.
+/// Readings of many configurations: the turn's, the slide's if it moves, and the nod's.
 fn joints(slides: bool) -> String {
     let rows = (0..40).map(|k| {
         let slide = if slides { (k * 37 % 41) as f64 * 9.0 } else { 120.0 };

@@ -48,7 +48,7 @@ fn commands(readme: &str) -> Vec<&str> {
     readme.lines().filter_map(|line| line.trim_start().strip_prefix("poecal ")).collect()
 }
 
-/// Words as a shell splits them, without escapes: blanks, but for those between quotes.
+/// Words as a shell splits them, without escapes: at blanks, except those between quotes.
 fn words(command: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     for (part, quoted) in command.split('\'').zip([false, true].into_iter().cycle()) {
@@ -63,7 +63,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// Starts a project, fills its template with simulated rows, and types what its README says.
+/// Starts a project, fills its template with simulated rows, and types the commands of its README.
 fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str) {
     let folder = Folder::new();
     folder.write(model, text);
@@ -99,7 +99,7 @@ fn filled_project_calibrates(model: &str, text: &str, chain: &str, measure: &str
         "{model} {measure}: {before:.2} mm registered, {after:.4} mm calibrated, verdict {:?}",
         file.verdict.unwrap().level
     );
-    // Noise of 0.05 mm in three coordinates is 0.087 mm; the rest is what few rows leave.
+    // Noise of 0.05 mm in three coordinates is 0.087 mm; the rest is the uncertainty of few rows.
     assert!(after < 0.15 && before > 1.0, "{before} {after}");
     assert_eq!(file.inputs.measurements, ["measurements.csv"]);
 }
@@ -195,7 +195,7 @@ fn settings_are_seen_from_their_folder_and_give_way_to_what_is_typed() {
     let inputs = calibration(&folder, "cell/there").inputs;
     let command = "poecal calibrate --sigma-position=0.05mm --seed=4 cell/robot.urdf cell/measurements.csv";
     assert_eq!(inputs.command.as_deref(), Some(command));
-    // The recorded command makes the same calibration, and a typed option counts for the one in the file.
+    // The recorded command makes the same calibration, and a typed option replaces the one in the file.
     folder.done(&format!("{} --out again", command.strip_prefix("poecal ").unwrap()));
     assert_eq!(folder.read("again/residuals.csv"), folder.read("cell/there/residuals.csv"));
     folder.done("calibrate --settings cell/poecal.toml --seed 5 --out here robot.urdf");
@@ -224,7 +224,7 @@ fn files_are_checked_as_the_settings_say() {
         by_settings.contains("from base to left tool") && by_settings.contains("1: 1 point"),
         "{by_settings}"
     );
-    // What is typed counts.
+    // Typed options take precedence.
     let run = folder.run("check --settings cell/poecal.toml --tip-link nowhere");
     assert!(run.code == 2 && run.err.contains("nowhere"), "{}", run.err);
     folder.write("cell/poecal.toml", settings.replace("left tool", "lost tool"));

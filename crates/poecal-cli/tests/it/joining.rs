@@ -6,7 +6,7 @@ use crate::folder::Folder;
 
 pub(crate) const MODEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/elbow/robot.urdf");
 
-/// Header and rows of a simulated session of an elbow with errors, cells by columns: joints first, then what was measured.
+/// Header and rows of a simulated session of an elbow with errors, cells by columns: joints first, then the measured quantities.
 pub(crate) fn session(folder: &Folder, kind: &str, count: usize) -> (Vec<String>, Vec<Vec<String>>, usize) {
     folder.done(&format!("simulate {MODEL} --kind {kind} --count {count} --seed 3 --out made"));
     let text = folder.read("made/measurements.csv");
@@ -84,7 +84,7 @@ fn lost_and_double_rows_are_named_and_all_others_paired() {
     assert!(run.err.contains("joints.csv: nothing was measured at lines 8, 24"), "{}", run.err);
     assert!(run.err.contains("joints.csv: more than once was measured at line 32"), "{}", run.err);
     assert!(run.out.contains("39 rows") || run.out.contains("of 39"), "{}", run.out);
-    // The same in the file and in the report.
+    // Equal entries in the file and in the report.
     let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
     let join = &file["inputs"]["joins"][0];
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Files of joints and of measurements in which single rows are wrong, which hardly fit, or of which one is none.
+//! Files of joints and of measurements with single wrong rows, with a poor fit, or of which one is no such file.
 
 use std::fs;
 
@@ -68,7 +68,7 @@ fn single_wrong_pairs_are_named_by_line() {
 #[test]
 fn what_hardly_fits_is_refused_unless_a_diagnosis_explains_it() {
     let (folder, header, rows) = named();
-    // Of a robot that is far from its model, what is joined is right.
+    // For a robot that differs much from its model, the join is right.
     let text = folder.read("joints.csv");
     let turned = |joint: usize, by: f64, factor: f64| -> String {
         let line = |(at, line): (usize, &str)| {
@@ -89,7 +89,7 @@ fn what_hardly_fits_is_refused_unless_a_diagnosis_explains_it() {
         assert_eq!(run.code, 0, "{files}: {}", run.err);
         assert!(run.err.contains("% of its reach: ") && run.err.contains(expected), "{files}: {}", run.err);
     }
-    // A column in place of another one is no mistake that is known.
+    // A column in place of another one is no known mistake.
     let mut lost = rows.clone();
     for (at, row) in lost.iter_mut().enumerate() {
         row[2] = format!("{}", 5 * (at * 7 % 40));

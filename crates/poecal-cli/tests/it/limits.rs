@@ -1,4 +1,4 @@
-//! What a file may take: each limit refuses with its name, before the work, and `--limit` moves it.
+//! Limits of files: each refuses with its name, before the work, and `--limit` moves it.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -68,7 +68,7 @@ fn a_file_beyond_a_limit_is_refused_by_its_name() {
         "{}",
         run.err
     );
-    // More is read where it is asked for.
+    // More is read on request.
     let lower = "check robot.urdf points.csv --limit rows=29";
     assert_eq!(folder.run(&format!("{lower} --limit rows=30")).code, 0);
     for (typed, part) in [

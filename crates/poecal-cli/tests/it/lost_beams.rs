@@ -1,4 +1,4 @@
-//! Lost beams: rows that say nothing of where the target was.
+//! Beam breaks: rows without information on the target's position.
 
 use poecal_model::simulate::Kind;
 

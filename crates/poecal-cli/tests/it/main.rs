@@ -18,7 +18,7 @@ mod detect;
 mod diagnosis;
 mod example;
 mod exit_codes;
-// It has the commands that these tests run in it.
+// These tests run its commands.
 #[allow(dead_code, unreachable_pub)]
 #[path = "../../../poecal-testing/src/files.rs"]
 mod files;

@@ -1,4 +1,4 @@
-//! Mistakes in files as they are: markers with exchanged names, two sets of coordinates, units of one file, mirrored points, shifted headers.
+//! Typical mistakes in files: markers with exchanged names, two sets of coordinates, units of one file, mirrored points, shifted headers.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use crate::folder::Folder;
 use crate::recorded::{MODEL, Row, between, held_out, joined, session, stream, turned};
 
-/// The places of four markers on the tool, metres in the tool's frame.
+/// The positions of four markers on the tool, metres in the tool's frame.
 const MARKERS: [[f64; 3]; 4] =
     [[0.06, 0.0, 0.01], [-0.04, 0.05, 0.0], [-0.02, -0.07, 0.03], [0.01, 0.02, 0.09]];
 
@@ -20,8 +20,8 @@ fn placed(place: &[f64], [x, y, z, w]: [f64; 4], [a, b, c]: [f64; 3]) -> [f64; 3
     std::array::from_fn(|k| place[k] + 1e3 * (m[k][0] * a + m[k][1] * b + m[k][2] * c))
 }
 
-/// A log of the robot, and takes of Motive with four markers and one without a label: as they are, and with names exchanged in some frames and
-/// lost in others.
+/// A log of the robot, and takes of Motive with four markers and one without a label: unchanged, and with names exchanged in some frames and lost in
+/// others.
 fn takes(rows: &[Row]) -> (String, String, String) {
     let next = |row: usize| (row + 1).min(rows.len() - 1);
     let mut log = "timestamp,actual_q_0,actual_q_1,actual_q_2,actual_q_3,actual_q_4,actual_q_5\n".to_owned();
@@ -77,7 +77,7 @@ fn exchanged_markers_are_put_back_and_lost_names_found() {
         "{said}"
     );
     assert!(said.contains("found 100 places of its markers among those without a name"), "{said}");
-    // Without any names: those that are there from the beginning on make the body.
+    // Without any names: the markers that are present from the beginning on form the body.
     let nameless = ["A", "B", "C", "D"].iter().enumerate().fold(damaged, |text, (at, name)| {
         text.replacen(
             &format!("{name},{name},{name}"),
@@ -109,7 +109,7 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
     };
     write("joints.csv", names, &|_, row| joints(row));
     write("points.csv", axes, &|_, row| place(row));
-    // One name too few and one too many, of which the numbers of cells say it.
+    // One name too few and one too many, which the numbers of cells show.
     write("few.csv", names, &|k, row| format!("{},{}", k + 1, joints(row)));
     write("many.csv", &format!("number,{names}"), &|_, row| joints(row));
     // As many names as cells, each beside its values.
@@ -147,7 +147,7 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
         ("right.csv points.csv", "the header has one name too few at its beginning"),
         ("left.csv points.csv", "left.csv:2: found the values of each name one column further to the left"),
         ("whole.csv", "whole.csv:1: found the values of each name one column further to the right"),
-        // Two of three coordinates may fit evidently; the nominal robot misses them by more than any is off.
+        // Two of three coordinates may fit evidently; the nominal robot's errors exceed every single error.
         (
             "joints.csv shifted_points.csv",
             "shifted_points.csv:1: found the values of each name one column further to the right",
@@ -163,7 +163,7 @@ fn shifted_headers_other_units_and_mirrors_are_named() {
         assert!(run.err.contains(expected), "{files}: {}", run.err);
     }
     assert!(folder.listing() == before);
-    // What is right is read as before.
+    // Correct files are read as before.
     write("right_whole.csv", &format!("note,{names},{axes},rest"), &|k, row| {
         format!("{}.5,{},{},1.25", k, joints(row), place(row))
     });
@@ -233,7 +233,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
     });
     let (found, said) = held_out(&folder, "whole.csv");
     assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}: {said}");
-    // Two that were measured, and none that fits.
+    // Two measured sets, and none that fits.
     table(&folder, "both.csv", &bare, &rows, &|k, row| {
         format!("P{},{},{}", k + 1, set(&row.1), set(&row.1.map(|it| it + 0.2)))
     });
@@ -261,7 +261,7 @@ fn of_two_sets_of_coordinates_the_measured_one_is_taken() {
     }
 }
 
-/// What a model states of its joints beyond what is read is named by each command that reads it, once; what scales or shifts is refused.
+/// Statements of a model about its joints that are not read are named by each command that reads it, once; a scale or a shift is refused.
 #[test]
 fn what_a_model_states_beyond_what_is_read_is_named() {
     let folder = Folder::new();

@@ -70,7 +70,7 @@ fn json_holds_the_same_and_goes_into_a_file() {
     let predictions = &found["predictions"];
     assert!(number(&predictions["without_offsets"]["position_rms_mm"]) > 1.0);
     assert!(number(&predictions["with_offsets"]["position_max_mm"]) < 1e-9);
-    // The table goes into a file as well, also with --quiet; on standard output that is nothing.
+    // The table is written to a file as well, also with --quiet; standard output then has none.
     folder.done("offsets column.toml actual.toml --quiet --out table.txt");
     assert!(folder.read("table.txt").contains("tip at zero"));
     assert_eq!(folder.done("offsets column.toml actual.toml --quiet"), "");
@@ -156,7 +156,7 @@ fn mistakes_get_a_sentence() {
             "{arguments}"
         );
     }
-    // Absurd lengths are refused too, whatever the reason.
+    // Absurd lengths are refused too, for any reason.
     for form in ["urdf", "toml"] {
         for offset in ["1e300m", "1e9m"] {
             let run = folder.run(&format!("export column.toml --format {form} --offset slide={offset}"));

@@ -1,8 +1,8 @@
-//! URDF in, the same text with other numbers out: by every way from a result back to a URDF, from any folder.
+//! URDF in, the same text with other numbers out: by every path from a result back to a URDF, from any folder.
 
 use crate::folder::Folder;
 
-/// A chain of three joints with everything that a calibration has no business with.
+/// A chain of three joints with all elements that a calibration must not change.
 const PLAIN: &str = r#"<robot name="arm">
   <link name="base"><visual><geometry><mesh filename="package://arm/base.stl" scale="0.001 0.001 0.001"/></geometry></visual></link>
   <link name="upper"><visual><origin xyz="0 0 0.1" rpy="0 0 0"/><geometry><mesh filename="upper.dae"/></geometry></visual>
@@ -20,7 +20,7 @@ const PLAIN: &str = r#"<robot name="arm">
 </robot>
 "#;
 
-/// Ten texts of the same arm, each with a name and how it is read.
+/// Ten texts of the same arm, each with a name and the options of its reading.
 fn texts() -> Vec<(&'static str, String, &'static str)> {
     let last = "</robot>\n";
     let with = |more: &str| PLAIN.replace(last, &format!("{more}{last}"));
@@ -81,7 +81,7 @@ fn without_numbers(text: &str) -> String {
             blank
                 .extend(piece.chars().filter(|c| !is_ours || !(c.is_ascii_digit() || " .-e\t".contains(*c))));
         }
-        // An origin that was not there.
+        // An added origin.
         found.push_str(&blank.replace("<originxyz=\"\"rpy=\"\"/>", ""));
         found.push_str("</joint>");
         found.push_str(rest);
@@ -107,7 +107,7 @@ fn every_way_back_keeps_the_text() {
         let first = std::fs::read_to_string(folder.path("out/calibrated.urdf")).unwrap();
         assert_eq!(without_numbers(&first), without_numbers(&text), "{name}");
         assert_ne!(first, text, "{name}");
-        // From another folder, where the URDF is not.
+        // From another folder, in which the URDF is missing.
         std::fs::rename(folder.path("robot.urdf"), folder.path("away.urdf")).unwrap();
         for command in [
             "export out/calibration.json --format urdf",
@@ -123,7 +123,7 @@ fn every_way_back_keeps_the_text() {
     }
 }
 
-/// A URDF with the same kinematics is taken, with a word; another robot is refused, and nothing written.
+/// A URDF with the same kinematics is accepted, with a note; another robot is refused, and nothing written.
 #[test]
 fn another_robot_is_told() {
     let folder = calibrated(PLAIN, "");
@@ -170,7 +170,7 @@ fn another_robot_is_told() {
     }
 }
 
-/// Differences that are added to the origins of the URDF make what was fitted.
+/// Differences that are added to the origins of the URDF result in the fitted robot.
 #[test]
 fn differences_of_origins() {
     let folder = calibrated(PLAIN, "");

@@ -1,4 +1,4 @@
-//! `poecal simulate --camera`: pictures that are found and calibrate an arm, and what is refused.
+//! `poecal simulate --camera`: pictures with detectable boards that calibrate an arm, and refused options.
 
 use std::fs;
 use std::path::Path;
@@ -30,7 +30,7 @@ fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
         let said = folder.done(&format!("{words} --markers {spec}"));
         let line = said.lines().find(|line| line.starts_with("held out")).unwrap();
         println!("{place}, {spec}: {line}");
-        // What stays, or what the tip holds, is the board: where it is, is the truth of the session.
+        // The stationary object, or the one on the tip, is the board: its pose is the truth of the session.
         let number = |file: &str, keys: &[&str]| -> Vec<f64> {
             let all: serde_json::Value = serde_json::from_str(&folder.read(file)).unwrap();
             let found = keys.iter().fold(&all, |it, key| &it[*key]);
@@ -40,11 +40,11 @@ fn simulated_pictures_calibrate_the_robot_wherever_the_camera_is() {
             let truth = number("s/truth.json", &["base_from_other"]);
             let found = number("results/calibration.json", &["measurement_frame", "base_from_device"]);
             let same: f64 = truth.iter().zip(&found).map(|(a, b)| a * b).sum();
-            // Within a degree: axes off by 0.2° turn the base.
+            // Within a degree: errors of the axes of 0.2° turn the base.
             println!("turned by {:.3} deg from the truth", 2.0 * same.abs().min(1.0).acos().to_degrees());
             assert!(same.abs() > 0.5_f64.to_radians().cos(), "{truth:?} {found:?}");
         }
-        // Corners to some 0.03 px, and an arm that is off by 0.05 mm and 0.01° in each configuration: 0.1 mm at 0.4 m, of 1,000 px.
+        // Corners to some 0.03 px, and an arm with errors of 0.05 mm and 0.01° in each configuration: 0.1 mm at 0.4 m, of 1,000 px.
         let px: f64 = line.split_whitespace().nth(4).unwrap().parse().unwrap();
         assert!(px < 0.6, "{line}");
     }

@@ -1,4 +1,4 @@
-//! Where the program writes: nothing that is not its own is harmed, whatever lies there and whoever writes at the same time.
+//! Output places of the program: files of others are never harmed, whatever exists there and whoever writes at the same time.
 
 use std::fs;
 use std::os::unix::fs::{FileTypeExt as _, symlink};
@@ -68,7 +68,7 @@ fn an_input_is_never_replaced() {
         "report out/calibration.json --out out/residuals.csv --force",
         "calibrate robot.urdf measurements.csv --out out --force --report measurements.csv",
         "calibrate robot.urdf measurements.csv --out out --force --report second_name.html",
-        // The earlier results would go, and with them the model.
+        // The earlier results would be removed, and with them the model.
         "calibrate out/calibrated.urdf measurements.csv --out out --force",
         "calibrate out/calibration.json measurements.csv --out out --force --report none",
     ] {
@@ -196,7 +196,7 @@ fn what_an_interrupted_run_left_is_settled_and_said() {
     folder.write("out/.poecal-unfinished-77-0/lock", "");
     fs::create_dir_all(folder.path(".out.poecal-unfinished-78-3/new")).unwrap();
     folder.write(".out.poecal-unfinished-78-3/new/residuals.csv", "half");
-    // Not ours, for all its name.
+    // Not a folder of poecal, in spite of its name.
     fs::create_dir_all(folder.path("out/.poecal-unfinished-of-mine")).unwrap();
     let run = folder.run("calibrate robot.urdf measurements.csv --out out");
     assert_eq!(run.code, 2, "{}", run.err);
@@ -240,7 +240,7 @@ fn what_somebody_planted_leads_nowhere() {
     folder.write("victim/calibration.json", "theirs");
     folder.write("victim/thesis.tex", "theirs");
     folder.write("out/thesis.tex", "mine");
-    // Links in the place of what a run leaves, inside and beside, for a folder and for a file.
+    // Links in place of the remains of a run, inside and beside, for a folder and for a file.
     for unfinished in
         ["out/.poecal-unfinished-1-0", ".out.poecal-unfinished-1-0", ".new.toml.poecal-unfinished-1-0"]
     {
@@ -321,7 +321,7 @@ fn results_are_there_when_nobody_can_be_told() {
     }
 }
 
-/// Two runs at once; their exit codes, sorted, and what they said.
+/// Two runs at once; their exit codes, sorted, and their messages.
 fn at_once(folder: &Folder, commands: [&str; 2]) -> (Vec<i32>, String) {
     let start = |arguments: &str| -> Child {
         let mut command = Command::new(env!("CARGO_BIN_EXE_poecal"));
@@ -375,7 +375,7 @@ fn of_two_writers_one_wins_and_results_are_never_mixed() {
     assert!(left.is_empty(), "{left:?}");
 }
 
-/// Whether this process ignores a signal, as under `nohup` or behind a shell's `&`: so does then the program.
+/// True if this process ignores a signal, as under `nohup` or behind a shell's `&`: so does then the program.
 fn is_ignored(number: u32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -452,7 +452,7 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
         "calibrate --out by_default --report poecal.toml --force",
         "found a file that this run reads",
     );
-    // A folder of others is let go by what is typed only.
+    // Only a typed option lets a folder of others be replaced.
     fs::create_dir(folder.path("cell/results")).unwrap();
     folder.write("cell/results/report.html", "mine");
     settings("out = 'results'\nforce = true");
@@ -463,7 +463,7 @@ fn settings_lead_nowhere_else_and_let_only_results_go() {
     );
     folder.done("calibrate --settings cell/poecal.toml --force");
     folder.done("calibrate --settings cell/poecal.toml");
-    // The command that is kept says nothing of it.
+    // The recorded command does not contain it.
     assert!(!folder.read("cell/results/calibration.json").contains("--force"));
     folder.write("cell/page.html", "mine");
     settings("out = 'results'\nforce = true\nreport = 'page.html'");

@@ -10,7 +10,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// The list is a measurement file but for what is measured: the readers of joints take it, and a plan of it.
+/// The list is a measurement file without measured columns: the readers of joints accept it, and so does a plan.
 #[test]
 fn a_planned_list_is_read_and_completed() {
     let folder = folder();
@@ -33,7 +33,7 @@ fn a_planned_list_is_read_and_completed() {
     let of = |set: &str| rows.iter().filter(|row| row.split(',').nth(1) == Some(set)).count();
     assert_eq!((of("fit"), of("held_out"), rows.len()), (12, 4, 17));
     folder.done("plan column.toml --rows joints.csv --kind point");
-    // Four more beside these, the same bytes whatever the number of threads.
+    // Four more beside these, the same bytes for any number of threads.
     let more = |threads: usize| {
         folder.done(&format!(
             "plan column.toml --count 20 --held-out-count 0 --keep-rows joints.csv --json --threads {threads}"
@@ -42,14 +42,14 @@ fn a_planned_list_is_read_and_completed() {
     let one = more(1);
     assert_eq!(one, more(3));
     let found: serde_json::Value = serde_json::from_str(&one).unwrap();
-    // Rows to judge by do not count.
+    // Rows for validation do not count.
     assert_eq!((&found["kept"], &found["configurations"]), (&12.into(), &8.into()));
     let calibrated = |of: &str| found[of]["calibrated_mm"].as_f64().unwrap();
     println!("expected {} mm, random {} mm", calibrated("expected"), calibrated("random"));
     assert!(calibrated("expected") <= calibrated("random"));
 }
 
-/// Rows that could not be measured are replaced, and all others stay where they are.
+/// Rows that could not be measured are replaced, and all others are unchanged.
 #[test]
 fn replaced_rows_leave_the_others_in_their_places() {
     let folder = folder();
@@ -101,7 +101,7 @@ fn what_cannot_be_planned_is_refused_with_a_reason() {
     assert!(!folder.path("joints.csv").exists());
 }
 
-/// Rows of a finished file, one of them off by 10 mm.
+/// Rows of a finished file, one of them with an error of 10 mm.
 #[test]
 fn a_row_that_is_off_is_named() {
     let folder = folder();
@@ -122,7 +122,7 @@ fn a_row_that_is_off_is_named() {
     assert!(run.out.contains("row 26: WRONG"), "{}", run.out);
 }
 
-/// Chosen configurations keep 2 deg from the limits and one turn; a stated margin is kept to, and limits that no robot has are named.
+/// Chosen configurations keep 2 deg from the limits and one turn; a stated margin is respected, and limits that no robot has are named.
 #[test]
 fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let folder = Folder::new();
@@ -149,7 +149,7 @@ fn configurations_stay_within_a_turn_and_away_from_the_limits() {
     let (_, [second, _]) = planned("--margin 20deg,0mm");
     assert!(second[0] >= -85.0 && second[1] <= 155.0, "{second:?}");
     assert!(!usual.err.contains("placeholders"), "{}", usual.err);
-    // Every joint by 401 deg to either side, as models are exported of which nobody stated the limits.
+    // Every joint by 401 deg to either side, as in exported models without stated limits.
     let wide: Vec<String> = ROBOT
         .lines()
         .map(|line| match line.trim_start().starts_with("<limit") {

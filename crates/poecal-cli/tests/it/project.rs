@@ -18,7 +18,7 @@ pub(crate) fn run(words: &str, out: &Path) -> Run {
     )
 }
 
-/// What a run that must succeed printed.
+/// Output of a run that must succeed.
 pub(crate) fn printed(words: &str, out: &Path) -> String {
     let run = run(words, out);
     assert_eq!(run.code, 0, "{}", run.err);

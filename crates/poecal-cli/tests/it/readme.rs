@@ -31,7 +31,7 @@ fn the_first_command_prints_what_the_readme_shows() {
     let folder = Folder::new();
     let out = folder.path("poecal-out");
     let shown = printed(words, &out).replace(&out.display().to_string(), "poecal-out");
-    // The line with the folder, whose name is longer here, is broken elsewhere.
+    // The line with the folder, whose name is longer here, is broken at another word.
     let lines = |text: &str| without_rounding_errors(text).replace("\n              ", " ");
     assert_eq!(lines(&shown), lines(first_block(&readme, "text").trim_end()));
 }

@@ -48,7 +48,7 @@ pub(crate) fn joined(values: &[f64], digits: usize, separator: &str) -> String {
     values.iter().map(|it| format!("{it:.digits$}")).collect::<Vec<_>>().join(separator)
 }
 
-/// Our own form, with points or poses.
+/// poecal's own form, with points or poses.
 fn own(rows: &[Row], is_posed: bool) -> String {
     let mut text =
         "id,joint1[deg],joint2[deg],joint3[deg],joint4[deg],joint5[deg],joint6[deg],x[mm],y[mm],z[mm]"
@@ -61,7 +61,7 @@ fn own(rows: &[Row], is_posed: bool) -> String {
     text
 }
 
-/// What a calibration found of held-out rows, mm.
+/// Error of a calibration on held-out rows, mm, and its messages.
 pub(crate) fn held_out(folder: &Folder, files: &str) -> (f64, String) {
     let run = folder.run(&format!("calibrate {MODEL} {files} --held-out 0.3 --out out --force"));
     assert!(run.code <= 1, "{files}: {}", run.err);
@@ -203,7 +203,7 @@ fn every_pair_of_forms_gives_the_calibration_of_our_own() {
     for (one, other) in pairs.chain([("rapid.mod", "wide.txt")]) {
         let (found, said) = held_out(&folder, &format!("{one} {other}"));
         println!("{one} {other}: {found:.6} mm, {expected:.6} in our form");
-        // Other weights of the rows, where they state uncertainties that are equal, and digits of the files.
+        // Other weights of the rows, since they state equal uncertainties, and digits of the files.
         assert!((found / expected - 1.0).abs() < 0.01, "{one} {other}: {found} {expected}\n{said}");
         assert!(said.contains("were joined"), "{one} {other}: {said}");
     }
@@ -385,12 +385,12 @@ fn what_has_one_part_alone_or_none_is_named() {
     assert!(folder.listing() == before);
 }
 
-/// What is between two rows of numbers.
+/// Interpolation of two rows of numbers.
 pub(crate) fn between(one: &[f64], other: &[f64], share: f64) -> Vec<f64> {
     one.iter().zip(other).map(|(a, b)| a + share * (b - a)).collect()
 }
 
-/// The orientation between two, as unit quaternions.
+/// Interpolation of two orientations, as unit quaternions.
 pub(crate) fn turned(one: [f64; 4], other: [f64; 4], share: f64) -> [f64; 4] {
     let dot = one.iter().zip(&other).map(|(a, b)| a * b).sum::<f64>();
     let other = if dot < 0.0 { other.map(|it| -it) } else { other };
@@ -399,12 +399,12 @@ pub(crate) fn turned(one: [f64; 4], other: [f64; 4], share: f64) -> [f64; 4] {
     std::array::from_fn(|k| turn[k] / length)
 }
 
-/// A stream of stands of a second and moves of 0.8 s: for each row its time, the configuration and how far it is on the way to the next one.
+/// A stream of static intervals of a second and moves of 0.8 s: for each row its time, the configuration and its share of the path to the next one.
 pub(crate) fn stream(rows: usize, rate: usize) -> Vec<(f64, usize, f64)> {
     let mut found = Vec::new();
     let mut time = 0.0;
     for row in 0..rows {
-        // Stands of different lengths.
+        // Static intervals of different lengths.
         let stand = rate + row * 7 % 11 * rate / 20;
         let moved = 4 * rate / 5;
         for step in 0..stand + moved {
@@ -434,7 +434,7 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
         let file: serde_json::Value = serde_json::from_str(&folder.read("out/calibration.json")).unwrap();
         let join = &file["inputs"]["joins"][0];
         assert_eq!(join["join"], "time");
-        // Stands begin and end within some rows of each stream.
+        // Static intervals begin and end within some rows of each stream.
         assert!((join["lag_s"].as_f64().unwrap() + 12_621.06).abs() < 0.1, "{}", join["lag_s"]);
         for motion in ["robot_motion", "measured_motion"] {
             let motion = &join[motion];
@@ -446,7 +446,7 @@ fn recordings_with_clocks_of_their_own_are_joined_at_their_stands() {
                 .filter_map(serde_json::Value::as_f64)
                 .collect();
             let still = speeds.iter().filter(|it| **it < 5.0).count();
-            // Stands take 55 % of the time.
+            // Static intervals take 55 % of the time.
             assert!(
                 speeds.len() > 300 && (0.4..0.7).contains(&(still as f64 / speeds.len() as f64)),
                 "{still} of {}",
@@ -494,7 +494,7 @@ fn no_damage_to_a_file_of_another_form_makes_reading_panic() {
     let mut tries = 0;
     for text in &texts {
         let bytes = text.as_bytes();
-        // Some hundred places of each.
+        // Some hundred positions in each.
         for at in (0..bytes.len()).step_by(1 + bytes.len() / 250) {
             for change in [b"".as_slice(), b",", b"\t", b"9", b"-", b"\n", b"[", b"}", b"\"", b"e9"] {
                 let damaged = [&bytes[..at], change, &bytes[at + 1..]].concat();

@@ -6,13 +6,13 @@ use std::fs;
 use crate::folder::Folder;
 use crate::recorded::{MODEL, Row, between, joined, session, stream, turned};
 
-/// A robot that stands at each row, by its controller and by two systems of motion capture.
+/// A robot that stops at each row, by its controller and by two systems of motion capture.
 pub(crate) struct Recordings {
     /// A log of the controller, radians.
     pub(crate) log: String,
-    /// A take of Motive: the body, one that stands, and a marker without a label; frames are lost.
+    /// A take of Motive: the body, a static one, and a marker without a label; frames are lost.
     pub(crate) take: String,
-    /// The same by Qualisys.
+    /// The take in the form of Qualisys.
     pub(crate) qualisys: String,
 }
 
@@ -141,7 +141,7 @@ fn recordings_that_do_not_belong_together_are_refused_without_a_lag() {
 #[test]
 fn a_log_without_usable_times_is_refused_at_once_and_says_why() {
     let (folder, Recordings { log, take, .. }) = recorded();
-    // In milliseconds, without times, and a recording that was put together in the wrong order.
+    // In milliseconds, without times, and a recording that was concatenated in the wrong order.
     let milliseconds = changed(&log, 1, |_, cells| {
         let time: f64 = cells[0].parse().unwrap();
         cells[0] = format!("{:.0}", 1e3 * time);
@@ -161,7 +161,7 @@ fn a_log_without_usable_times_is_refused_at_once_and_says_why() {
     let begun = std::time::Instant::now();
     refused(&folder, &cases);
     assert!(begun.elapsed().as_secs() < 10, "{:?}", begun.elapsed());
-    // What the sentence says to write.
+    // The column that the sentence advises.
     let run = folder.run(&format!("import {MODEL} ms_stated.csv take.csv --out out.csv"));
     assert_eq!(run.code, 0, "{}", run.err);
 }

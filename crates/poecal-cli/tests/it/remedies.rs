@@ -1,4 +1,4 @@
-//! What messages of `hand-eye`, `tcp` and of joined files advise leads on: each remedy is taken from its sentence and followed.
+//! Remedies in messages of `hand-eye`, `tcp` and of joined files: each is taken from its sentence and followed.
 
 use poecal_arm::lie::Pose;
 use poecal_model::simulate::Kind;
@@ -11,7 +11,7 @@ fn words(run: &Run) -> String {
     (run.out.clone() + &run.err).split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// What stands in a message between two pieces of it.
+/// Part of a message between two pieces of it.
 fn between<'t>(text: &'t str, before: &str, behind: &str) -> &'t str {
     let (_, rest) = text.split_once(before).unwrap_or_else(|| panic!("no `{before}` in {text}"));
     rest.split_once(behind).unwrap_or_else(|| panic!("no `{behind}` behind `{before}` in {text}")).0
@@ -22,7 +22,7 @@ const TRUE_CAMERA: [f64; 3] = [0.04, -0.06, 0.09];
 fn is_found(folder: &Folder, words: &str) {
     let (found, _) = camera(&folder.done(words));
     let off = found.iter().zip(TRUE_CAMERA).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-    // Poses without noise but for a thousandth of a degree, 0.4 m away.
+    // Poses without noise except for a thousandth of a degree, 0.4 m away.
     assert!(off < 1e-4, "{words}: {found:?}");
 }
 
@@ -79,7 +79,7 @@ fn units_of_rotation_vectors_are_stated_as_the_message_says() {
         run.err
     );
     is_found(&folder, "hand-eye poses.csv --camera in-hand --units mm,deg --json");
-    // OpenCV's are radians, whatever is stated.
+    // OpenCV's are radians, in spite of any stated unit.
     let degrees =
         |board: &Pose| [rvec(board).into_iter().map(f64::to_degrees).collect(), place(board, 1e3)].concat();
     let all = rows.iter().map(|(arm, board)| [place(arm, 1e3), abc(arm).to_vec(), degrees(board)].concat());
@@ -142,7 +142,7 @@ fn a_mapping_of_what_was_measured_leaves_lists_of_joints_as_they_are() {
     let lines = |of: &dyn Fn(usize, &[f64]) -> String| -> String {
         rows.iter().enumerate().map(|(at, row)| of(at + 1, row) + "\n").collect()
     };
-    // A tracker's table without names: nominal and measured places, with others between and behind.
+    // A tracker's table without names: nominal and measured positions, with others between and behind.
     let tracker = |factor: f64| {
         lines(&|at, row| {
             let place: Vec<String> = row[6..9].iter().map(|it| format!("{:.7}", factor * it)).collect();

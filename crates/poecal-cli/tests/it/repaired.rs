@@ -1,4 +1,4 @@
-//! `poecal calibrate` of sessions in which something moved: said, repaired, and judged by what comes after it.
+//! `poecal calibrate` of sessions in which something moved: reported, repaired, and judged by the rows after it.
 
 use poecal_model::simulate::{Kind, Simulation};
 use serde_json::Value;
@@ -62,7 +62,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
         assert_eq!((&found["stage"], &found["verdict"]["level"]), (&stage.into(), &"good".into()), "{name}");
         assert!(found["verdict"]["position_mm"]["rms"].as_f64().unwrap() < 0.2);
     }
-    // What the device would see is what it sees now.
+    // A prediction for the device equals its present measurement.
     let seen = |name: &str| -> Vec<f64> {
         let text = folder.done(&format!("predict {name} judge.csv --output-frame device --quiet"));
         text.lines().nth(1).unwrap().split(',').skip(1).take(3).map(|cell| cell.parse().unwrap()).collect()
@@ -77,7 +77,7 @@ fn a_move_during_the_session_is_repaired_and_said() {
     assert!(run.code == 1 && said.starts_with("verdict do not use: from knocked.csv:42 on"), "{said}");
     let file: Value = serde_json::from_str(&folder.read("off/calibration.json")).unwrap();
     assert!(file["repairs"].is_null() && file["suspicions"][0]["kind"] == "device");
-    // A clean session has nothing of that.
+    // A clean session has neither.
     let file = folder.read("clean/calibration.json");
     assert!(!file.contains("\"repairs\"") && !file.contains("\"suspicions\""));
 }

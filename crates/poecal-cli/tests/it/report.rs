@@ -1,4 +1,4 @@
-//! The report: where it is written, and that it is made again from its files.
+//! The report: its output place, and its reconstruction from its files.
 
 use poecal_model::simulate::{Kind, Simulation};
 

@@ -47,7 +47,7 @@ fn reproduction_writes_its_report() {
     for name in ["results.json", "report.md", "report.html"] {
         assert_eq!(folder.read(&format!("report/{name}")), folder.read(&format!("again/{name}")));
     }
-    // The same command again is refused, and with --force gives the same bytes.
+    // The same command again is refused, and with --force writes the same bytes.
     let before = folder.listing();
     let again = "reproduce lou2009 --out report --trials 3 --starts 2";
     assert_eq!(folder.run(again).code, 2);
@@ -96,7 +96,7 @@ fn every_formulation_can_be_chosen() {
         assert!(file["identifiability"]["parameters"] == unknowns);
         predictions.push(folder.done(&format!("predict {formulation}/calibration.json joints.csv")));
     }
-    // Offsets are moved into the screws of what is written: the same robot, whether they were unknowns or not.
+    // Offsets are moved into the screws of the written models: the same robot, in both formulations.
     let numbers = |text: &str| -> Vec<f64> {
         text.lines().skip(1).flat_map(|line| line.split(',').map(|it| it.parse::<f64>().unwrap())).collect()
     };

@@ -1,4 +1,4 @@
-//! Simulated measurements of the elbow, and what the program makes of them.
+//! Simulated measurements of the elbow, and the program's results for them.
 
 use std::fmt::Write as _;
 

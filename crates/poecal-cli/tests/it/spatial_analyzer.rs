@@ -101,7 +101,7 @@ fn what_is_not_as_the_head_says_is_refused() {
         assert!(run.err.contains(expected), "{name}: {}", run.err);
     }
     assert!(folder.listing() == before);
-    // The same head again, as of files that were put together.
+    // The same head again, as in files that were concatenated.
     fs::write(folder.path("again.txt"), two(HEAD)).unwrap();
     let run = folder.run(&format!("import {MODEL} joints.csv again.txt --out out.csv"));
     assert_eq!(run.code, 0, "{}", run.err);

@@ -1,4 +1,4 @@
-//! Several places of the measuring device: `--device-frames per-file`, the column `instrument`, and what is refused.
+//! Several stations of the measuring device: `--device-frames per-file`, the column `instrument`, and refused options.
 
 use poecal_model::simulate::Kind;
 use poecal_results::residuals::Residuals;
@@ -6,8 +6,8 @@ use poecal_results::residuals::Residuals;
 use crate::folder::Folder;
 use crate::session::{calibration, session};
 
-/// The simulated session of points, its later rows seen from another place: a column `instrument` in `both.csv`, and files of their
-/// own, `monday.csv` and `tuesday.csv`.
+/// The simulated session of points, its later rows seen from another station: a column `instrument` in `both.csv`, and files of their own,
+/// `monday.csv` and `tuesday.csv`.
 fn moved() -> Folder {
     let folder = session(Kind::POINT);
     let text = folder.read("measurements.csv");
@@ -50,7 +50,7 @@ fn each_file_or_instrument_has_a_frame_of_its_own() {
         let found: Vec<_> = file.stations.iter().map(|it| it.instrument.as_deref().unwrap()).collect();
         assert_eq!(found, names);
         assert_eq!(file.stations[0].base_from_device, file.measurement_frame.base_from_device);
-        // 90 degrees about the vertical, as it was moved.
+        // 90 degrees about the vertical, by its motion.
         let [a, b] = [0, 1].map(|k| file.stations[k].base_from_device.pose().unwrap());
         let apart = b.inverse() * a;
         let expected = [1.2, 0.0, 0.1];
@@ -85,7 +85,7 @@ fn files_that_were_measured_from_two_places_are_named_without_the_option() {
     );
     assert!(said.contains("--device-frames per-file"), "{said}");
     let run = folder.run("calibrate robot.urdf monday.csv tuesday.csv --repair off --out out");
-    // What the table says is not said again on standard error.
+    // Statements of the table are not repeated on standard error.
     let said = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("the files monday.csv and tuesday.csv do not share one device frame"), "{said}");
     assert!(said.contains("--device-frames per-file") && said.contains("do not use"), "{said}");
@@ -140,7 +140,7 @@ fn what_does_not_go_together_is_refused() {
         "found measurements of 2 instruments that are to be in the base frame (--device-frame base), expected one of the two: leave the \
          instruments' names out if all measure in the base frame, or --device-frame base if each has a frame of its own",
     );
-    // The frame of held-out rows is found from these.
+    // The frame of held-out rows is estimated from these.
     folder
         .done("calibrate robot.urdf monday.csv --validate tuesday.csv --device-frames per-file --out judged");
     let columns = folder.read("both.csv").lines().next().unwrap().rfind("instrument").unwrap() + 1;

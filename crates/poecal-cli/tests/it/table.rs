@@ -12,7 +12,7 @@ use crate::session::{ROBOT, session};
 
 /// Lines that the whole standard output has at most.
 const LINES: usize = 14;
-/// Names that a list has at most, the last of which may be how many more there are.
+/// Names that a list has at most; the last may be the number of further ones.
 const NAMES: usize = 5;
 
 /// Labels of prose; others are of tables.
@@ -39,7 +39,7 @@ fn paragraph(out: &str, label: &str) -> String {
         .1
 }
 
-/// What must hold of every table: nothing twice, no long list, no line that is too wide.
+/// Properties of every table: nothing twice, no long list, no line that is too wide.
 fn check(out: &str) {
     assert!(out.starts_with("verdict       "), "{out}");
     assert!(out.lines().all(|line| line.chars().count() <= 80), "{out}");
@@ -54,7 +54,7 @@ fn check(out: &str) {
     }
 }
 
-/// Measurements of the elbow in which most joints hardly move, one stands still, and some rows are wrong.
+/// Measurements of the elbow in which most joints hardly move, one does not move, and some rows are wrong.
 fn poor() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
@@ -135,7 +135,7 @@ fn a_bad_day_is_told_in_short_lists_and_in_full_on_demand() {
     println!("{full}");
     assert!(!full.contains("more to look at") && full.contains("off by           position, mm"), "{full}");
     assert!(full.split("\ndetermined").next().unwrap().contains("rows are outliers"), "{full}");
-    // What the table has no room for stands in the report.
+    // Points without room in the table are in the report.
     let page = folder.read("poecal-out/report.html");
     assert!(page.contains("Look at") && page.contains("rows are outliers"));
 }

@@ -67,7 +67,7 @@ fn validation_judges_other_sessions() {
     };
     let rms = |value: &serde_json::Value| value["position_mm"]["rms"].as_f64().unwrap();
 
-    // The same robot and device, in configurations that the calibration did not see: what follows on its 60 rows.
+    // The same robot and device, in configurations that the calibration did not use: those after its 60 rows.
     let more = Simulation { count: 160, ..Simulation::default() };
     write_measurements(&folder, "all.csv", Kind::POSE, "", &more);
     let all = folder.read("all.csv");
@@ -95,7 +95,7 @@ fn validation_judges_other_sessions() {
         run.err
     );
     assert!(run.err.contains("judge the robot by --refit device, or let --refit auto do so"), "{}", run.err);
-    // By itself it does the same, and says so.
+    // By itself it does the same, and reports that.
     let found = json("moved.csv --refit auto");
     assert_eq!(found["calibrated"], json("moved.csv --refit device")["calibrated"]);
     let moved = &found["moved_device"];
@@ -105,7 +105,7 @@ fn validation_judges_other_sessions() {
             .done("validate poecal-out/calibration.json moved.csv --refit auto")
             .contains("the device stands ")
     );
-    // Where it stands as it stood, nothing is refitted.
+    // With an unmoved device, nothing is refitted.
     let found = json("more.csv --refit auto");
     assert!(found["moved_device"].is_null() && found["refitted"] == serde_json::json!([]), "{found}");
     let found = json("moved.csv --refit device");

@@ -1,17 +1,17 @@
-//! The tip stays where the model has it, and what is measured is a target of its own; with `--move-tip` the tip is what was measured.
+//! The tip is the model's, and the measured object is a target of its own; with `--move-tip` the measured object becomes the tip.
 
 use poecal_model::simulate::{Kind, Simulation};
 
 use crate::folder::Folder;
 use crate::session::{ROBOT, calibration, numbers, session, write_measurements};
 
-/// Links beyond the last joint, in numbers that no computation gives again by chance.
+/// Links beyond the last joint, with numbers that no computation repeats by chance.
 const GRIPPER: &str = "  <link name=\"flange\"/>\n  <joint name=\"flange_mount\" type=\"fixed\">\n    <parent link=\"tool\"/>\n    \
     <child link=\"flange\"/>\n    <origin xyz=\"0.0123 -0.0456 0.0789\" rpy=\"0.11 -0.22 0.33\"/>\n  </joint>\n  \
     <link name=\"gripper\"/>\n  <joint name=\"gripper_mount\" type=\"fixed\">\n    <parent link=\"flange\"/>\n    \
     <child link=\"gripper\"/>\n    <origin xyz=\"0.01 0.02 0.03\" rpy=\"-0.5 0 1.5708\"/>\n  </joint>\n</robot>";
 
-/// A session of the elbow, with a gripper in the model behind the reflector's place.
+/// A session of the elbow, with a gripper in the model behind the reflector's position.
 fn with_gripper(kind: Kind) -> Folder {
     let folder = session(kind);
     folder.write("robot.urdf", ROBOT.replace("</robot>", GRIPPER));
@@ -49,7 +49,8 @@ fn links_beyond_the_last_joint_keep_the_numbers_of_the_model() {
         assert!(found.len() >= 6 && found.iter().all(|(joint, _)| !joint.contains("mount")), "{found:#?}");
         let file = calibration(&folder, "results");
         assert!(!file.move_tip && told.contains("target        measured: at ("), "{told}");
-        // The model is off the truth by 2 mm and 1° of each axis and tip: the reflector is at the flange that simulated it, 50 mm before joint 6.
+        // The model differs from the truth by 2 mm and 1° for each axis and tip: the reflector is at the flange that simulated it, 50 mm before joint
+        // 6.
         let robot = file.robot().unwrap();
         let [(name, target)] = &robot.targets[..] else { panic!("{:?}", robot.targets) };
         let on_last = robot.last_joint_from_tip() * *target;
@@ -124,8 +125,8 @@ fn a_model_that_ends_in_its_reflector_may_have_it_as_its_tip() {
     let file = calibration(&folder, "results");
     assert!(file.move_tip && file.targets.is_empty());
     assert!(changed(&folder).iter().any(|(joint, _)| joint == "tool_mount"));
-    // Calibrated further, the tip stays where it was found.
-    // There is nothing left to correct, which the table says.
+    // After a further calibration, the tip is unchanged.
+    // There is nothing left to correct, which the table states.
     let told = folder.done("calibrate results/calibration.json measurements.csv --out again");
     assert!(told.contains("\nconfirmed     the axes of your model"), "{told}");
     let again = calibration(&folder, "again").robot().unwrap();

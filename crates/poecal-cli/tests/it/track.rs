@@ -25,7 +25,7 @@ fn the_same_rows_are_unchanged_and_a_line_of_the_history() {
     assert_eq!(folder.read("poecal-out/history.jsonl").lines().count(), 2);
 }
 
-/// The page of a visit states both sessions, what was found and what to do; one that was signed is not written over.
+/// The page of a visit states both sessions, the findings and the advice; a signed one is not overwritten.
 #[test]
 fn a_visit_is_a_page_to_sign() {
     let folder = cell();
@@ -81,7 +81,7 @@ fn witnesses_are_planned_and_written() {
     assert_eq!(folder.read("witness.csv").lines().count(), 10);
 }
 
-/// The plan of a visit is the same by both spellings; and of new configurations there is one too.
+/// The plan of a visit is the same by both spellings; of new configurations there is one too.
 #[test]
 fn visits_are_planned_by_plan_for_drift() {
     let folder = cell();
@@ -108,7 +108,7 @@ fn visits_are_planned_by_plan_for_drift() {
     }
 }
 
-/// Rows of which none repeats are judged by the model, and that is said; so is a model that has other bytes now.
+/// Rows that repeat nothing are judged by the model, and a note states that; another note states changed bytes of the model.
 #[test]
 fn rows_that_repeat_nothing_are_judged_by_the_model() {
     let folder = cell();
@@ -142,12 +142,12 @@ fn what_cannot_be_judged_is_refused() {
     assert!(run.code == 2 && run.err.contains("--plan or --recalibrate"), "{}", run.err);
 }
 
-/// Of another robot with the same joints, in the same configurations or in others, nothing is called unchanged, and no joint is blamed.
+/// Another robot with the same joints is not called unchanged, in the same configurations or in others, and no joint is blamed.
 #[test]
 fn another_robot_is_not_called_unchanged() {
     let folder = cell();
     folder.done("simulate robot.urdf --kind point --count 60 --seed 4 --out other");
-    // The same readings with what the other robot shows in them.
+    // The same readings with the other robot's measurements.
     folder.done("predict other/actual.urdf cell/measurements.csv --out places.csv");
     let (rows, places) = (folder.read("cell/measurements.csv"), folder.read("places.csv"));
     let mut joined = String::new();
@@ -190,7 +190,7 @@ fn visit(folder: &Folder, tool_m: [f64; 3], device_m: [f64; 3]) -> String {
     joined
 }
 
-/// Another tool is named as the tool, and one that was mounted anew is none; a device that stands elsewhere is named where it is said to be known.
+/// Another tool is named as the tool, and none if it was mounted anew; a moved device is named if it is stated to be known.
 #[test]
 fn another_tool_and_another_place_of_the_device_are_named() {
     let folder = Folder::new();

@@ -33,7 +33,7 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
     let said = table.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains("no measurement sees joints torso1 and torso2 move"), "{table}");
 
-    // The calibrated URDF is read with the links that it has now, and predicts what calibration.json does.
+    // The calibrated URDF is read with its present links, and predicts as calibration.json does.
     let robot = file.robot().unwrap();
     assert_eq!(robot.instruments.len() + robot.mounted.len(), 4);
     let rows = folder.read("sim/held_out.csv").lines().skip(1).count();
@@ -42,7 +42,7 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
             folder.done(&format!("predict out/calibration.json sim/held_out.csv --target {target}"));
         let by_urdf = folder
             .done(&format!("predict out/calibrated.urdf sim/held_out.csv --target {target}={target}_hand"));
-        // A URDF may need fewer joints for one hand; the readings are there all the same.
+        // A URDF may need fewer joints for one hand; the readings are there nevertheless.
         assert_eq!(by_file.lines().count(), rows);
         for (a, b) in by_file.lines().zip(by_urdf.lines()).skip(1) {
             let numbers =
@@ -52,10 +52,10 @@ fn two_cameras_calibrate_a_torso_with_two_arms() {
         }
     }
     folder.done("validate out/calibration.json sim/held_out.csv");
-    // What was calibrated can be calibrated again, from each of the forms.
+    // A calibrated robot can be calibrated again, from each of the forms.
     folder.done("export out/calibration.json --out torso.toml");
     for (model, out) in [("out/calibration.json", "again"), ("torso.toml", "from-toml")] {
-        // There is nothing left to correct, which the table says.
+        // There is nothing left to correct, which the table states.
         let told = folder.done(&format!("calibrate {model} sim/measurements.csv --out {out}"));
         assert!(told.contains("\nconfirmed     the axes of your model"), "{told}");
     }
@@ -110,7 +110,7 @@ fn check_shows_which_joints_each_pair_sees() {
     assert_eq!(json["sight"]["ways"].as_array().unwrap().len(), 4);
     assert_eq!(json["sight"]["unseen"], serde_json::json!(["torso1", "torso2"]));
     assert_eq!(json["model"]["joints"][8]["on"]["link_of"], "torso2");
-    // A chain shows none of this.
+    // A chain has none of this.
     let chain: Value =
         serde_json::from_str(&folder.done("check torso.urdf --tip-link left_hand --json")).unwrap();
     assert!(chain.get("sight").is_none() && chain["model"].get("mounted").is_none());
@@ -161,7 +161,7 @@ fn a_camera_in_the_hand_sees_a_board_beside_the_robot() {
     let held_out = file.accuracy.held_out.as_ref().unwrap().calibrated.position_mm().rms;
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
-    // The camera is where the tip is, whose fixed joint holds both.
+    // The camera is at the tip, whose fixed joint holds both.
     let robot = file.robot().unwrap();
     assert_eq!(robot.tip_name, "right_hand");
     assert!((robot.base_from(&robot.instruments[0]).translation - robot.home.translation).norm() < 1e-12);

@@ -21,7 +21,7 @@ fn narrow() -> Folder {
     folder
 }
 
-/// A gain that is asked for is shown: a file that does not say whether there is one ends with 1, without a warning.
+/// A required gain is shown: a file that does not state a gain ends with 1, without a warning.
 #[test]
 fn a_gain_that_is_asked_for_is_shown() {
     let folder = session(Kind::POSE);
@@ -133,7 +133,7 @@ fn validation_says_whether_the_promise_was_kept() {
     folder.write("bent.json", bent.to_string());
     let run = folder.run("validate bent.json measurements.csv");
     assert!(run.err.contains("exceed their 95 % bound"), "{run:?}");
-    // Where it is found anew, the screws are as expected.
+    // With the tool refitted, the screws are as expected.
     let anew = folder.done("validate bent.json measurements.csv --refit tool --json");
     let found: serde_json::Value = serde_json::from_str(&anew).unwrap();
     assert!(found["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() > 0.85, "{anew}");

@@ -1,4 +1,4 @@
-//! What `poecal validate` says of promises that are kept, broken, or not tried.
+//! Statements of `poecal validate` about predicted errors that hold, fail, or are not tested.
 
 use std::fmt::Write as _;
 
@@ -9,8 +9,8 @@ use poecal_results::model::Model;
 use crate::folder::Folder;
 use crate::session::ROBOT;
 
-/// A simulated robot calibrated with joint2 and joint3 near the middle of their ranges, and files of rows inside and outside these, and of
-/// another robot.
+/// A simulated robot calibrated with joint2 and joint3 near the middle of their ranges, and files of rows inside and outside these, and of another
+/// robot.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("robot.urdf", ROBOT);
@@ -50,7 +50,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Rows of a robot that is as its model has it, 1 m from the device.
+/// Rows of a robot that equals its model, 1 m from the device.
 fn write_nominal<'a>(folder: &Folder, robot: &Robot, readings: impl Iterator<Item = &'a [f64]>) {
     let mut text = format!("{},x,y,z\n", robot.reading_names().join(","));
     for readings in readings {
@@ -61,7 +61,7 @@ fn write_nominal<'a>(folder: &Folder, robot: &Robot, readings: impl Iterator<Ite
     folder.write("nominal.csv", text);
 }
 
-/// The gain over the nominal model is asked for by itself: rows of the calibrated robot show it, those of one that is as drawn or too few do not.
+/// The gain over the nominal model is required by itself: rows of the calibrated robot show it, those of a nominal one or too few rows do not.
 #[test]
 fn a_gain_is_required_of_rows_that_judge() {
     let folder = folder();
@@ -73,9 +73,9 @@ fn a_gain_is_required_of_rows_that_judge() {
     let json: serde_json::Value = serde_json::from_str(&judge("inside.csv --json").out).unwrap();
     assert_eq!(json["verdict"]["gain"], "clear");
     let [factor, from, to] = ["factor", "from", "to"].map(|key| json["improvement"][key].as_f64().unwrap());
-    // Simulated errors of 1 deg and 2 mm an axis are hundreds of times the noise; what noise leaves of the improvement is scatter of few rows.
+    // Simulated errors of 1 deg and 2 mm for each axis are hundreds of times the noise; the noise of the improvement is the scatter of few rows.
     assert!(1.0 < from && from <= factor && factor <= to && factor > 20.0, "{json}");
-    // A robot that is as its model has it is described worse by the calibrated one.
+    // A robot that equals its model is described worse by the calibrated one.
     let lost = judge("nominal.csv --require-gain");
     assert!(lost.code == 1 && lost.out.contains("gain          a loss: "), "{}", lost.out);
     assert!(
@@ -112,7 +112,7 @@ fn a_promise_is_required_of_all_rows_or_of_those_inside() {
             found["in_sampled_range"]["promised"]["position_mm"]["inside_bound95"].as_f64().unwrap() < 0.5
         );
     }
-    // Nothing can be said of a range from which there is no row.
+    // A range without rows cannot be judged.
     let run = judge("outside.csv --require inside_sampled_range");
     assert!(run.code == 1 && run.err.contains("no row lies inside the sampled range"), "{}", run.err);
     assert_eq!(judge("other.csv").code, 1, "the calibration does not hold");
@@ -136,7 +136,7 @@ fn what_lies_outside_the_sampled_range_is_not_blamed_on_the_robot() {
     let words = run.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("none of the rows lies inside it"), "{}", run.out);
 
-    // Rows inside are as promised, those outside are of another robot.
+    // Rows inside are as predicted, those outside are of another robot.
     let both = folder.read("inside.csv") + folder.read("other_outside.csv").split_once('\n').unwrap().1;
     folder.write("both.csv", both);
     let run = judge("both.csv");

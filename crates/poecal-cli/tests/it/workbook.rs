@@ -1,4 +1,4 @@
-//! A small workbook (.xlsx): a ZIP archive of which nothing is compressed.
+//! A small workbook (.xlsx): a ZIP archive without compression.
 
 use std::fmt::Write as _;
 
@@ -44,8 +44,8 @@ fn archive(files: &[(String, String)]) -> Vec<u8> {
     bytes
 }
 
-/// A workbook of sheets with the texts of their cells; a cell that is a number is stored as one, what begins with `t` as the text behind it, with `=` as a
-/// formula, whose result is behind `|`, and with `d` as a number that is shown as a date.
+/// A workbook of sheets with the texts of their cells. A cell that is a number is stored as one. A cell that begins with `t` is stored as the text
+/// behind it, one with `=` as a formula, whose result is behind `|`. One with `d` is stored as a number that is shown as a date.
 pub(crate) fn workbook(sheets: &[(&str, &Vec<Vec<String>>)]) -> Vec<u8> {
     const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";

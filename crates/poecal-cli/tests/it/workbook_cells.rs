@@ -1,4 +1,4 @@
-//! Cells of workbooks whose number is none: formulas that nothing computed, and numbers that are shown as dates.
+//! Cells of workbooks without a number: formulas that nothing computed, and numbers that are shown as dates.
 
 use poecal_model::simulate::Kind;
 

@@ -17,16 +17,16 @@ use poecal_programs::forms::PoseForm;
 use poecal_programs::parsed::{Meant, Motion, Parsed, Target};
 use poecal_programs::stated::Stated;
 
-/// Distance (m) and angle (rad) that rounding may leave of a corrected target.
+/// Distance (m) and angle (rad) that rounding may leave at a corrected target.
 const ROUNDING: f64 = 2e-6;
 
 /// A corrected program.
 pub(crate) struct Corrected {
     /// Its text.
     pub(crate) text: Vec<u8>,
-    /// Targets that were corrected, and the configurations that they mean.
+    /// Corrected targets, and their intended configurations.
     pub(crate) meant: Vec<(usize, Vec<f64>)>,
-    /// What changes, and what stays as it is.
+    /// Changes, and unchanged targets.
     pub(crate) summary: Summary,
 }
 
@@ -34,14 +34,14 @@ pub(crate) struct Corrected {
 pub(crate) struct Engine<'e> {
     pub(crate) poses: PoseCompensation,
     pub(crate) given: &'e Given,
-    /// Where the controller counts other readings than the model has.
+    /// Conversion, if the controller counts other readings than the model.
     pub(crate) counting: Option<Counting>,
     robots: (&'e Robot, &'e Robot),
     factors: &'e [f64],
     options: &'e ChangeOptions,
-    /// Readings that programs state as external axes: they stay as they are, and the others are corrected for them.
+    /// Readings that programs state as external axes: they are held, and the others are corrected for them.
     external: Vec<usize>,
-    /// The compensation at each of their values, by the bits of these.
+    /// The compensation at each set of their values, keyed by the bits of these.
     held: BTreeMap<Vec<u64>, PoseCompensation>,
 }
 
@@ -80,7 +80,7 @@ impl<'e> Engine<'e> {
         let numbers = target.scaled();
         match target.meant {
             Meant::Joints => self.external_of(&self.readings(numbers)),
-            // The last ones.
+            // The last numbers are the external axes.
             Meant::Pose(_) => {
                 numbers.get(numbers.len().saturating_sub(self.external.len())..).unwrap_or_default().to_vec()
             }
@@ -119,12 +119,12 @@ impl<'e> Engine<'e> {
         }
     }
 
-    /// What the controller counts at readings of the model.
+    /// The controller's readings for those of the model.
     fn counted(&self, readings: &[f64]) -> Vec<f64> {
         self.counting.as_ref().map_or_else(|| readings.to_vec(), |it| it.counted(readings))
     }
 
-    /// The arm's readings at a configuration, and the same as they are counted.
+    /// The arm's readings at a configuration, and the same as the controller counts them.
     fn both(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let poses = self.at(q);
         (poses.of_arm(q), poses.of_arm(&self.counted(q)))
@@ -162,7 +162,7 @@ impl<'e> Engine<'e> {
         Corrected { text: replaced(text, changes), meant, summary }
     }
 
-    /// What the motions make of each target.
+    /// Outcome of each target by the motions to it.
     fn fates(&self, parsed: &Parsed) -> Vec<Fate> {
         let mut fates: Vec<Fate> = parsed.targets.iter().map(|it| self.alone(it)).collect();
         let mut reached: Vec<Option<Vec<f64>>> = Vec::with_capacity(parsed.motions.len());
@@ -192,7 +192,7 @@ impl<'e> Engine<'e> {
         fates
     }
 
-    /// What is known of a target without its motions.
+    /// Outcome of a target without its motions.
     fn alone(&self, target: &Target) -> Fate {
         match target.meant {
             Meant::Pose(_) => Fate::Open,
@@ -205,7 +205,7 @@ impl<'e> Engine<'e> {
         }
     }
 
-    /// Where a motion to a pose leads.
+    /// Configuration that a motion to a pose reaches.
     fn place(
         &self,
         target: &Target,
@@ -243,7 +243,7 @@ impl<'e> Engine<'e> {
     ) -> Found<Vec<f64>> {
         let poses = self.holding(external);
         let nominal = poses.compensation().nominal();
-        // Where external axes move on the way too, it is none of the arm alone.
+        // If external axes move on the path too, it is not a path of the arm alone.
         let is_straight = motion.is_straight && before.is_none_or(|it| self.external_of(it) == external);
         match (&motion.stated, before) {
             (Stated::Near(near), _) => self.nearest(target, &self.readings(near.clone()), external),
@@ -284,7 +284,7 @@ impl<'e> Engine<'e> {
         found.ok_or_else(|| why().into())
     }
 
-    /// The changed numbers of a target that is placed, each with its bytes.
+    /// The changed numbers of a placed target, each with its bytes.
     fn write(
         &mut self,
         target: &Target,
@@ -335,7 +335,7 @@ impl<'e> Engine<'e> {
         Ok(changed.map(|(number, text)| (number.range.clone(), text)).collect())
     }
 
-    /// The numbers of a joint target once its readings are changed.
+    /// The numbers of a joint target after the change of its readings.
     fn commanded(&self, target: &Target, from: &[f64], to: &[f64]) -> Vec<f64> {
         let Some(counting) = &self.counting else { return to.to_vec() };
         counting.moved(&target.scaled(), from, to)
@@ -355,7 +355,7 @@ impl<'e> Engine<'e> {
         q
     }
 
-    /// Distance and angle that are left with the numbers as they are written.
+    /// Remaining distance and angle with the written numbers.
     fn left(
         &self,
         target: &Target,

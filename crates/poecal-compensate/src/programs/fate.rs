@@ -1,4 +1,4 @@
-//! What becomes of a target by the motions to it.
+//! Outcome of a target by the motions to it.
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -7,13 +7,13 @@ use super::reasons as reason;
 use poecal_arm::lie::Pose;
 use poecal_programs::stated::Stated;
 
-/// Why a target stays as it is.
+/// Reason why a target is unchanged.
 pub(crate) type Reason = Cow<'static, str>;
 
-/// What is found of a target, or why it stays as it is.
+/// Finding for a target, or the reason why it is unchanged.
 pub(crate) type Found<T> = std::result::Result<T, Reason>;
 
-/// A target's place while it is worked on.
+/// Frames and configuration of a target during its correction.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Placed {
     pub(crate) tool: Pose,
@@ -22,7 +22,7 @@ pub(crate) struct Placed {
     pub(crate) stated: Stated,
 }
 
-/// What becomes of a target.
+/// Outcome of a target.
 #[derive(Clone, Debug)]
 pub(crate) enum Fate {
     Open,
@@ -30,7 +30,7 @@ pub(crate) enum Fate {
     Listed(Reason, usize),
 }
 
-/// What another motion, on this line, makes of a target.
+/// Outcome of a target with another motion, on this line.
 pub(crate) fn joined(fate: Fate, placed: Found<Placed>, line: usize) -> Fate {
     match (fate, placed) {
         (Fate::Open, Ok(placed)) => Fate::Placed(Box::new(placed)),
@@ -43,7 +43,7 @@ pub(crate) fn joined(fate: Fate, placed: Found<Placed>, line: usize) -> Fate {
     }
 }
 
-/// In what two motions to one target differ.
+/// Difference between two motions to one target.
 fn differs(one: &Placed, other: &Placed) -> Option<&'static str> {
     let is_same = |a: &Pose, b: &Pose| {
         let (metres, radians) = a.apart(b);

@@ -1,7 +1,7 @@
-//! Robot programs in the languages of their controllers: targets corrected in place, everything else as it was, byte for byte.
+//! Robot programs in the languages of their controllers: targets corrected in place, everything else unchanged, byte for byte.
 //!
-//! `engine.rs` places and corrects targets, `fate.rs` has what the motions to a target make of it, `written.rs` its numbers in the text. No languages
-//! here: `poecal-programs` has them.
+//! `engine.rs` places and corrects targets, `fate.rs` has the outcome of a target by the motions to it, `written.rs` its numbers in the text. No
+//! languages here: `poecal-programs` has them.
 
 mod engine;
 mod fate;
@@ -24,27 +24,27 @@ use poecal_results::programs::read_program;
 pub use place::PoseCompensation;
 pub use summary::ProgramSummary;
 
-/// How programs are compensated.
+/// Options of the compensation of programs.
 #[derive(Clone, Debug)]
 pub struct ProgramOptions {
     /// The language.
     pub language: Language,
     /// Tools and frames that the program does not state.
     pub given: Given,
-    /// Compute what is left once more, from the written text by the robots' own forward kinematics.
+    /// True if the remaining error is recomputed from the written text by the robots' own forward kinematics.
     pub check: bool,
-    /// How far readings may be changed.
+    /// Limits of the changes of readings.
     pub change: ChangeOptions,
-    /// Keep what became of every target.
+    /// True if the outcome of every target is kept.
     pub each: bool,
-    /// How the readings of the nominal robot are made of those that the controller counts and programs state; `None` where they are the same.
+    /// Conversion from the controller's readings, which programs state, to those of the nominal robot; `None` if they are the same.
     pub controller: Option<Controller>,
-    /// Whether it is not known from where the third axis counts: joint targets of FANUC are refused then.
+    /// True if the zero of the third axis is unknown: joint targets of FANUC are refused then.
     pub is_third_axis_open: bool,
 }
 
 impl ProgramOptions {
-    /// Of a language, nothing else stated.
+    /// Options for a language, with nothing else stated.
     #[must_use]
     pub fn new(language: Language) -> Self {
         ProgramOptions {
@@ -59,13 +59,12 @@ impl ProgramOptions {
     }
 }
 
-/// Corrects the targets of a program for the robot `actual` at these values of its factors, where it is written for `nominal`
-/// (theory.md §2). Joint targets become those of [`Compensation`](super::Compensation), poses those of [`PoseCompensation`]; what cannot
-/// be corrected for sure stays as it is and is listed. All bytes but those of the changed numbers stay.
+/// Corrects the targets of a program written for `nominal` for the robot `actual` at these values of its factors (theory.md §2). Joint targets become
+/// those of [`Compensation`](super::Compensation), poses those of [`PoseCompensation`]; targets that cannot be corrected with certainty are unchanged
+/// and listed. All bytes except those of the changed numbers stay.
 ///
 /// # Errors
-/// As [`parse`] and
-/// [`Compensation::new`](super::Compensation::new).
+/// Those of [`parse`] and [`Compensation::new`](super::Compensation::new).
 pub fn compensate_program(
     text: &[u8],
     (nominal, actual): (&Robot, &Robot),
@@ -105,7 +104,7 @@ pub fn compensate_program(
 /// [`compensate_program`] of a file.
 ///
 /// # Errors
-/// As [`read_program`] and [`compensate_program`], with the place in the file.
+/// Those of [`read_program`] and [`compensate_program`], with the line in the file.
 pub fn compensate_file(
     path: impl AsRef<Path>,
     robots: (&Robot, &Robot),

@@ -1,4 +1,4 @@
-//! Compensation of poses, and the configurations in which they are reached.
+//! Compensation of poses, and their configurations.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,34 +10,34 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// Compensation of poses for a controller that computes with the nominal robot: where the program means a pose T, reached in the nominal
-/// configuration q (`nominal(q) = T`), the controller is told `T' = nominal(q')` with `actual(q') = T`. It then goes to q', and the tip of
-/// the actual robot is at T (theory.md §2).
+/// Compensation of poses for a controller that computes with the nominal robot. If the program means a pose T, reached in the nominal configuration q
+/// (`nominal(q) = T`), the controller is sent `T' = nominal(q')` with `actual(q') = T`. It then moves to q', and the tip of the actual robot is at T
+/// (theory.md §2).
 #[derive(Clone, Debug)]
 pub struct PoseCompensation {
     compensation: Compensation,
     branches: Option<AllBranches>,
 }
 
-/// How far (rad) the configuration nearest to another must be from the second nearest, and from half a turn, to be sure.
+/// Least lead (rad) of the configuration nearest to another over the second nearest, and least distance from half a turn, for a certain choice.
 const SURE: f64 = 0.05;
-/// Change of a joint (rad, m) in a step of a way that is followed.
+/// Change of a joint (rad, m) in a step along a path.
 const LARGEST_STEP: f64 = 0.35;
 /// Number of times that a step is halved.
 const HALVINGS: u32 = 5;
-/// Remainder (as [`Arm::nearest`] has it) of a pose that is reached.
+/// Remainder (by the definition of [`Arm::nearest`]) of a reached pose.
 const THERE: f64 = 1e-9;
 
 impl PoseCompensation {
-    /// Of two robots with the same joints, at these values of the actual one's factors.
+    /// Pose compensation between two robots with the same joints, at these values of the actual one's factors.
     ///
     /// # Errors
-    /// As [`Compensation::new`].
+    /// Those of [`Compensation::new`].
     pub fn new(nominal: &Robot, actual: &Robot, factors: &[f64], options: &ChangeOptions) -> Result<Self> {
         Ok(PoseCompensation::from_compensation(Compensation::new(nominal, actual, factors, options)?))
     }
 
-    /// By a compensation of readings.
+    /// Pose compensation by a compensation of readings.
     #[must_use]
     pub fn from_compensation(compensation: Compensation) -> Self {
         let branches = AllBranches::new(compensation.nominal());
@@ -50,13 +50,13 @@ impl PoseCompensation {
         &self.compensation
     }
 
-    /// The compensation of readings, to correct with.
+    /// The compensation of readings, for corrections.
     pub fn readings(&mut self) -> &mut Compensation {
         &mut self.compensation
     }
 
-    /// What the controller is told for the pose of the nominal robot's tip in a configuration (rad, m, in the order of
-    /// [`Robot::reading_names`]), and the readings that it then commands.
+    /// Pose for the controller in place of the pose of the nominal robot's tip in a configuration (rad, m, in the order of [`Robot::reading_names`]),
+    /// and the readings that it then commands.
     pub fn at(&mut self, q: &[f64]) -> (Pose, Compensated<'_>) {
         let (nominal, at) = (self.compensation.nominal().clone(), self.compensation.readings().to_vec());
         let found = self.compensation.joints(q);
@@ -82,8 +82,8 @@ impl PoseCompensation {
         all
     }
 
-    /// Every configuration of the nominal robot within its limits that has the tip at a pose, with all whole turns; joints without limits
-    /// turn once either way. Of six turning joints; none of others.
+    /// Every configuration of the nominal robot within its limits that has the tip at a pose, with all whole turns; joints without limits turn once
+    /// in either direction. For six turning joints; empty for others.
     #[must_use]
     pub fn all(&self, target: &Pose) -> Vec<Vec<f64>> {
         let Some(branches) = &self.branches else { return Vec::new() };
@@ -106,8 +106,8 @@ impl PoseCompensation {
         out
     }
 
-    /// The nominal configuration at a pose that is nearest to another one, if there is one and it is surely the nearest: by the joint that
-    /// moves most and by the root of squares, none other being nearly as near. Of six turning joints; `None` of others.
+    /// The nominal configuration at a pose nearest to another one, if there is one and it is certainly the nearest: by the joint that moves most and
+    /// by the root of squares, with no other nearly as near. For six turning joints; `None` for others.
     #[must_use]
     pub fn nearest(&self, target: &Pose, near: &[f64]) -> Option<Vec<f64>> {
         let branches = self.branches.as_ref()?;
@@ -121,8 +121,8 @@ impl PoseCompensation {
         is_sure.then(|| self.of_robot(first, near))
     }
 
-    /// The nominal configuration to which a straight way of the tool leads from another configuration; `None` if the way passes a singularity
-    /// or leaves the robot's reach or limits.
+    /// The nominal configuration at the end of a straight path of the tool from another configuration; `None` if the path passes a singularity or
+    /// leaves the robot's reach or limits.
     #[must_use]
     pub fn follow(&self, from: &[f64], target: &Pose, tip_from_tool: &Pose) -> Option<Vec<f64>> {
         let arm = self.compensation.nominal();
@@ -146,26 +146,26 @@ impl PoseCompensation {
         (is_within && arm.forward_kinematics(&q).apart(target).0 < 1e-8).then(|| self.of_robot(&q, from))
     }
 
-    /// Whether the nominal arm is so near a singularity that a pose says little of the configuration.
+    /// True if the nominal arm is so near a singularity that a pose hardly determines the configuration.
     #[must_use]
     pub fn is_singular(&self, q: &[f64]) -> bool {
         let arm = self.compensation.nominal();
         arm.joints() == 6 && arm.smallest_singular_value(&self.of_arm(q)) < SINGULAR
     }
 
-    /// Whether all branches of the nominal robot can be found.
+    /// True if all branches of the nominal robot can be found.
     #[must_use]
     pub fn has_branches(&self) -> bool {
         self.branches.is_some()
     }
 }
 
-/// Joint value (rad) beyond a limit that is rounding of a program's numbers.
+/// Excess of a joint value over a limit (rad) that is rounding of a program's numbers.
 const SLACK: f64 = 1e-5;
 /// Smallest singular value, lengths over the reach, below which a configuration is singular: a wrist within some tenths of a degree of straight.
 const SINGULAR: f64 = 1e-3;
 
-/// Takes joint values along a way from one share of it to another, in halves where they change much; `None` if it cannot be followed.
+/// Moves joint values along a path from one share of it to another, in halves if they change much; `None` if it cannot be followed.
 fn advance(
     arm: &Arm,
     way: &dyn Fn(f64) -> Pose,

@@ -1,4 +1,4 @@
-//! Reasons for which the engine leaves a target as it is.
+//! Reasons for which the engine leaves a target unchanged.
 
 pub(crate) const NO_MOTION: &str = "no motion of this file goes there: its tool and frame are not known, so correct it with the file that moves to it";
 pub(crate) const NO_TOOL: &str = "the tool is not known: state it by --tool-data";

@@ -1,4 +1,4 @@
-//! What the compensation of a program changes.
+//! Changes of a program by compensation.
 
 use serde::Serialize;
 
@@ -9,33 +9,33 @@ use poecal_model::robot::Robot;
 use poecal_programs::Language;
 use poecal_programs::parsed::{Meant, Parsed};
 
-/// What the compensation of a program changes, and what stays as it is.
+/// Changes of a program by compensation, and unchanged targets.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProgramSummary {
     /// The language.
     pub language: Language,
-    /// Number of targets that are corrected.
+    /// Number of corrected targets.
     pub corrected: usize,
-    /// Corrections, what is left of the targets that are corrected, and what stays as it is.
+    /// Corrections, the remaining error of corrected targets, and unchanged targets.
     #[serde(flatten)]
     pub changes: Summary,
 }
 
 impl ProgramSummary {
-    /// Whether every target that was found is corrected.
+    /// True if every detected target is corrected.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.changes.is_whole()
     }
 
-    /// The summary in words, for the terminal; joints that slide are told by their names.
+    /// The summary in words, for the terminal; sliding joints are listed by their names.
     #[must_use]
     pub fn text(&self, slides: &dyn Fn(&str) -> bool) -> String {
         self.changes.text(slides, if self.corrected == 1 { "target corrected" } else { "targets corrected" })
     }
 }
 
-/// What a written program leaves, by the robots' own forward kinematics.
+/// Remaining error of a written program, by the robots' own forward kinematics.
 pub(crate) fn checked(
     engine: &Engine<'_>,
     (nominal, actual): (&Robot, &Robot),

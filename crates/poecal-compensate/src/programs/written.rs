@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use poecal_programs::parsed::{Meant, Number};
 
-/// A number as it is written; empty if it stays as it is.
+/// A number in written form; empty if it is unchanged.
 pub(crate) fn number(at: usize, (number, value): (&Number, &f64), meant: Meant) -> String {
     let count = match meant {
         Meant::Joints => usize::MAX,
@@ -32,7 +32,7 @@ pub(crate) fn number(at: usize, (number, value): (&Number, &f64), meant: Meant) 
     if is_zero { text.replace('-', "") } else { text }
 }
 
-/// A number with its sign as the old one has it: the spaces behind it stay, and a plus.
+/// A number with the sign style of the old one: a plus and the spaces after the sign are kept.
 pub(crate) fn with_sign_as(old: &[u8], new: String) -> String {
     let Some(sign @ (b'+' | b'-')) = old.first() else { return new };
     let gap: String =

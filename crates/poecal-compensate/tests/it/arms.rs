@@ -1,4 +1,4 @@
-//! The arm that kinematics are computed with, beside the robot that it is made of.
+//! The arm that computes kinematics, compared with the robot from which it is made.
 
 use std::f64::consts::PI;
 
@@ -21,7 +21,7 @@ fn one(numbers: &mut ChaCha8Rng) -> f64 {
     2.0 * random::uniform(numbers) - 1.0
 }
 
-/// A robot whose joints and links give in every way there is, by up to `size` rad (and m/3).
+/// A robot whose joints and links deflect in every modelled direction, by up to `size` rad (and m/3).
 fn bent(robot: &Robot, size: f64, numbers: &mut ChaCha8Rng) -> Robot {
     let all: Vec<usize> = (0..robot.joints.len()).collect();
     let (mut robot, _) = robot.giving(&all, Gives::All);

@@ -1,4 +1,4 @@
-//! The same input gives the same bits, whatever the number of threads.
+//! The same input leads to the same bits, for any number of threads.
 
 use poecal_compensate::{ChangeOptions, Compensation, Inverse, Kinematics};
 use poecal_model::robot::{JointTerm, Term};
@@ -9,8 +9,7 @@ use poecal_results::residuals::{ResidualRows, Residuals};
 use poecal_testing::sessions::with_threads;
 use poecal_testing::trials::some;
 
-/// Few rows; and enough of them for a fit, which keeps three tenths back, to begin on a sample and to sort and sum the rows in several
-/// parts.
+/// Few rows; and enough of them for a fit, which holds out three tenths, to start on a sample and to sort and sum the rows in several parts.
 const ROWS: [usize; 2] = [200, 12_000];
 
 #[test]
@@ -60,7 +59,7 @@ fn kinematics_do_not_depend_on_threads() {
     for threads in [2, 5] {
         assert!(found(threads) == one, "{threads} threads");
     }
-    // Nor do many corrections differ from one after the other.
+    // Many corrections at once equal those one after the other.
     let mut compensation = Compensation::new(&nominal, &actual, &[], &ChangeOptions::default()).unwrap();
     let each: Vec<f64> =
         readings.chunks_exact(6).flat_map(|row| compensation.joints(row).readings.to_vec()).collect();

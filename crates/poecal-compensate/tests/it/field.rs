@@ -1,5 +1,4 @@
-//! Models, tables and programs as people of the trade have them: a base beside the chain, names in cells, two tables side by side, an arm on
-//! a track.
+//! Models, tables and programs as used in practice: a base beside the chain, names in cells, two tables side by side, an arm on a track.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, rotation};
@@ -11,7 +10,7 @@ use poecal_model::simulate::{Kind, Simulation, elbow};
 use poecal_testing::files::Folder;
 use poecal_testing::sessions::lifting_robot;
 
-/// As Universal Robots' description has it: the controller's base beside the chain, turned by half a turn, here shifted too.
+/// As in Universal Robots' description: the controller's base beside the chain, turned by half a turn, here shifted too.
 const BESIDE: &str = r#"<robot name="arm"><link name="base_link"/><link name="base"/><link name="plate"/><link name="upper"/><link name="fore"/><link name="tool0"/>
 <joint name="to_plate" type="fixed"><parent link="base_link"/><child link="plate"/><origin xyz="0 0 0.02" rpy="0 0 0.3"/></joint>
 <joint name="to_base" type="fixed"><parent link="plate"/><child link="base"/><origin xyz="0.1 0 -0.05" rpy="0 0 3.141592653589793"/></joint>
@@ -40,7 +39,7 @@ fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
             (base_link_from_base * base.robot().forward_kinematics(&q)).apart(&in_base_link);
         println!("apart by {metres:.1e} m, {radians:.1e} rad");
         assert!(metres < 1e-15 && radians < 1e-15);
-        // What is calibrated in this base is written into the joints below the other one, and read again.
+        // A calibration in this base is written into the joints below the other one, and read again.
         let shift = Pose::from_xyz_rpy([1e-3, -2e-3, 5e-4], [1e-3, 2e-3, -1e-3]);
         let screws: Vec<Screw> =
             base.robot().joints.iter().map(|joint| joint.screw.transformed(&shift)).collect();
@@ -52,7 +51,7 @@ fn a_base_that_fixed_joints_join_to_the_chain_is_its_base() {
         println!("written and read: {metres:.1e} m, {radians:.1e} rad");
         assert!(metres < 1e-14 && radians < 1e-14 && patched.text.contains("xyz=\"0.1 0 -0.05\""));
     }
-    // By a joint that moves it is none, and a base that is above the tip is as before.
+    // A base behind a moving joint is rejected, and a base above the tip is as before.
     let moved = BESIDE.replace("name=\"to_base\" type=\"fixed\"", "name=\"to_base\" type=\"continuous\"");
     let selection = ChainSelection {
         base_link: Some("base".to_owned()),
@@ -77,7 +76,7 @@ fn an_instrument_on_a_base_beside_the_chain_is_where_it_is() {
     let error = UrdfDocument::parse(BESIDE, "arm.urdf", &selection);
     let document = match error {
         Ok(document) => document,
-        // An instrument is below the base or on it; beside it is said.
+        // An instrument is below the base or on it; one beside it is reported.
         Err(error) => {
             println!("{error}");
             assert!(error.to_string().contains("instrument"), "{error}");
@@ -128,7 +127,7 @@ fn two_tables_side_by_side_are_one_if_it_is_said_of_few_rows() {
             error.starts_with("points.csv: found one configuration, with which nothing shows"),
             "{error}"
         );
-        // The advice, followed.
+        // The advice is followed.
         let rows = ReadOptions { join: Some(Join::Rows), ..ReadOptions::default() };
         let both = read(&files, &lifting_robot(), &rows).unwrap();
         assert_eq!(
@@ -207,12 +206,12 @@ fn external_axes_that_are_slides_of_the_model_hold_and_the_arm_is_corrected_for_
         println!("{language:?}: {} corrected, {:?}", summary.corrected, checked);
         assert!(summary.is_whole() && summary.corrected == count, "{:#?}", summary.changes.listed);
         assert!(checked.left_m.value < 2e-9 && summary.changes.moved_m.value > 1e-4);
-        // The track is where the program has it.
+        // The track stays as in the program.
         let made = String::from_utf8(made).unwrap();
         let tracks = |text: &str| text.matches("1054.423").count() + text.matches("[800,").count();
         assert!(tracks(&made) == tracks(&text) && made != text);
     }
-    // Without a value there is no place.
+    // Without a value there is no position.
     let lacking = "MODULE M\nPROC main()\nMoveAbsJ [[10,20,-15,40,50,60],[9E9,9E9,9E9,9E9,9E9,9E9]]\\NoEOffs,v100,fine,tool0;\nENDPROC\nENDMODULE\n";
     let options = ProgramOptions::new(Language::Rapid);
     let (_, summary) = compensate_program(lacking.as_bytes(), (&nominal, &actual), &[], &options).unwrap();

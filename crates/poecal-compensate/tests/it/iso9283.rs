@@ -1,4 +1,4 @@
-//! Accuracy after ISO 9283 that is predicted for corrected commands, beside what is measured with them.
+//! Predicted accuracy after ISO 9283 for corrected commands, compared with the measured one.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -16,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 const CYCLES: usize = 30;
-/// Noise of the instrument, metres, and of joints that return, radians.
+/// Noise of the instrument, metres, and of returning joints, radians.
 const NOISE_M: f64 = 1e-5;
 const RETURNS_RAD: f64 = 1e-5;
 
@@ -35,9 +35,9 @@ fn commands() -> Vec<Pose> {
     ]
 }
 
-/// The largest AP before, as it is predicted after, and as it is measured after.
+/// The largest AP before, predicted after, and measured after.
 fn accuracies(seed: u64) -> [f64; 3] {
-    // What no geometry corrects: some 0.1 mm.
+    // Error that no geometry corrects: some 0.1 mm.
     let mut terms = Sizes::NONE;
     terms[TermGroup::Harmonics] = 1e-4;
     let simulation = Simulation { count: 60, seed, terms, ..Simulation::default() };

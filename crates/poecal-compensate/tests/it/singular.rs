@@ -1,5 +1,5 @@
-//! Corrections at singularities: of published arms, at their homes and along ways through every singularity, no joint moves farther than is
-//! allowed, and the tip's point is where it was meant.
+//! Corrections at singularities: for published arms, at their homes and along paths through every singularity, no joint moves farther than its limit,
+//! and the tip's point is at its intended position.
 
 use poecal_arm::lie::{Pose, Screw};
 use poecal_calibrate::{CalibrationOptions, Corrections, calibrate};
@@ -23,8 +23,8 @@ const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 const BACK: [f64; 3] = [-1.0, 0.0, 0.0];
 const RIGHT: [f64; 3] = [0.0, -1.0, 0.0];
 
-/// Dimensions as the makers' data sheets have them, and homes in degrees. Upright, arms of UR10e and TX2-60 are stretched over their first axis
-/// with a straight wrist: there the point moves in one plane only, and such homes are corrected or listed.
+/// Dimensions from the makers' data sheets, and homes in degrees. Upright, arms of UR10e and TX2-60 are stretched over their first axis with a
+/// straight wrist: there the point moves in one plane only, and such homes are corrected or listed.
 const ARMS: [(&str, Axes, &[[f64; 6]]); 6] = [
     (
         "IRB 120",
@@ -129,7 +129,7 @@ fn arm((axes, flange): &Axes) -> Robot {
     robot
 }
 
-/// The published arms, then others of their kinds, each length of them 0.7 to 1.3 times as large: what meets in a point still does.
+/// The published arms, then others of their kinds, with each length scaled by 0.7 to 1.3: axes that meet in a point still meet.
 fn arms(count: usize) -> Vec<(String, Robot, Vec<[f64; 6]>)> {
     let scaled = |at: usize| {
         let (name, (axes, flange), homes) = &ARMS[at % ARMS.len()];
@@ -146,7 +146,7 @@ fn arms(count: usize) -> Vec<(String, Robot, Vec<[f64; 6]>)> {
     (0..count).map(scaled).collect()
 }
 
-/// The compensation of a calibrated session: the nominal robot as it is taught, and the calibrated one.
+/// The compensation of a calibrated session: the nominal robot as taught, and the calibrated one.
 fn calibrated(nominal: &Robot, seed: u64) -> Compensation {
     let simulation = Simulation {
         count: 60,
@@ -166,7 +166,7 @@ fn calibrated(nominal: &Robot, seed: u64) -> Compensation {
     Compensation::new(&taught, &actual, &[], &ChangeOptions::default()).unwrap()
 }
 
-/// Whether a turn of a joint by up to so many degrees takes the arm through a singularity.
+/// True if a turn of a joint by up to `degrees` moves the arm through a singularity.
 fn is_near_singular(compensation: &Compensation, q: &[f64], degrees: f64) -> bool {
     let arm = compensation.nominal();
     let hand = arm.handedness(q);
@@ -180,19 +180,19 @@ fn is_near_singular(compensation: &Compensation, q: &[f64], degrees: f64) -> boo
         })
 }
 
-/// What became of rows: number, and number corrected.
+/// Outcomes of rows: number, and number corrected.
 #[derive(Default)]
 struct Counted {
     regular: (usize, usize),
     singular: (usize, usize),
     homes: (usize, usize),
-    /// Largest remainder of the point (m), of the rotation (rad), change over what is allowed, and step beyond the programmed one over twice
-    /// the correction.
+    /// Largest remainder of the point (m), of the rotation (rad), change relative to the limit, and step beyond the programmed one over twice the
+    /// correction.
     worst: (f64, f64, f64, f64),
 }
 
 impl Counted {
-    /// Corrects a way.
+    /// Corrects a path.
     fn way(&mut self, compensation: &mut Compensation, rows: &[[f64; 6]], is_home: bool) {
         let mut before: Option<([f64; 6], Vec<f64>, f64)> = None;
         for q in rows {
@@ -213,12 +213,12 @@ impl Counted {
                 continue;
             }
             assert!(outcome == Outcome::Turned || left_rad < 1e-9);
-            // Arms like these are off by 0.1 deg usually, the worst of them by twice that in the median.
+            // Arms like these usually have errors of 0.1 deg, the worst of them twice that in the median.
             assert!(
                 left_rad <= turned_rad.max(1f64.to_radians()),
                 "much farther off than without correction"
             );
-            // Also by the arm itself.
+            // The arm itself confirms it.
             let apart = compensation.actual().forward_kinematics(&readings);
             let target = compensation.nominal().forward_kinematics(q);
             let (metres, _) = apart.apart(&target);
@@ -241,7 +241,7 @@ impl Counted {
 fn no_row_is_sent_to_another_branch() {
     let mut all = Counted::default();
     let percent = |(all, corrected): (usize, usize)| 100.0 * corrected as f64 / all.max(1) as f64;
-    // Weekly of 40 arms; of a change, of the published ones.
+    // The weekly test has 40 arms; a test of a change has the published ones.
     let count = if trials(40).count < 40 { ARMS.len() } else { 40 };
     for (at, (name, nominal, homes)) in arms(count).into_iter().enumerate() {
         let mut counted = Counted::default();
@@ -253,7 +253,7 @@ fn no_row_is_sent_to_another_branch() {
             for upright in [[0.0; 6], [0.0, -90.0, 0.0, -90.0, 0.0, 0.0]] {
                 counted.way(&mut compensation, &[upright.map(f64::to_radians)], false);
             }
-            // Ways lead through singularities, not along them: where a joint that is not moved is a degree from one, every row takes more.
+            // Paths lead through singularities, not along them: if a joint that is not moved is a degree from one, every row needs larger changes.
             let drawn = |base: u32| -> [f64; 6] {
                 core::array::from_fn(|joint| (f64::from(base) + 1.7 * joint as f64 + seed as f64).sin())
             };
@@ -293,8 +293,8 @@ fn no_row_is_sent_to_another_branch() {
     }
     let share = |(all, corrected): (usize, usize)| corrected as f64 / all as f64;
     println!("all: {:.3} %, {:.2} %", percent(all.regular), percent(all.singular));
-    // With errors of 0.05° a joint has to move by 2° where it is some 1.5° from a singularity: one or two rows of a thousand.
-    // Nearer to it one in eight would turn the tip farther than five times the usual error, and stays.
+    // With errors of 0.05° a joint has to move by 2° if it is some 1.5° from a singularity: one or two rows of a thousand. Nearer to it one in eight
+    // would turn the tip farther than five times the usual error, and is unchanged.
     assert!(share(all.regular) > 0.997 && share(all.singular) > 0.8 && share(all.homes) == 1.0);
 }
 
@@ -309,7 +309,7 @@ fn a_straight_wrist_stays_straight() {
     let changes: Vec<f64> = found.readings.iter().map(|it| it.to_degrees()).collect();
     println!("{:?}: {changes:.3?} deg, {:.3} deg left", found.outcome, found.left_rad.to_degrees());
     assert!(found.is_corrected && found.left_m < 1e-9);
-    // Nothing larger is allowed: what is listed then says which joint.
+    // No larger change is allowed: the list then names the joint.
     let most = MostChange { turning_rad: 1e-5, sliding_m: 1e-3 };
     let options = ChangeOptions { most_change: most, nearest: false };
     let mut narrow = Compensation::new(&nominal, &actual, &[], &options).unwrap();

@@ -1,4 +1,4 @@
-//! Compensation of robots whose measured target is not the flange of their model, and whose base is not known.
+//! Compensation of robots whose measured target is not the flange of their model, and whose base is unknown.
 
 use poecal_arm::lie::Pose;
 use poecal_calibrate::{CalibrationOptions, DeviceFrameKnowledge, calibrate};
@@ -10,7 +10,7 @@ use poecal_results::calibration_file::{CalibrationFile, Inputs};
 /// A reflector, metres beyond the flange.
 const REFLECTOR: [f64; 3] = [0.04, -0.02, 0.1];
 
-/// A calibration of an elbow whose axes are off by so much (rad, m), with a model that ends at the flange.
+/// A calibration of an elbow with axis errors of this size (rad, m), with a model that ends at the flange.
 fn calibrated(off: (f64, f64), kind: Kind, frame: DeviceFrameKnowledge) -> (CalibrationFile, Robot) {
     let simulation = Simulation {
         count: 80,
@@ -46,10 +46,10 @@ fn configurations() -> impl Iterator<Item = [f64; 6]> {
     })
 }
 
-/// The median of the largest corrections of a joint, rad (near singularities they are large), and what is left of where the tip was meant,
-/// metres.
+/// The median of the largest corrections of a joint, rad (near singularities they are large), and the remaining distance from the intended position
+/// of the tip, metres.
 fn corrections(nominal: &Robot, actual: &Robot, meant: impl Fn(&Robot, &[f64]) -> Pose) -> (f64, f64) {
-    // Whatever it takes.
+    // No limit of changes.
     let most_change = MostChange { turning_rad: 1.5, sliding_m: 1.0 };
     let options = ChangeOptions { most_change, nearest: false };
     let mut compensation = Compensation::new(nominal, actual, &[], &options).unwrap();
@@ -77,7 +77,7 @@ fn a_reflector_off_the_flange_is_no_error_of_the_joints() {
             println!(
                 "{kind:?}, {frame:?}: corrections of {largest:.1e} rad, {left:.1e} m left; without the reflector they would be {literal:.1e} rad"
             );
-            // What is in the joints is noise of a micrometre; the reflector is 0.11 m away.
+            // The corrections of the joints are noise of a micrometre; the reflector is 0.11 m away.
             assert!(largest < 1e-4 && left < 1e-9, "{kind:?} {frame:?}");
             assert!(literal > 0.02);
         }
@@ -98,12 +98,12 @@ fn corrected_programs_reach_what_base_and_tool_of_the_actual_robot_make_of_them(
             tool.norm()
         );
         assert!(left < 1e-9 && largest > 1e-3 && largest < 0.1);
-        // Errors of the tip itself are of its size, 2 mm, and those of the last axes turn it.
+        // Errors of the tip itself have its size, 2 mm, and those of the last axes turn it.
         assert!(tool.norm() < 0.02);
         if frame == DeviceFrameKnowledge::Base {
             assert!(taught.base.translation.norm() == 0.0);
         }
-        // A robot that is corrected by geometry alone misses less than before in every one of these configurations.
+        // A robot corrected by geometry alone has smaller errors than before in every one of these configurations.
         for q in configurations() {
             let (meant, uncorrected) = (by_frames(&nominal, &q), actual.forward_kinematics(&q));
             assert!((meant.translation - uncorrected.translation).norm() < 0.1);

@@ -1,5 +1,5 @@
-//! A torso with two arms, seen by a device beside it, by one hand that sees the other, and by planes that both hands touch: ranks in closed
-//! form, recovery without noise, and held-out figures with it (theory.md §7).
+//! A torso with two arms, seen by a device beside it, by one hand that sees the other, and by planes that both hands touch: ranks in closed form,
+//! recovery without noise, and held-out figures with it (theory.md §7).
 
 use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, Robust, calibrate};
 use poecal_fit::state::{Packed, Session};
@@ -17,7 +17,7 @@ const ARMS: usize = 48;
 /// Unknowns of the torso: a joint that slides, and one that turns.
 const TORSO: usize = 2 + 4;
 
-/// The torso of the tests with what stands on its links; `base` is its base link, or `torso` for two arms on one base.
+/// The torso of the tests with the mounts on its links; `base` is its base link, or `torso` for two arms on one base.
 fn robot(base: &str, instruments: &[(&str, &str)], targets: &[(&str, &str)]) -> Robot {
     let pairs = |pairs: &[(&str, &str)]| {
         pairs.iter().map(|(name, link)| ((*name).to_owned(), (*link).to_owned())).collect()
@@ -58,7 +58,7 @@ fn fit(made: &Simulated) -> Calibration {
     calibrate(&made.nominal, &made.data, &options).unwrap()
 }
 
-/// A session of so many places only, in their order.
+/// A session with only the first stations, in their order.
 fn of_places(made: Simulated, count: usize) -> Simulated {
     let mut data = Dataset::new(made.data.reading_names().to_vec());
     for (row, observation) in made.data.observations.iter().enumerate() {
@@ -83,11 +83,11 @@ fn check(name: &str, made: &Simulated, rank: usize, unknowns: usize) {
         identified.rank, identified.parameters
     );
     assert_eq!((identified.rank, identified.parameters), (rank, unknowns), "{name}");
-    // 1e-9 m, and so many degrees.
+    // Tolerance of 1e-9 m, and the same number of degrees.
     assert!(worst < 1e-6, "{name}: {worst:e}");
 }
 
-/// All joints between device and hands are seen: g and 6 of each pose target, 3 of each point, 6 of the device less 6 of the base.
+/// All joints between device and hands are observed: g and 6 for each pose target, 3 for each point, 6 for the device less 6 for the base.
 #[test]
 fn a_device_beside_the_torso_sees_both_hands() {
     for (kind, of_target) in [(Kind::POSE, 6), (Kind::POINT, 3)] {
@@ -97,8 +97,8 @@ fn a_device_beside_the_torso_sees_both_hands() {
     }
 }
 
-/// From one hand to the other is one chain of twelve joints; the torso moves both hands alike and is not seen. The eye's frame is the base's
-/// choice, and an anchor shows 3 of its 6 numbers.
+/// From one hand to the other is one chain of twelve joints; the torso moves both hands alike and is not observed. The eye's frame is absorbed by the
+/// base, and an anchor shows 3 of its 6 numbers.
 #[test]
 fn the_left_hand_sees_the_right() {
     let places = [(Kind::POSE, 6), (Kind::POINT, 3), (Kind::DISTANCE, 0)];
@@ -122,21 +122,21 @@ fn on_six_planes(count: usize) -> Simulated {
     Simulated { data, ..first }
 }
 
-/// Points of both hands on planes. Each arm that shares no joint with the other may be moved, turned and scaled by itself in any way that keeps
-/// all planes: 4 ways with one plane, 2 with two, 1 with three, none with four (theory.md §7).
+/// Points of both hands on planes. An arm that shares no joint with the other may be moved, turned and scaled by itself in any motion that keeps all
+/// planes: 4 degrees of freedom with one plane, 2 with two, 1 with three, none with four (theory.md §7).
 #[test]
 fn planes_that_both_hands_touch() {
     for (planes, own) in [(1, 4), (2, 2), (3, 1), (4, 0)] {
         let made = of_places(on_six_planes(450), planes);
-        // Without the base's 6: the axes, three numbers of each target and of each plane.
+        // Unknowns without the base's 6: the axes, three numbers of each target and of each plane.
         let unknowns = ARMS + 6 + 3 * planes - 6;
         check(&format!("two arms on {planes} planes"), &made, unknowns - 1 - own, unknowns);
     }
 }
 
-/// A torso that moves ties the arms together. One that turns leaves growth of the whole, and with a single plane growth of one arm about the
-/// point in which the axis meets it. Of one that slides too, a plane shows the slide's part along its normal alone: one plane leaves the
-/// slide's turn about the normal and growth with the slide's tilt, two planes the latter, three nothing.
+/// A moving torso couples the arms. One that turns leaves scaling of the whole, and with a single plane scaling of one arm about the intersection of
+/// the axis with it. For one that slides too, a plane observes only the slide's part along its normal. One plane leaves the slide's turn about the
+/// normal and scaling with the slide's tilt, two planes the latter, three nothing.
 #[test]
 fn a_torso_that_moves_ties_both_arms_together() {
     for (base, own, lacking) in [("torso_lift", 4, [2, 1, 1]), ("base_link", TORSO, [2, 1, 0])] {
@@ -148,7 +148,7 @@ fn a_torso_that_moves_ties_both_arms_together() {
     }
 }
 
-/// With noise of 0.05 mm and 0.01° the error of held-out rows is that noise, and what the fit adds to it.
+/// With noise of 0.05 mm and 0.01° the error of held-out rows is that noise, and the uncertainty of the fit.
 #[test]
 fn with_noise_held_out_rows_are_as_good_as_the_noise() {
     let noisy = |count| Simulation { count, ..Simulation::default() };
@@ -198,7 +198,7 @@ fn corrected_m(calibration: &Calibration, unseen: &Dataset, target: Option<&str>
     (squares / rows.len() as f64).sqrt()
 }
 
-/// What hangs on the torso bends it. One tree of both arms knows where the other arm is; a chain of one arm does not.
+/// The weight of the arms bends the torso. One tree of both arms knows the position of the other arm; a chain of one arm does not.
 #[test]
 fn a_tree_of_two_soft_arms_has_half_the_error_of_a_chain() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-2,tilt=2e-2".parse() else { panic!("no sizes") };

@@ -14,16 +14,16 @@ use crate::error::Result;
 use crate::exif;
 use crate::gray::Gray;
 
-/// Most bytes that the reader of PNG takes beside the picture: its rows, and texts and profiles in the file.
+/// Most bytes that the PNG reader uses beside the picture: its rows, and texts and profiles in the file.
 const BESIDE: usize = 64 << 20;
-/// Most pixels for each byte of a file. Deflate makes at most 1032 bytes of one, of 8 pixels each; JPEG needs a bit for a block of 8 × 8 pixels,
-/// or of 32 × 32 if its parts have other sizes. A head that states more lies, and is not believed.
+/// Most pixels for each byte of a file. Deflate expands one byte to at most 1032, of 8 pixels each. JPEG needs a bit for a block of 8 × 8 pixels, or
+/// of 32 × 32 if its components have other sizes. A header that states more is wrong, and is refused.
 const PIXELS_PER_BYTE: usize = 8 * 1032;
 
-/// What is said if a picture does not fit.
+/// Message about a picture that does not fit.
 const TOO_LARGE: &str = "Memory limit exceeded";
 
-/// Formats that are no pictures here, by the bytes at a place in them.
+/// Unsupported formats, by their bytes at an offset.
 const OTHERS: [(usize, &[u8], &str); 20] = [
     (0, b"GIF89a", "Gif"),
     (0, b"GIF87a", "Gif"),
@@ -51,9 +51,9 @@ const OTHERS: [(usize, &[u8], &str); 20] = [
 pub(crate) struct Decoded {
     width: usize,
     height: usize,
-    /// Samples of a pixel: gray, or red, green and blue, and how opaque it is.
+    /// Samples of a pixel: gray, or red, green and blue, and opacity.
     channels: usize,
-    /// Whether a sample is two bytes, the high one first.
+    /// True if a sample is two bytes, the high one first.
     is_deep: bool,
     samples: Vec<u8>,
     /// The orientation of EXIF, 1 to 8.
@@ -61,7 +61,7 @@ pub(crate) struct Decoded {
 }
 
 impl Decoded {
-    /// Decodes a file of at most so many pixels; an error says what is wrong with it.
+    /// Decodes a file of at most `most` pixels; the error describes its fault.
     pub(crate) fn from_bytes(bytes: &[u8], most: u64) -> std::result::Result<Self, Undecoded> {
         if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             return of_png(bytes, most);
@@ -86,7 +86,7 @@ impl Decoded {
             return Gray::from_bytes(width, height, &self.samples);
         }
         let weigh = |[red, green, blue]: [f32; 3]| 0.299 * red + 0.587 * green + 0.114 * blue;
-        // Where they are in a pixel: gray is all three.
+        // Offsets of the samples in a pixel: gray serves as all three colours.
         let places = if channels < 3 { [0, 0, 0] } else { [0, 1, 2] };
         let levels = if self.is_deep {
             let sample =
@@ -94,7 +94,7 @@ impl Decoded {
             let pixels = self.samples.chunks_exact(2 * channels);
             pixels.map(|pixel| weigh(places.map(|at| sample(pixel, at))) * (255.0 / 65535.0)).collect()
         } else {
-            // A pixel of OpenCV is a whole number.
+            // A pixel of OpenCV is an integer.
             let pixels = self.samples.chunks_exact(channels);
             pixels.map(|pixel| weigh(places.map(|at| f32::from(pixel[at]))).round()).collect()
         };
@@ -102,12 +102,12 @@ impl Decoded {
     }
 }
 
-/// Why a file is not decoded.
+/// Reason why a file is not decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Undecoded {
-    /// What is wrong with it.
+    /// Fault of the file.
     Broken(String),
-    /// It has this width and height, which are too many pixels.
+    /// The picture has this width and height, which are too many pixels.
     Large([usize; 2]),
 }
 
@@ -117,7 +117,7 @@ impl From<String> for Undecoded {
     }
 }
 
-/// Room for the samples of a picture, which a file of this many bytes can hold.
+/// Capacity for the samples of a picture, if a file of this many bytes can contain it.
 fn room(
     size: [usize; 2],
     most: u64,
@@ -145,7 +145,7 @@ fn of_png(bytes: &[u8], most: u64) -> std::result::Result<Decoded, Undecoded> {
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(no_png)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
-    // What stands behind the pixels does not count.
+    // Data behind the pixels are ignored.
     let orientation = reader.info().exif_metadata.as_deref().and_then(exif::orientation);
     let (colours, depth) = reader.output_color_type();
     let (channels, is_deep) = (colours.samples(), depth == BitDepth::Sixteen);
@@ -154,7 +154,7 @@ fn of_png(bytes: &[u8], most: u64) -> std::result::Result<Decoded, Undecoded> {
     Ok(Decoded { width, height, channels, is_deep, samples, orientation: orientation.unwrap_or(1) })
 }
 
-/// What is wrong with a PNG file.
+/// Fault of a PNG file.
 fn no_png(error: DecodingError) -> String {
     match error {
         DecodingError::IoError(error) => error.to_string(),
@@ -181,7 +181,7 @@ fn of_jpeg(bytes: &[u8], most: u64) -> std::result::Result<Decoded, Undecoded> {
     Ok(Decoded { width, height, channels, is_deep: false, samples, orientation })
 }
 
-/// What is wrong with a JPEG file.
+/// Fault of a JPEG file.
 fn no_jpeg(error: DecodeErrors) -> String {
     if let DecodeErrors::Unsupported(scheme) = &error {
         return format!("The decoder for Jpeg does not support the format features {scheme:?}");

@@ -1,4 +1,4 @@
-//! How a picture is turned, by its EXIF data.
+//! Orientation of a picture, by its EXIF data.
 
 /// Tag of the orientation, and its type: a number of 16 bits.
 const ORIENTATION: u16 = 0x112;
@@ -21,7 +21,7 @@ pub(crate) fn orientation(exif: &[u8]) -> Option<u8> {
         let own = bytes.get(at..at + 4)?.try_into().ok()?;
         Some(if is_little { u32::from_le_bytes(own) } else { u32::from_be_bytes(own) })
     };
-    // Only the first list of entries is of the picture; others are of its thumbnail.
+    // Only the first list of entries concerns the picture; others concern its thumbnail.
     let list = exif.get(usize::try_from(long(exif, 4)?).ok()?..)?;
     let count = usize::from(short(list, 0)?);
     let is_it = |entry: &&[u8]| {

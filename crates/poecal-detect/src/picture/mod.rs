@@ -11,32 +11,32 @@ use crate::decoded::{Decoded, Undecoded};
 use crate::error::{Error, Result};
 use crate::gray::Gray;
 
-/// A picture of a file, in gray, upright as its EXIF data say.
+/// A picture of a file, in gray, upright by its EXIF data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Its levels.
     pub gray: Gray,
-    /// How it was turned after reading: its camera has other axes than the picture then.
+    /// Rotation after reading: the axes of its camera then differ from those of the picture.
     pub turned: Turned,
 }
 
-/// How a picture was turned to stand upright.
+/// Rotation of a picture to upright.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Turned {
     /// Degrees clockwise: 0, 90, 180 or 270.
     pub degrees: u16,
-    /// Whether left and right were exchanged, before turning.
+    /// True if left and right were exchanged, before turning.
     pub mirrored: bool,
 }
 
 impl Turned {
-    /// Whether anything was done.
+    /// True if the picture was changed.
     #[must_use]
     pub fn is_turned(&self) -> bool {
         *self != Turned::default()
     }
 
-    /// By the orientation of EXIF, 1 to 8.
+    /// Rotation by the orientation of EXIF, 1 to 8.
     fn from_exif(orientation: u8) -> Self {
         let (degrees, mirrored) = match orientation {
             2 => (0, true),
@@ -51,7 +51,7 @@ impl Turned {
         Turned { degrees, mirrored }
     }
 
-    /// A picture after this.
+    /// The picture after this rotation.
     fn apply(self, gray: Gray) -> Result<Gray> {
         if !self.is_turned() {
             return Ok(gray);
@@ -86,7 +86,7 @@ impl Picture {
     /// Reads a PNG or JPEG file of 8 or 16 bits, gray or colour.
     ///
     /// # Errors
-    /// If the file cannot be read, or is no such picture: with its path.
+    /// If the file cannot be read, or is no such picture; the message contains its path.
     pub fn open(path: &Path) -> Result<Self> {
         let unread =
             |reason: &dyn fmt::Display| Error::new(format!("{}: cannot be read: {reason}", path.display()));
@@ -94,18 +94,18 @@ impl Picture {
         Picture::decode(&bytes, path)
     }
 
-    /// The same of the bytes of such a file, of at most [`MOST_PIXELS`]; `path` is its name in messages.
+    /// Decodes the bytes of such a file, of at most [`MOST_PIXELS`]; `path` is its name in messages.
     ///
     /// # Errors
-    /// If it is no such picture: with its path.
+    /// If it is no such picture; the message contains its path.
     pub fn decode(bytes: &[u8], path: &Path) -> Result<Self> {
         Picture::decode_up_to(bytes, path, MOST_PIXELS).map_err(|Undecodable { error, .. }| error)
     }
 
-    /// The same of at most so many pixels: of a file that states more, no memory is taken.
+    /// Decodes a picture of at most this number of pixels: a file that states more causes no allocation.
     ///
     /// # Errors
-    /// As [`Picture::decode`], with the size of a picture of more pixels.
+    /// Those of [`Picture::decode`], with the size of a picture of more pixels.
     pub fn decode_up_to(
         bytes: &[u8],
         path: &Path,
@@ -136,14 +136,14 @@ impl Picture {
     }
 }
 
-/// Most pixels of a picture, if nothing else is asked for.
+/// Default limit of the pixels of a picture.
 pub const MOST_PIXELS: u64 = 50_000_000;
 
-/// Why a file is no picture.
+/// Reason why a file is no picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Undecodable {
-    /// What is wrong, in a sentence.
+    /// Fault, in a sentence.
     pub error: Error,
-    /// Width and height of a picture of more pixels than there may be.
+    /// Width and height of a picture with more than the permitted pixels.
     pub too_large: Option<[usize; 2]>,
 }

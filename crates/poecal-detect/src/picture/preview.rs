@@ -1,4 +1,4 @@
-//! Pictures with the corners that were found in them, to look at.
+//! Pictures with marks at the detected corners, for inspection.
 
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 

@@ -1,4 +1,4 @@
-//! What is black of a board, on its page.
+//! Black areas of a board on its page.
 
 use super::sheet::{Disc, Rectangle, placed};
 use crate::layout::{Layout, Pattern, Tagged};
@@ -45,7 +45,7 @@ fn squares(page: &OnPage<'_>) -> Vec<Rectangle> {
         .collect();
     let Some((dictionary, _)) = &layout.markers else { return black };
     for id in 0..layout.marker_count() {
-        // Cell 0 is border: `is_black` of what is outside is black.
+        // Cell 0 is border: `is_black` is true for cells outside.
         let is_black =
             |column: usize, row: usize| dictionary.is_black(id, column.wrapping_sub(1), row.wrapping_sub(1));
         black.extend(marker(page, id, dictionary.bits() + 2, is_black));
@@ -71,7 +71,7 @@ fn tagged(page: &OnPage<'_>, tags: &Tagged) -> Vec<Rectangle> {
     black
 }
 
-/// What is black of a marker: runs of cells, row by row.
+/// Black areas of a marker: runs of cells, row by row.
 fn marker(
     page: &OnPage<'_>,
     id: usize,

@@ -10,19 +10,19 @@ use crate::error::{Error, Result};
 use crate::layout::{Layout, Pattern};
 use crate::spec::Spec;
 
-/// White around the board, in which rulers and words are, millimetres.
+/// White margin around the board for rulers and words, millimetres.
 const MARGIN_MM: f64 = 10.0;
-/// Squares that a printer can draw, millimetres.
+/// Smallest squares that a printer can draw, millimetres.
 const LEAST_MM: f64 = 1.0;
-/// White between loose tags, sides of a tag and millimetres: it holds their names, and a cell of white on each side if they are cut out.
+/// White between loose tags, sides of a tag and millimetres: it contains their names, and a cell of white on each side if they are cut out.
 const APART: f64 = 0.4;
 const APART_MM: f64 = 8.0;
 
 impl Sheet {
-    /// The page of a board, which stands in its middle; of loose tags as many as there is room for, from the first one on.
+    /// The page of a board, which is in its middle; of loose tags as many as fit, from the first one on.
     ///
     /// # Errors
-    /// If the board is larger than the page leaves room for, or has squares below 1 mm.
+    /// If the board is larger than the space on the page, or has squares below 1 mm.
     pub fn new(spec: &Spec, page: &Page) -> Result<Self> {
         let square_mm = spec.square_m() * 1e3;
         if square_mm < LEAST_MM {
@@ -32,7 +32,7 @@ impl Sheet {
         }
         let ways = page.ways().into_iter().map(|size| (layout(spec, size), size));
         let ways = ways.map(|(layout, size)| (rank(&layout, size), layout, size));
-        // Of two that are alike the first: upright.
+        // The first of two equal ones wins: upright.
         let best = ways.reduce(|best, other| if other.0 > best.0 { other } else { best });
         let Some((_, layout, size_mm)) = best.filter(|((_, margin), ..)| *margin >= MARGIN_MM - 1e-6) else {
             return Err(too_large(spec, page));
@@ -56,14 +56,14 @@ impl Sheet {
         svg::written(self)
     }
 
-    /// The page as PDF, which asks viewers to print it unscaled. It is ASCII.
+    /// The page as PDF, which requests unscaled printing. It is ASCII.
     #[must_use]
     pub fn pdf(&self) -> String {
         pdf::written(self)
     }
 }
 
-/// What is drawn on a page of a size.
+/// Layout that is drawn on a page of this size.
 fn layout(spec: &Spec, size_mm: [f64; 2]) -> Layout {
     let mut layout = Layout::new(spec);
     let square_mm = layout.square_m * 1e3;
@@ -73,14 +73,14 @@ fn layout(spec: &Spec, size_mm: [f64; 2]) -> Layout {
     }
     tags.gap = APART.max(APART_MM / square_mm);
     let room = size_mm.map(|it| (it - 2.0 * MARGIN_MM + 1e-6) / square_mm);
-    // A tag and what is below it; beside the last one there is nothing.
+    // A tag and the space below it; beside the last one there is none.
     let fit = |room: f64| (room / (1.0 + tags.gap)).floor().max(1.0) as usize;
     tags.columns = fit(room[0] + tags.gap).min(tags.dictionary.len());
     tags.rows = fit(room[1]).min(tags.dictionary.len() / tags.columns);
     layout
 }
 
-/// What is drawn of a layout, in its squares: the upper left and the lower right corner.
+/// Extent of a layout, in its squares: the upper left and the lower right corner.
 fn extent(layout: &Layout) -> [[f64; 2]; 2] {
     let Pattern::Tags(tags) = &layout.pattern else {
         return [[0.0; 2], layout.squares.map(|it| it as f64)];
@@ -90,7 +90,7 @@ fn extent(layout: &Layout) -> [[f64; 2]; 2] {
     if tags.kalibr { [[1.0 - tags.gap; 2], last] } else { [[1.0; 2], [last[0] - tags.gap, last[1]]] }
 }
 
-/// How well a layout lies on a page: how many points it has there, and the white around it, millimetres.
+/// Rank of a layout on a page: number of its points there, and the white around it, millimetres.
 fn rank(layout: &Layout, size_mm: [f64; 2]) -> (usize, f64) {
     let [from, to] = extent(layout);
     let white = |axis: usize| (size_mm[axis] - (to[axis] - from[axis]) * layout.square_m * 1e3) / 2.0;
@@ -99,7 +99,7 @@ fn rank(layout: &Layout, size_mm: [f64; 2]) -> (usize, f64) {
 
 fn too_large(spec: &Spec, page: &Page) -> Error {
     let mm = |value: f64| decimal(value, 2);
-    // Of loose tags one alone.
+    // A single tag for loose tags.
     let [from, to] = extent(&layout(spec, [0.0; 2]));
     let squares = [0, 1].map(|axis| to[axis] - from[axis]);
     let sides = squares.map(|it| it * spec.square_m() * 1e3);
@@ -107,7 +107,7 @@ fn too_large(spec: &Spec, page: &Page) -> Error {
         ((size[0] - 2.0 * MARGIN_MM) / squares[0]).min((size[1] - 2.0 * MARGIN_MM) / squares[1])
     };
     let most = page.ways().into_iter().map(room).fold(0.0, f64::max);
-    // A tenth of a millimetre, or what a page of a given size leaves to the hair.
+    // A tenth of a millimetre, or exactly the space that a page of a stated size leaves.
     let most = ((most * 10.0 + 1e-6).floor() / 10.0).max(0.0);
     let smaller = if most >= LEAST_MM {
         format!(", or {} of at most {} mm", unit(spec), mm(most))

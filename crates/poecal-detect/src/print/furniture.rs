@@ -1,4 +1,4 @@
-//! What stands around a board on its page: rulers and words, outside one square of white where the page is large enough.
+//! Surroundings of a board on its page: rulers and words, outside one square of white if the page is large enough.
 
 use super::decimal;
 use super::helvetica::{CAPITALS, width};
@@ -7,7 +7,7 @@ use super::words::{described, elsewhere, spans};
 use crate::layout::{Layout, Pattern};
 use crate::spec::Spec;
 
-/// What printers leave white at the edge of the page, millimetres.
+/// Margin that printers leave white at the edge of the page, millimetres.
 const EDGE_MM: f64 = 5.0;
 /// The longest ruler, and the distance of its ticks, millimetres.
 const RULER_MM: f64 = 100.0;
@@ -21,11 +21,11 @@ const NUMBER: f64 = 2.2;
 /// Sizes of words, millimetres, and the distance of lines in sizes.
 const SIZES_MM: [f64; 7] = [3.2, 2.9, 2.6, 2.3, 2.1, 1.9, 1.7];
 const LINE: f64 = 1.25;
-/// The smallest type in which sentences have lines of their own, before they share them.
+/// Smallest type in which sentences have lines of their own, before they share them.
 const ALONE_MM: f64 = 2.3;
 /// Size of the names of tags, millimetres.
 const LABEL_MM: f64 = 2.6;
-/// What is between words on one line.
+/// Separator of words on one line.
 const BETWEEN: &str = "   |   ";
 
 fn line_of(text: String, at_mm: [f64; 2], size_mm: f64, downwards: bool) -> Words {
@@ -33,12 +33,12 @@ fn line_of(text: String, at_mm: [f64; 2], size_mm: f64, downwards: bool) -> Word
     Words { text, at_mm, size_mm, length_mm, downwards }
 }
 
-/// How far from the board what is as deep as this stands: a square, or as far as the page allows.
+/// Distance from the board to an item of this depth: a square, or as far as the page allows.
 fn gap(margin_mm: f64, deep_mm: f64, square_mm: f64) -> f64 {
     square_mm.min(margin_mm - EDGE_MM - deep_mm).max(0.0)
 }
 
-/// The length of a ruler from a place on a side of the page: behind its end stands the unit, in type of this size.
+/// Length of a ruler from a position on a side of the page: the unit follows its end, in type of this size.
 fn length(side_mm: f64, from_mm: f64, type_mm: f64) -> f64 {
     let behind = width("100 mm") * type_mm - width("100") * type_mm / 2.0;
     (((side_mm - EDGE_MM - behind - from_mm) / STEP_MM).floor() * STEP_MM).clamp(0.0, RULER_MM)
@@ -49,14 +49,14 @@ pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (V
     let (mut lines, mut words) = (Vec::new(), Vec::new());
     let [left, upper] = board.from_mm;
     for axis in [0, 1] {
-        // The margin in which it stands is across its direction.
+        // Its margin is across its direction.
         let margin = board.from_mm[1 - axis];
         let unit = ((margin - EDGE_MM) / EDGE_MM).clamp(1.0, 1.5);
         let gap = gap(margin, (TICK + GAP + NUMBER * CAPITALS) * unit, square_mm);
         let begin = board.from_mm[axis];
         let size = NUMBER * unit;
         let long = length(size_mm[axis], begin, size);
-        // From a place along the ruler and one away from the board to the page's.
+        // From coordinates along the ruler and away from the board to those of the page.
         let place = |along: f64, away: f64| match axis {
             0 => [left + along, board.to_mm[1] + gap + away],
             _ => [left - gap - away, upper + along],
@@ -80,7 +80,7 @@ pub(super) fn rulers(size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> (V
     (lines, words)
 }
 
-/// What the board is, above it: as many of the sentences as there is room for, in type as large as fits.
+/// Description of the board, above it: as many of the sentences as fit, in the largest type that fits.
 pub(super) fn texts(spec: &Spec, size_mm: [f64; 2], board: &Rectangle, square_mm: f64) -> Vec<Words> {
     let sentences = [
         described(spec),
@@ -118,8 +118,7 @@ pub(super) fn labels(layout: &Layout, origin_mm: [f64; 2]) -> Vec<Words> {
     (0..tags.columns * tags.rows).map(label).collect()
 }
 
-/// Sentences in lines of a width, together as high as there is room for, and the size of their type: each on its own, else side by side,
-/// else broken.
+/// Sentences in lines of a width, together within a height, and the size of their type: each on its own line, else side by side, else broken.
 fn set(sentences: &[String], wide: f64, room: f64) -> Option<(Vec<String>, f64)> {
     let fits = |lines: &Vec<String>, size: f64| {
         lines.len() as f64 * LINE * size <= room && lines.iter().all(|it| width(it) * size <= wide)
@@ -134,7 +133,7 @@ fn set(sentences: &[String], wide: f64, room: f64) -> Option<(Vec<String>, f64)>
     alone.chain(beside).chain(broken).find(|(lines, size)| fits(lines, *size))
 }
 
-/// Parts in lines, as many on each as there is room for.
+/// Parts in lines, as many on each as fit.
 fn filled(parts: &[&str], between: &str, wide: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in parts {

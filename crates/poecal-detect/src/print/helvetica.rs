@@ -1,4 +1,4 @@
-//! How wide words are in Helvetica.
+//! Width of text in Helvetica.
 
 /// Widths of the characters from the blank to the tilde, thousandths of the size: Adobe's metrics, which every reader of PDF has.
 const WIDTHS: [u16; 95] = [

@@ -1,4 +1,4 @@
-//! What a ruler says of a printed board.
+//! Correction of a printed board by ruler measurements.
 
 use std::str::FromStr;
 
@@ -7,7 +7,7 @@ use super::words::ends;
 use crate::error::{Error, Result};
 use crate::spec::{Spec, length};
 
-/// What a ruler shows on a print along x and along y, between the places that [`Spec::ruled_m`] names: `180.0mm,251.3mm`.
+/// Lengths measured by a ruler on a print along x and along y, between the points that [`Spec::ruled_m`] names: `180.0mm,251.3mm`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Along x and y, metres.
@@ -17,25 +17,25 @@ pub struct Measured {
 /// A board as it was printed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Corrected {
-    /// The board with the squares and markers of the print: those that fit both sides best, to a micrometre.
+    /// The board with the squares and markers of the print: the sizes that fit both sides best, to a micrometre.
     pub spec: Spec,
-    /// How many times as long as stated it is, along x and y.
+    /// Ratio of its printed to its stated length, along x and y.
     pub factors: [f64; 2],
 }
 
-/// Where the sides differ by more than this part, one size of square does not describe the print.
+/// Largest relative difference of the sides for which one size of square describes the print.
 const AGREE: f64 = 0.003;
-/// A print that is so many times as large as stated, or as small, is another board, or was measured otherwise.
+/// Largest ratio of a print to its stated size, or its inverse: beyond it, it is another board, or was measured otherwise.
 const MOST: f64 = 2.0;
 
 impl Corrected {
-    /// Whether one size of square describes the print: its scales along x and y agree within 0.3 %.
+    /// True if one size of square describes the print: its scales along x and y agree within 0.3 %.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.stretch().abs() <= AGREE
     }
 
-    /// By which part the print is longer along x than along y.
+    /// Relative excess of the print's scale along x over that along y.
     #[must_use]
     pub fn stretch(&self) -> f64 {
         self.factors[0] / self.factors[1] - 1.0
@@ -43,10 +43,10 @@ impl Corrected {
 }
 
 impl Measured {
-    /// The board that was measured, of what it was meant to be.
+    /// The measured board, by its intended specification.
     ///
     /// # Errors
-    /// If a side is not about as long as it was meant to be.
+    /// If a side differs too much from its intended length.
     pub fn correct(&self, spec: &Spec) -> Result<Corrected> {
         let stated = spec.ruled_m();
         let mut factors = [1.0; 2];
@@ -61,7 +61,7 @@ impl Measured {
             }
             factors[axis] = factor;
         }
-        // Least squares: a ruler is as wrong on a long side as on a short one.
+        // Least squares: the error of a ruler is the same on a long side and on a short one.
         let [numerator, denominator] = [self.sides_m, stated].map(|it| it[0] * stated[0] + it[1] * stated[1]);
         Ok(Corrected { spec: spec.scaled(numerator / denominator), factors })
     }

@@ -1,7 +1,7 @@
-//! A board on paper, to scale: a page as rectangles, discs and words, written as SVG or PDF, and what a ruler says of the print.
+//! A board on paper, to scale: a page as rectangles, discs and words, written as SVG or PDF, and its correction by ruler measurements.
 //!
-//! A [`Sheet`] is drawn from the [`Layout`](crate::Layout) that the detector finds, so that both agree on which square is dark and where each
-//! marker or dot is.
+//! A [`Sheet`] is drawn from the [`Layout`](crate::Layout) that the detector finds, so that both agree on the dark squares and on the position of
+//! each marker or dot.
 
 mod black;
 mod draw;
@@ -19,7 +19,7 @@ pub use page::Page;
 pub use sheet::{Disc, Rectangle, Sheet, Words};
 pub use words::described;
 
-/// A number with at most so many decimals, without zeros behind them.
+/// A number with at most this many decimals, without trailing zeros.
 fn decimal(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let text = if digits > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };

@@ -7,22 +7,23 @@ use super::decimal;
 use crate::error::{Error, Result};
 use crate::spec::length;
 
-/// A page: `a4`, `a3` and `letter`, which lie as the board does, or `WIDTHxHEIGHT` with a unit, such as `400x300mm`, which is as stated.
+/// A page: `a4`, `a3` and `letter`, whose orientation follows the board, or `WIDTHxHEIGHT` with a unit, such as `400x300mm`, in the stated
+/// orientation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Page {
     size_mm: [f64; 2],
-    /// Whether it may be turned.
+    /// True if it may be turned.
     turns: bool,
 }
 
 /// Pages with names, upright, millimetres.
 const NAMED: [(&str, [f64; 2]); 3] =
     [("a4", [210.0, 297.0]), ("a3", [297.0, 420.0]), ("letter", [215.9, 279.4])];
-/// Sides of a page, millimetres: the largest that a PDF has is 5,080.
+/// Sides of a page, millimetres: the largest in a PDF is 5,080.
 const SIDES_MM: std::ops::RangeInclusive<f64> = 50.0..=5000.0;
 
 impl Page {
-    /// Its ways to lie, width and height in millimetres: one, or two.
+    /// Its permitted orientations, width and height in millimetres: one, or two.
     pub(super) fn ways(&self) -> Vec<[f64; 2]> {
         let [width, height] = self.size_mm;
         if self.turns { vec![[width, height], [height, width]] } else { vec![self.size_mm] }

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use super::decimal;
 use super::sheet::{Disc, Sheet};
 
-/// Points of a millimetre.
+/// Points per millimetre.
 const POINTS: f64 = 72.0 / 25.4;
 
-/// A document of one page, in ASCII. Viewers are asked to print it unscaled.
+/// A document of one page, in ASCII. It requests unscaled printing.
 pub(super) fn written(sheet: &Sheet) -> String {
     let [width, height] = sheet.size_mm.map(|it| decimal(it * POINTS, 5));
     let content = content(sheet);
@@ -39,7 +39,7 @@ pub(super) fn written(sheet: &Sheet) -> String {
     out
 }
 
-/// What is on the page, in millimetres from its upper left corner: y is turned downwards for all of it, and back for words.
+/// Content of the page, in millimetres from its upper left corner: y is turned downwards for all of it, and back for words.
 fn content(sheet: &Sheet) -> String {
     let mm = |value: f64| decimal(value, 5);
     let (scale, height) = (decimal(POINTS, 10), decimal(sheet.size_mm[1] * POINTS, 5));
@@ -52,7 +52,7 @@ fn content(sheet: &Sheet) -> String {
     for it in &sheet.discs {
         outline(&mut out, it);
     }
-    // Filled at once, so that nothing shines through between parts that touch.
+    // Filled at once, so that no light line appears between touching parts.
     out += "f\nBT\n/F1 1 Tf\n";
     for words in &sheet.words {
         let ([x, y], size) = (words.at_mm.map(mm), mm(words.size_mm));
@@ -62,9 +62,9 @@ fn content(sheet: &Sheet) -> String {
     out + "ET"
 }
 
-/// A circle as four curves, which are off it by 0.03 % of its radius at most.
+/// A circle as four curves, which deviate from it by at most 0.03 % of its radius.
 fn outline(out: &mut String, disc: &Disc) {
-    // Where the control points of a quarter are: 4/3 (√2 - 1).
+    // Distance of the control points of a quarter: 4/3 (√2 - 1).
     const PULL: f64 = 0.552_284_749_830_793_4;
     let at = |x: f64, y: f64| {
         let [x, y] = [(x, 0), (y, 1)].map(|(it, axis)| disc.middle_mm[axis] + it * disc.radius_mm);
@@ -72,7 +72,7 @@ fn outline(out: &mut String, disc: &Disc) {
     };
     let _ = writeln!(out, "{} m", at(1.0, 0.0));
     for [x, y] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
-        // A quarter on it is at (-y, x).
+        // A quarter further is at (-y, x).
         let (from, to) = (at(x - PULL * y, y + PULL * x), at(-y + PULL * x, x + PULL * y));
         let _ = writeln!(out, "{from} {to} {} c", at(-y, x));
     }

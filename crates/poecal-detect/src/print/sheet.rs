@@ -1,13 +1,13 @@
-//! What is on a page.
+//! Content of a page.
 
 use crate::layout::Layout;
 
 /// A rectangle, millimetres from the upper left corner of the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// Its upper left corner.
+    /// Upper left corner.
     pub from_mm: [f64; 2],
-    /// Its lower right corner.
+    /// Lower right corner.
     pub to_mm: [f64; 2],
 }
 
@@ -25,13 +25,13 @@ pub struct Disc {
 pub struct Words {
     /// The words, in ASCII.
     pub text: String,
-    /// Where their base line begins.
+    /// Start of their base line.
     pub at_mm: [f64; 2],
     /// Size of the type.
     pub size_mm: f64,
-    /// How long the line is.
+    /// Length of the line.
     pub length_mm: f64,
-    /// Whether they run downwards, read from the right.
+    /// True if they run downwards, to be read from the right.
     pub downwards: bool,
 }
 
@@ -40,37 +40,37 @@ pub struct Words {
 pub struct Sheet {
     /// Width and height of the page, millimetres.
     pub size_mm: [f64; 2],
-    /// What is drawn.
+    /// Title: the drawn board.
     pub title: String,
-    /// The squares of the board together; of dots with a pitch of white around them, of tags with what is between them and below.
+    /// Extent of the squares of the board; for dots with a pitch of white around them, for tags with the space between and below them.
     pub board: Rectangle,
-    /// What is black.
+    /// Black rectangles.
     pub rectangles: Vec<Rectangle>,
-    /// What is black, too.
+    /// Black discs.
     pub discs: Vec<Disc>,
-    /// What is written.
+    /// Words on the page.
     pub words: Vec<Words>,
-    /// What is drawn: of loose tags as many as there is room for.
+    /// Drawn layout: of loose tags as many as fit.
     pub(super) layout: Layout,
-    /// Where the origin of the layout is.
+    /// Origin of the layout on the page.
     pub(super) origin_mm: [f64; 2],
 }
 
 impl Sheet {
-    /// Where a point of the board is on the page, millimetres from its upper left corner: by its number, as of a [`Corner`](crate::Corner).
+    /// Position of a point of the board on the page, millimetres from its upper left corner: by its number, as of a [`Corner`](crate::Corner).
     #[must_use]
     pub fn place_mm(&self, id: usize) -> [f64; 2] {
         placed(&self.layout, self.origin_mm, self.layout.corner(id).into())
     }
 
-    /// How many points there are on the page.
+    /// Number of points on the page.
     #[must_use]
     pub fn points(&self) -> usize {
         self.layout.corners()
     }
 }
 
-/// A place of a layout, in squares, on a page.
+/// Position on a page of a point of a layout in squares.
 pub(super) fn placed(layout: &Layout, origin_mm: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|axis| origin_mm[axis] + place[axis] * layout.square_m * 1e3)
 }

@@ -8,7 +8,7 @@ use super::sheet::Sheet;
 /// Decimals of millimetres.
 const DIGITS: usize = 4;
 
-/// The page in millimetres. What is black is one path, so that nothing shines through between parts that touch.
+/// The page in millimetres. Black areas are one path, so that no light line appears between touching parts.
 pub(super) fn written(sheet: &Sheet) -> String {
     let mm = |value: f64| decimal(value, DIGITS);
     let [width, height] = sheet.size_mm.map(mm);

@@ -3,7 +3,7 @@
 use super::decimal;
 use crate::spec::{AprilGrid, Charuco, Chessboard, Circles, Spec, Tags};
 
-/// What a board is, in words: `ChArUco board, 5 columns by 7 rows of 36 mm squares, …`.
+/// Description of a board: `ChArUco board, 5 columns by 7 rows of 36 mm squares, …`.
 #[must_use]
 pub fn described(spec: &Spec) -> String {
     let mm = |length_m: f64| decimal(length_m * 1e3, 3);
@@ -33,7 +33,7 @@ pub fn described(spec: &Spec) -> String {
     }
 }
 
-/// How other programs name the board: OpenCV in functions that number its points as here, Kalibr in its file of a target.
+/// Names of the board in other programs: OpenCV in functions that number its points as here, Kalibr in its target file.
 pub(super) fn elsewhere(spec: &Spec) -> String {
     let mm = |length_m: f64| decimal(length_m * 1e3, 3);
     match spec {
@@ -66,7 +66,7 @@ pub(super) fn elsewhere(spec: &Spec) -> String {
     }
 }
 
-/// What a ruler has to show between which places of the print, along x and along y.
+/// Lengths that a ruler must show on the print, and their end points, along x and along y.
 pub(super) fn spans(spec: &Spec) -> String {
     let [across, along] = spec.ruled_m().map(|it| decimal(it * 1e3, 2));
     match spec {
@@ -79,7 +79,7 @@ pub(super) fn spans(spec: &Spec) -> String {
     }
 }
 
-/// The same places, as a refusal names them.
+/// The same end points, as named by a refusal.
 pub(super) fn ends(spec: &Spec) -> &'static str {
     match spec {
         Spec::Chessboard(_) | Spec::Charuco(_) => {
@@ -95,7 +95,7 @@ pub(super) fn ends(spec: &Spec) -> &'static str {
     }
 }
 
-/// What a length in the spec is the side of, or the distance between.
+/// Items whose side or distance is the length in the specification.
 pub(super) fn unit(spec: &Spec) -> &'static str {
     match spec {
         Spec::Chessboard(_) | Spec::Charuco(_) => "squares",

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::layout::{Layout, Pattern, Tagged};
 
-/// What is not the board.
+/// Background beside the board.
 pub(super) const BEHIND: i8 = 0;
 /// Ink.
 pub(super) const DARK: i8 = 1;
@@ -14,16 +14,16 @@ pub(super) const LIGHT: i8 = 2;
 /// White paper around the squares, squares.
 const PAPER: f64 = 0.5;
 
-/// The shades of a board at places in squares.
+/// The shades of a board at positions in squares.
 pub(super) struct Shades {
     squares: [usize; 2],
     first_dark: bool,
     /// Side of a marker in squares, and cells along it.
     marker: f64,
     cells: usize,
-    /// The cells of the markers of all squares: whether they are dark.
+    /// Marks of the dark cells of the markers of all squares.
     dark: Vec<Option<Vec<bool>>>,
-    /// Radius of dots, squares, and whether they are on every second corner.
+    /// Radius of dots, squares, and true if they are on every second corner.
     dots: Option<(f64, bool)>,
     tags: Option<Tagged>,
 }
@@ -52,7 +52,7 @@ impl Shades {
             let Some([column, row]) = layout.square_of(id) else { continue };
             let cell = |at: usize| {
                 let (x, y) = (at % shades.cells, at / shades.cells);
-                // Cell 0 is border: `is_black` of what is outside is black.
+                // Cell 0 is border: `is_black` is true for cells outside.
                 dictionary.is_black(id, x.wrapping_sub(1), y.wrapping_sub(1))
             };
             shades.dark[row * columns + column] = Some((0..shades.cells * shades.cells).map(cell).collect());
@@ -60,7 +60,7 @@ impl Shades {
         shades
     }
 
-    /// The shade at a place.
+    /// The shade at a position.
     pub(super) fn at(&self, place: Vector2<f64>) -> i8 {
         let [width, height] = self.squares.map(|it| it as f64);
         let off = |value: f64, size: f64| (-value).max(value - size);
@@ -87,11 +87,11 @@ impl Shades {
         if cells[y as usize * self.cells + x as usize] { DARK } else { LIGHT }
     }
 
-    /// Whether a place is within a dot.
+    /// True if a point is within a dot.
     fn is_dot(&self, place: Vector2<f64>, radius: f64, asymmetric: bool) -> bool {
         let [columns, rows] = self.squares.map(|it| it as f64 - 1.0);
         [place.y.floor(), place.y.ceil()].into_iter().filter(|row| (1.0..=rows).contains(row)).any(|row| {
-            // Before the first dot of the row, and from dot to dot.
+            // Distance of the first dot of the row, and step from dot to dot.
             let (first, step) = if asymmetric { (1.0 + (row - 1.0) % 2.0, 2.0) } else { (1.0, 1.0) };
             let last = first + columns - step;
             let column = (first + ((place.x - first) / step).round() * step).clamp(first, last);
@@ -100,18 +100,18 @@ impl Shades {
     }
 }
 
-/// Whether a place is dark, in sides of a tag from the upper left one.
+/// True if a point is dark, in sides of a tag from the upper left one.
 fn is_tag(tags: &Tagged, place: Vector2<f64>) -> bool {
     let pitch = 1.0 + tags.gap;
     let at = |value: f64, count: usize| {
-        // Number of the tag, and place on it or in the gap after it.
+        // Number of the tag, and position on it or in the gap after it.
         let number = (value / pitch).floor().clamp(-1.0, count as f64);
         (number, value - number * pitch)
     };
     let ((column, x), (row, y)) = (at(place.x, tags.columns), at(place.y, tags.rows));
     let inside = |number: f64, count: usize| number >= 0.0 && number < count as f64;
     if x >= 1.0 && y >= 1.0 {
-        // Between four tags, and outside of the last ones.
+        // Dark between four tags, and outside the last ones.
         let near = |number: f64, own: f64, count: usize| number < count as f64 && own < pitch;
         return tags.kalibr && near(column, x, tags.columns) && near(row, y, tags.rows);
     }

@@ -16,7 +16,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Where a point in the camera's frame is seen; `None` behind it, or so far from the axis that the distortion folds.
+    /// Pixel of a point in the camera's frame; `None` behind the camera, or so far from the axis that the distortion folds.
     #[must_use]
     pub fn project(&self, point: &Vector3<f64>) -> Option<Vector2<f64>> {
         let plane = point.xy() / point.z;
@@ -34,7 +34,7 @@ impl Camera {
         ))
     }
 
-    /// The ray of a place in the picture, with z = 1.
+    /// The ray of a pixel, with z = 1.
     #[must_use]
     pub fn ray(&self, place_px: Vector2<f64>) -> Vector3<f64> {
         let seen = Vector2::new(
@@ -74,7 +74,7 @@ mod tests {
             worst = worst.max((camera.project(&camera.ray(place)).unwrap() - place).norm());
         }
         println!("worst {worst:.1e} px");
-        // Newton's method has converged: what is left is rounding.
+        // Newton's method has converged: the rest is rounding.
         assert!(worst < 1e-9);
     }
 }

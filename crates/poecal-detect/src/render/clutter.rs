@@ -1,11 +1,11 @@
-//! Pictures of what is no board.
+//! Pictures without a board.
 
 use nalgebra::Vector2;
 
 use super::random::Random;
 use crate::gray::Gray;
 
-/// A background of a workshop: a slope of light with bars, discs, stripes, labels and tiles in all sizes, without blur and noise.
+/// A background of a workshop: a gradient of light with bars, discs, stripes, labels and tiles in all sizes, without blur and noise.
 #[must_use]
 pub fn clutter([width, height]: [usize; 2], random: &mut Random) -> Gray {
     let (left, right, lower) =
@@ -23,7 +23,7 @@ pub fn clutter([width, height]: [usize; 2], random: &mut Random) -> Gray {
     picture
 }
 
-/// What is painted inside of a turned rectangle.
+/// Pattern inside a turned rectangle.
 enum Fill {
     Plain,
     Disc,

@@ -6,7 +6,7 @@ use super::{Camera, Patch, Random, Scene, True, clutter};
 use crate::gray::Gray;
 use crate::layout::Layout;
 
-/// What random scenes have: 1920 × 1200 pixels, and ranges of blur, noise, tilt and distance.
+/// Parameters of random scenes: 1920 × 1200 pixels, and ranges of blur, noise, tilt and distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draw {
     /// The camera.
@@ -17,11 +17,11 @@ pub struct Draw {
     pub noise: [f64; 2],
     /// Angle between the board's normal and the line of sight, degrees.
     pub tilt_deg: [f64; 2],
-    /// Pixels of a square that is seen straight.
+    /// Pixels of a square seen from the front.
     pub square_px: [f64; 2],
     /// Gray levels from dark to light.
     pub contrast: [f64; 2],
-    /// Each so many a part is covered; 0: never.
+    /// Interval of scenes with a covered part; 0: never.
     pub covered_each: usize,
 }
 
@@ -52,14 +52,14 @@ pub struct Drawn {
     pub scene: Scene,
     /// Its picture.
     pub picture: Gray,
-    /// Where the corners are.
+    /// True positions of the corners.
     pub truth: Vec<True>,
     /// Angle between the board's normal and the line of sight, degrees.
     pub tilt_deg: f64,
 }
 
 impl Draw {
-    /// The scene with a number, of a seed.
+    /// The scene with a number, for a seed.
     #[must_use]
     pub fn scene(&self, layout: &Layout, seed: u64, number: usize) -> Drawn {
         let mut random = Random::new(seed ^ (number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
@@ -87,7 +87,7 @@ impl Draw {
         Drawn { truth: scene.truth(layout), picture, scene, tilt_deg }
     }
 
-    /// A pose that has the whole board in the picture, or, if there is none, most of it.
+    /// A pose with the whole board in the picture, or, if there is none, most of it.
     fn pose(
         &self,
         layout: &Layout,
@@ -107,7 +107,7 @@ impl Draw {
             let [width, height] = self.camera.size.map(|it| it as f64);
             let place = Vector2::new(random.uniform(0.25, 0.75) * width, random.uniform(0.25, 0.75) * height);
             let ray = self.camera.ray(place);
-            // The board is tilted against its own line of sight.
+            // The tilt of the board is relative to its own line of sight.
             let sight = Rotation3::rotation_between(&Vector3::z(), &ray).unwrap_or_default();
             let rotation = (sight * tilt * roll).into_inner();
             let translation = ray * far_m - rotation * middle;
@@ -122,7 +122,7 @@ impl Draw {
         (best.1, best.2)
     }
 
-    /// How many of the outer corners of the board, and its inner ones, are outside of the picture.
+    /// Number of the outer corners of the board, and of its inner ones, outside the picture.
     fn outside(&self, layout: &Layout, rotation: &Matrix3<f64>, translation: &Vector3<f64>) -> usize {
         let [columns, rows] = layout.squares;
         let all = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
@@ -137,7 +137,7 @@ impl Draw {
     }
 }
 
-/// What covers a part of the board: about a quarter of its size, at a corner of the grid.
+/// Patch that covers a part of the board: about a quarter of its size, at a corner of the grid.
 fn patch(truth: &[True], random: &mut Random) -> Patch {
     let places: Vec<Vector2<f64>> = truth.iter().map(|it| it.place_px).collect();
     let middle = places.iter().sum::<Vector2<f64>>() / places.len().max(1) as f64;

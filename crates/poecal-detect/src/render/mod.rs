@@ -1,7 +1,7 @@
 //! Pictures of boards as a camera would take them, with the truth: for tests, and to plan a session.
 //!
-//! A pixel is the mean light on its area (8 × 8 samples where the board has an edge), blurred by a Gaussian, with noise, and rounded to a whole
-//! level as a camera does.
+//! A pixel is the mean light on its area (8 × 8 samples at edges of the board), blurred by a Gaussian, with noise, and rounded to an integer level as
+//! in a camera.
 
 mod board;
 mod camera;
@@ -20,28 +20,28 @@ use crate::gray::Gray;
 use crate::layout::Layout;
 use board::Shades;
 
-/// What is in front of a camera, and how it takes the picture.
+/// Scene before a camera, and the camera's properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The camera.
     pub camera: Camera,
-    /// From the board's axes (x along columns, y along rows, origin at the first inner corner) to the camera's.
+    /// Rotation from the board's axes (x along columns, y along rows, origin at the first inner corner) to the camera's.
     pub rotation: Matrix3<f64>,
     /// The first inner corner in the camera's frame, metres.
     pub translation_m: Vector3<f64>,
     /// Levels of dark and light squares.
     pub levels: [f64; 2],
-    /// How much lighter the right and the lower border are than the middle, as a part.
+    /// Relative excess of the light at the right and the lower border over that in the middle.
     pub gradient: [f64; 2],
     /// Standard deviation of the Gaussian blur, pixels.
     pub blur_px: f64,
     /// Standard deviation of the noise of a pixel, gray levels.
     pub noise: f64,
-    /// What covers a part of the board.
+    /// Patch that covers a part of the board.
     pub patch: Option<Patch>,
 }
 
-/// A rectangle in the picture that covers what is behind it.
+/// A rectangle in the picture that covers its background.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// Its middle, pixels.
@@ -55,7 +55,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Whether it covers a place, or comes as near.
+    /// True if it covers a point, or is within this margin of it.
     #[must_use]
     pub fn covers(&self, place: Vector2<f64>, margin_px: f64) -> bool {
         let (sin, cos) = self.turn_rad.sin_cos();
@@ -65,24 +65,24 @@ impl Patch {
     }
 }
 
-/// Where a corner, or the middle of a dot, is in truth.
+/// True position of a corner, or of the middle of a dot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct True {
-    /// Its id.
+    /// Number of the point.
     pub id: usize,
-    /// Its place, pixels.
+    /// Position, pixels.
     pub place_px: Vector2<f64>,
-    /// Whether it, and all of a dot, is in the picture and not covered, with [`SEEN_PX`] around it.
+    /// True if it, and all of a dot, is in the picture and not covered, with [`SEEN_PX`] around it.
     pub visible: bool,
 }
 
-/// How much of its surroundings must be seen of a visible corner, pixels to each side.
+/// Size of the surroundings of a visible corner that must be seen, pixels to each side.
 pub const SEEN_PX: f64 = 5.0;
 /// Samples along a side of a pixel at an edge.
 const SAMPLES: usize = 8;
 
 impl Scene {
-    /// Where the inner corners or the dots are in the picture.
+    /// Positions of the inner corners or the dots in the picture.
     #[must_use]
     pub fn truth(&self, layout: &Layout) -> Vec<True> {
         let [width, height] = self.camera.size.map(|it| it as f64 - 1.0);
@@ -92,7 +92,7 @@ impl Scene {
                 let at = (layout.corner(id) - Vector2::new(1.0, 1.0)) * layout.square_m;
                 let point = self.rotation * Vector3::new(at.x, at.y, 0.0) + self.translation_m;
                 let place_px = self.camera.project(&point)?;
-                // Of a dot all has to be seen.
+                // A dot counts as visible only as a whole.
                 let beside = [[1.0, 0.0], [0.0, 1.0]]
                     .map(|it| self.rotation * Vector3::new(it[0], it[1], 0.0) * dot_m);
                 let reach_px =
@@ -123,7 +123,7 @@ impl Scene {
         finished(picture, self.blur_px, self.noise, random)
     }
 
-    /// Places on the board, squares, of the corners of all pixels.
+    /// Positions on the board, squares, of the corners of all pixels.
     fn lattice(&self, layout: &Layout) -> Vec<Vector2<f64>> {
         let [width, height] = self.camera.size;
         let back = self.rotation.transpose();
@@ -147,7 +147,7 @@ impl Scene {
         (0..(width + 1) * (height + 1)).map(corner).collect()
     }
 
-    /// What the board, with its paper, is within of the picture: of points along its outline. Everything, if one of them is not seen.
+    /// Bounding box of the board, with its paper, in the picture: from points along its outline. The whole picture, if one of them is not visible.
     fn around(&self, layout: &Layout) -> [Vector2<f64>; 2] {
         const STEPS: usize = 24;
         let [columns, rows] = layout.squares.map(|it| it as f64 + 2.0);
@@ -223,7 +223,7 @@ impl Scene {
     }
 }
 
-/// A picture with blur and noise, in whole levels.
+/// A picture with blur and noise, in integer levels.
 #[must_use]
 pub fn finished(mut picture: Gray, blur_px: f64, noise: f64, random: &mut Random) -> Gray {
     picture = picture.blurred(blur_px, 4.0);

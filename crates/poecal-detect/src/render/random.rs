@@ -1,4 +1,4 @@
-//! Random numbers of a seed.
+//! Random numbers from a seed.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -10,7 +10,7 @@ pub struct Random {
 }
 
 impl Random {
-    /// Those of a seed.
+    /// Generator of a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Random { generator: ChaCha8Rng::seed_from_u64(seed) }
@@ -22,7 +22,7 @@ impl Random {
         from + (to - from) * part
     }
 
-    /// A whole number below another.
+    /// An integer below another.
     pub fn below(&mut self, limit: usize) -> usize {
         (self.uniform(0.0, limit as f64) as usize).min(limit.saturating_sub(1))
     }

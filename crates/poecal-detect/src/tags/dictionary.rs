@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 pub struct Dictionary {
     name: &'static str,
     bits: usize,
-    /// Wrong bits that its markers bear without being taken for one another.
+    /// Wrong bits with which its markers are still distinguished.
     correctable: u32,
     codes: Arc<[u64]>,
 }
@@ -47,7 +47,7 @@ impl Dictionary {
     /// The dictionary with a name, in any case, with or without `DICT_` or `DICT_APRILTAG_`.
     ///
     /// # Errors
-    /// If there is none, with the names that there are.
+    /// If there is none, with the known names.
     pub fn named(name: &str) -> Result<Self> {
         let same = |known: &str| {
             known.eq_ignore_ascii_case(name)
@@ -74,7 +74,7 @@ impl Dictionary {
         Some(Dictionary { name, bits, correctable: *correctable, codes })
     }
 
-    /// Of dictionaries with the same markers in the beginning the smallest one that has so many.
+    /// The smallest sufficient dictionary of each set with the same initial markers.
     #[must_use]
     pub fn smallest(markers: usize) -> Vec<Self> {
         let mut all: Vec<Dictionary> = KNOWN.iter().filter_map(Dictionary::read).collect();
@@ -89,24 +89,24 @@ impl Dictionary {
         smallest
     }
 
-    /// Whether another one has the same markers in the beginning.
+    /// True if another one has the same initial markers.
     pub(crate) fn is_alike(&self, other: &Self) -> bool {
         self.bits == other.bits && self.codes.first() == other.codes.first()
     }
 
-    /// Its name.
+    /// Name of the dictionary.
     #[must_use]
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// How many markers it has.
+    /// Number of its markers.
     #[must_use]
     pub fn len(&self) -> usize {
         self.codes.len()
     }
 
-    /// Whether it has no markers, which none is.
+    /// True if it has no markers, which none is.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.codes.is_empty()
@@ -118,7 +118,7 @@ impl Dictionary {
         self.bits
     }
 
-    /// Whether the cell of a marker is black; cells count from its upper left one, without the border. What is outside is border: black.
+    /// True if the cell of a marker is black; cells count from its upper left one, without the border. Cells outside are border: black.
     #[must_use]
     pub fn is_black(&self, id: usize, column: usize, row: usize) -> bool {
         if column >= self.bits || row >= self.bits {
@@ -127,10 +127,9 @@ impl Dictionary {
         self.codes.get(id).is_none_or(|code| code >> (row * self.bits + column) & 1 == 1)
     }
 
-    /// The marker that a code is, with few wrong bits, and by how many quarter turns clockwise it is turned, and
-    /// how many bits are wrong.
+    /// The marker of a code with few wrong bits, the number of quarter turns clockwise by which it is turned, and the number of wrong bits.
     pub(crate) fn find(&self, code: u64) -> Option<(usize, usize, u32)> {
-        // Half of what the dictionary bears: a marker is found beside others, and a wrong one costs more than a missing one.
+        // Half of the correctable bits: a marker is found beside others, and a wrong one costs more than a missing one.
         let most = self.correctable.div_ceil(2).min(2);
         let mut back = code;
         let mut best = (most + 1, 0, 0);
@@ -150,7 +149,7 @@ impl Dictionary {
 /// A code a quarter turn anticlockwise.
 fn turned_back(code: u64, bits: usize) -> u64 {
     let bit = |column: usize, row: usize| code >> (row * bits + column) & 1;
-    // What is in the last column comes to the first row.
+    // The last column becomes the first row.
     let cells = (0..bits * bits).map(|at| (at, bit(bits - 1 - at / bits, at % bits)));
     cells.fold(0, |turned, (at, value)| turned | value << at)
 }
@@ -167,7 +166,7 @@ mod tests {
                 let mut code = dictionary.codes[id];
                 for turns in 0..4 {
                     assert_eq!(dictionary.find(code), Some((id, turns, 0)), "{}", dictionary.name());
-                    // Three quarter turns back are one on.
+                    // Three quarter turns back are one forward.
                     for _ in 0..3 {
                         code = turned_back(code, bits);
                     }

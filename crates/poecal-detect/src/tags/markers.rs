@@ -1,4 +1,4 @@
-//! Markers: what a quadrangle says.
+//! Markers: the code of a quadrangle.
 
 use nalgebra::Vector2;
 
@@ -11,9 +11,9 @@ use crate::quads::Quad;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Marker {
     pub(crate) id: usize,
-    /// Its corners, clockwise from the upper left one of the marker as it is printed.
+    /// Its corners, clockwise from the upper left one of the printed marker.
     pub(crate) corners: Quad,
-    /// Whether all its bits are right.
+    /// True if all its bits are right.
     pub(crate) exact: bool,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct Reader {
 
 /// Least difference of light and dark, gray levels.
 const LEAST_CONTRAST: f64 = 6.0;
-/// Part of the cells of the border that have to be dark.
+/// Share of the cells of the border that must be dark.
 const DARK_BORDER: f64 = 0.9;
 
 impl Reader {
@@ -34,12 +34,12 @@ impl Reader {
         Reader { dictionary: dictionary.clone(), border: 1 }
     }
 
-    /// One of markers with a border of so many cells.
+    /// A reader of markers with a border of this number of cells.
     pub(crate) fn with_border(dictionary: &Dictionary, border: usize) -> Self {
         Reader { dictionary: dictionary.clone(), border }
     }
 
-    /// The marker of a quadrangle, whichever way it is turned.
+    /// The marker of a quadrangle, in any orientation.
     pub(crate) fn read(&self, gray: &Gray, quad: &Quad) -> Option<Marker> {
         let code = code(gray, quad, self.dictionary.bits(), self.border)?;
         let (id, turns, wrong) = self.dictionary.find(code)?;
@@ -48,7 +48,7 @@ impl Reader {
     }
 }
 
-/// The bits inside of a quadrangle with a dark border, black as 1, row by row.
+/// The bits inside a quadrangle with a dark border, black as 1, row by row.
 fn code(gray: &Gray, quad: &Quad, bits: usize, border: usize) -> Option<u64> {
     let cells = bits + 2 * border;
     let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vector2::from);
@@ -86,7 +86,7 @@ fn cell(gray: &Gray, to_picture: &Homography, [column, row]: [usize; 2], cells: 
     Some(sum / 9.0)
 }
 
-/// The level between dark and light that parts levels best (Otsu), if they are far enough apart.
+/// Threshold between dark and light that separates levels best (Otsu's method), if they are far enough apart.
 fn split(levels: &[f64]) -> Option<f64> {
     let mut sorted = levels.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! Loose tags: each marker that is read, with its four corners.
+//! Loose tags: each read marker, with its four corners.
 
 pub(crate) mod dictionary;
 pub(crate) mod markers;
@@ -18,7 +18,7 @@ use crate::patch::Cells;
 use crate::quads::{Quad, quads};
 use crate::tagfit::{Fitted, fit};
 
-/// Bits below which a code with a wrong bit is none: too many quadrangles look like one.
+/// Bits below which a code with a wrong bit is rejected: too many quadrangles resemble one.
 const FEW_BITS: usize = 6;
 /// Bits up to which clutter has codes without a wrong bit.
 const FEWEST_BITS: usize = 4;
@@ -33,7 +33,7 @@ pub(crate) fn detect(
     of_quads(gray, (dictionary, reader), noise, &quads(gray, noise))
 }
 
-/// The same of quadrangles that were found.
+/// Finds the tags in detected quadrangles.
 pub(crate) fn of_quads(
     gray: &Gray,
     (dictionary, reader): (&Dictionary, &Reader),
@@ -51,7 +51,7 @@ pub(crate) fn of_quads(
         let is_tag = |it: &Fitted| dictionary.bits() > FEWEST_BITS || it.is_evident();
         tags.extend(fitted.filter(is_tag).map(|it| (marker.id, it)));
     }
-    // A tag that is there twice is none: nobody knows which is meant.
+    // A tag that appears twice is rejected as ambiguous.
     let once = |id: usize| tags.iter().filter(|it| it.0 == id).count() == 1;
     let kept = tags.iter().filter(|it| once(it.0));
     let corner = |(id, tag): &(usize, Fitted), k: usize| Corner {
@@ -76,7 +76,7 @@ fn middle(quad: &[Vector2<f64>; 4]) -> Vector2<f64> {
 
 fn cells(dictionary: &Dictionary, marker: &Marker) -> Cells {
     let side = dictionary.bits() + 2;
-    // `is_black` of what is outside is black.
+    // `is_black` is true for cells outside.
     let cell =
         |at: usize| dictionary.is_black(marker.id, (at % side).wrapping_sub(1), (at / side).wrapping_sub(1));
     Cells { side, dark: (0..side * side).map(cell).collect() }

@@ -15,7 +15,7 @@ const AROUND: f64 = 6.0;
 /// Most pixels around a tag.
 const MOST: f64 = 2e6;
 
-/// The cells of a tag with its border, row by row: whether they are dark.
+/// Cells of a tag with its border, row by row; dark ones are marked.
 pub(crate) struct Cells {
     pub(crate) side: usize,
     pub(crate) dark: Vec<bool>,
@@ -63,7 +63,7 @@ pub(crate) struct Patch {
     pub(crate) variance: f64,
 }
 
-/// A model in a patch: the light of pixels, their places on the tag, and 1 for each that counts, 0 for others.
+/// A model in a patch: the light of pixels, their positions on the tag, and 1 for used pixels, 0 for others.
 #[derive(Clone)]
 pub(crate) struct Seen {
     pub(crate) shade: Vec<f32>,
@@ -92,7 +92,7 @@ impl Patch {
         Some(Patch { first, size, levels, middle, variance: noise * noise })
     }
 
-    /// The first pixel, from the middle.
+    /// The first pixel, relative to the middle.
     pub(crate) fn first_offset(&self) -> [f32; 2] {
         [self.first[0] as f64 - self.middle.x, self.first[1] as f64 - self.middle.y].map(|it| it as f32)
     }
@@ -112,7 +112,7 @@ impl Patch {
         Some(seen)
     }
 
-    /// The same without blur.
+    /// The light without blur.
     #[inline(always)]
     fn sharp(&self, model: &Model, bent: &Bent, cells: &Cells) -> Seen {
         let ([width, height], first) = (self.size, self.first_offset());
@@ -132,7 +132,7 @@ impl Patch {
                     beyond[k] = if is_there { off } else { 1.0 };
                     ([own[0][k], own[1][k]], [half[0][k], half[1][k]]) = (at, spread);
                 }
-                // A cell farther off than the pixel is wide has one shade.
+                // A cell farther from the edge than the width of a pixel has one shade.
                 let mut shade = [1.0; LANES];
                 let count = (columns.end - column).min(LANES);
                 for k in (0..count).filter(|k| beyond[*k] < 0.3) {

@@ -1,4 +1,4 @@
-//! Dark quadrangles on light ground: where markers may be.
+//! Dark quadrangles on light ground: candidates for markers.
 
 use nalgebra::Vector2;
 
@@ -11,21 +11,21 @@ pub(crate) type Quad = [Vector2<f64>; 4];
 /// Shortest side, pixels.
 const SHORTEST_PX: f64 = 9.0;
 
-/// Most half pixels to each side of a line in which an edge is sought, and how many to each side its light falls over.
+/// Half pixels to each side of a line in which an edge is searched for, and half the width over which its step of light is measured.
 const STEPS: usize = 8;
 const ASIDE: usize = 2;
 
-/// Dark quadrangles. Windows of two sizes tell dark from light.
+/// Dark quadrangles. Windows of two sizes separate dark from light.
 pub(crate) fn quads(gray: &Gray, noise: f64) -> Vec<Quad> {
     of_limits(gray, &[(0.8 * noise).max(2.0)], noise)
 }
 
-/// Dark quadrangles that may touch others with their corners: darker limits part them.
+/// Dark quadrangles that may touch others with their corners: darker thresholds separate them.
 pub(crate) fn quads_apart(gray: &Gray, noise: f64) -> Vec<Quad> {
     of_limits(gray, &[(0.8 * noise).max(2.0), 8.0_f64.max(noise), 22.0, 45.0], noise)
 }
 
-/// Those darker by some limits than the mean around them.
+/// Quadrangles darker by some thresholds than the surrounding mean.
 fn of_limits(gray: &Gray, limits: &[f64], noise: f64) -> Vec<Quad> {
     let shades = Shades::new(gray, noise);
     let longest = gray.width().max(gray.height());
@@ -73,7 +73,7 @@ fn area(points: &[Vector2<f64>]) -> f64 {
     points.iter().zip(next).map(|(a, b)| cross(*a, *b)).sum()
 }
 
-/// The quadrangle that an outline is, if it is nearly one: the largest one within its hull.
+/// The quadrangle of an outline, if it is nearly one: the largest one within its hull.
 fn quad_of(outline: &[Vector2<f64>]) -> Option<Quad> {
     let hull = hull(outline);
     let count = hull.len();
@@ -87,7 +87,7 @@ fn quad_of(outline: &[Vector2<f64>]) -> Option<Quad> {
         for third in first + 2..count {
             let across = hull[third] - hull[first];
             let off = |at: usize| cross(across, hull[at % count] - hull[first]);
-            // The farthest on each side moves on with the diagonal.
+            // The farthest point on each side moves on with the diagonal.
             while second + 1 < third && off(second + 1) < off(second) {
                 second += 1;
             }
@@ -128,7 +128,7 @@ fn on_edges(gray: &Gray, quad: &Quad) -> Option<Quad> {
     (area(&found) > 0.0).then_some(found)
 }
 
-/// A point on the edge beside the line from one corner to the next, and its direction: where light falls to dark most, fitted.
+/// A point on the edge beside the line from one corner to the next, and its direction: a fit to the steepest steps from light to dark.
 fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f64>, Vector2<f64>)> {
     let length = (to - from).norm();
     let along = (to - from) / length;
@@ -165,7 +165,7 @@ fn edge(gray: &Gray, from: Vector2<f64>, to: Vector2<f64>) -> Option<(Vector2<f6
     line(&points, along)
 }
 
-/// The line through weighted points, twice: the second time without those far off.
+/// The line through weighted points, fitted twice: the second time without distant points.
 fn line(points: &[(Vector2<f64>, f64)], along: Vector2<f64>) -> Option<(Vector2<f64>, Vector2<f64>)> {
     let mut kept = points.to_vec();
     let mut found = None;

@@ -1,7 +1,7 @@
-//! The corners of a tag whose cells are known: all of it fitted to the picture.
+//! The corners of a tag with known cells: the whole tag is fitted to the picture.
 //!
-//! The model is the tag seen through a homography, bent a little as a lens bends it, blurred, with a slope of the light. Every edge between cells
-//! tells of the corners, not only the four sides; an edge beside another one within the blur does no harm, as the model has both.
+//! The model is the tag seen through a homography, slightly bent as by a lens, blurred, with a gradient of the light. Every edge between cells
+//! contributes to the corners, not only the four sides. An edge beside another one within the blur causes no bias, as the model has both.
 
 use nalgebra::SMatrix;
 
@@ -12,49 +12,49 @@ use crate::quads::Quad;
 use crate::tagmodel::{Model, UNKNOWNS, Unknowns, bent};
 use crate::vector::vectorized;
 
-/// A tag that was fitted.
+/// A fitted tag.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fitted {
     pub(crate) corners: Quad,
     /// Standard deviation of each coordinate of each corner, pixels.
     pub(crate) sigma_px: [f64; 4],
     pub(crate) blur_px: f64,
-    /// Part of the contrast that the model leaves beyond the noise.
+    /// Residual of the model beyond the noise, as a part of the contrast.
     misfit: f64,
-    /// Part of the pixels that nothing covers.
+    /// Share of the pixels that are not covered.
     bare: f64,
 }
 
 impl Fitted {
-    /// Whether it looks like nothing but a tag: what a code with so few bits that clutter has it needs beside the code.
+    /// True if only a tag explains it: a requirement beside the code for dictionaries with so few bits that clutter contains codes.
     pub(crate) fn is_evident(&self) -> bool {
         self.misfit < CLEAR && self.bare > BARE
     }
 }
 
-/// Those of the shape, which are first, and of the shades.
+/// Number of the unknowns of the shape, which are first, and of the shades.
 const SHAPE: usize = 11;
 const SHADES: usize = UNKNOWNS - SHAPE;
 
-/// Standard deviation of the bend before, 1 / pixels: a lens with a strong distortion near its border.
+/// Prior standard deviation of the bend, 1 / pixels: a lens with a strong distortion near its border.
 const BEND: f64 = 1e-4;
-/// Largest part of the contrast that the model may leave beyond the noise.
+/// Largest residual of the model beyond the noise, as a part of the contrast.
 const MISFIT: f64 = 0.25;
-/// The same of a tag that is evident, and the least part of its pixels that nothing covers. Of 203 drawn tags all but one leave 0.012 and cover
-/// nothing; what has a code by chance, in four of 1,000 pictures of clutter, leaves more or is covered more.
+/// Largest residual of an evident tag, and the least share of its pixels that are not covered. All of 203 drawn tags except one have 0.012 and
+/// nothing covered. Clutter with a code by chance, in four of 1,000 pictures, has a larger residual or is covered more.
 const CLEAR: f64 = 0.06;
 const BARE: f64 = 0.98;
-/// The least part of the pixels of any tag that nothing covers; and of one that is not clear, some of whose corners are covered, too, and off.
+/// Least share of uncovered pixels of any tag; and of a tag that is not clear, some of whose corners are covered too, and inaccurate.
 const PART: f64 = 0.95;
 const MOST_OF_IT: f64 = 0.99;
-/// What no fit is better than, pixels: uneven ink, paper that is not flat.
+/// Floor of the standard deviation, pixels: uneven ink, paper that is not flat.
 const FLOOR_PX: f64 = 0.012;
-/// Least certain corner that counts, pixels.
+/// Largest standard deviation of an accepted corner, pixels.
 const WORST_PX: f64 = 0.5;
-/// Round after which pixels that something covers count no more. The first finds the shades.
+/// Round after which covered pixels are excluded. The first finds the shades.
 const LIMITED: usize = 2;
 
-/// Fits a tag near where a quadrangle is. `None` if the picture has none there.
+/// Fits a tag near a quadrangle. `None` if there is no tag.
 pub(crate) fn fit(gray: &Gray, cells: &Cells, quad: &Quad, noise: f64) -> Option<Fitted> {
     let patch = Patch::new(gray, quad, noise)?;
     let mut model = Model::start(*quad);
@@ -93,7 +93,7 @@ struct Sums {
     normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     right: Unknowns,
     squares: f64,
-    /// Squares of what is left of all pixels, and their number.
+    /// Squares of the residuals of all pixels, and their number.
     left: f64,
     count: usize,
     kept: usize,
@@ -148,7 +148,7 @@ impl Model {
     }
 }
 
-/// Adds pixels up: those near no edge between cells tell of the shades alone, the last unknowns.
+/// Sums over pixels: those near no edge between cells inform the shades alone, the last unknowns.
 struct Adder {
     edge: Normal<UNKNOWNS>,
     plain: Normal<SHADES>,
@@ -179,7 +179,7 @@ impl Adder {
         }
     }
 
-    /// Adds so many pixels from one on, by its place from the middle.
+    /// Adds a number of pixels from one on, by its position relative to the middle.
     #[inline(always)]
     fn add(&mut self, patch: &Patch, seen: &Seen, (at, count): (usize, usize), [x, y]: [f32; 2]) {
         let width = patch.size[0];
@@ -198,7 +198,7 @@ impl Adder {
             let light = 1.0 + self.slope[0] * dx + self.slope[1] * y;
             let base = self.dark + self.contrast * s[k];
             let residual = levels[k] - base * light;
-            // A pixel that something covers counts by its number alone.
+            // A covered pixel counts by its number alone.
             keeps[k] = if residual.abs() <= limit { counts[k] } else { 0.0 };
             residuals[k] = residual * keeps[k];
             let light = light * keeps[k];
@@ -243,7 +243,7 @@ impl Adder {
         let mut own = right.fixed_rows_mut::<SHADES>(SHAPE);
         own += plain.1;
         left += plain.2;
-        // Without a limit none is beyond it.
+        // Without a limit no pixel exceeds it.
         let beyond = if count > kept { (count - kept) as f64 * limit * limit } else { 0.0 };
         Sums { normal, right, squares: left + beyond, left, count, kept }
     }

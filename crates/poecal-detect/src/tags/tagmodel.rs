@@ -1,4 +1,4 @@
-//! A tag seen through a homography, bent a little as a lens bends it, blurred, with a slope of the light.
+//! Model of a tag: seen through a homography, slightly bent as by a lens, blurred, with a gradient of the light.
 
 use nalgebra::{SVector, Vector2};
 
@@ -8,13 +8,13 @@ use crate::quads::Quad;
 pub(crate) const UNKNOWNS: usize = 15;
 pub(crate) type Unknowns = SVector<f64, UNKNOWNS>;
 
-/// The margin beyond the corners of a tag, as a part of the way from its middle, and pixels more.
+/// The margin beyond the corners of a tag, as a part of their distance from its middle, and additional pixels.
 const BEYOND: f64 = 0.25;
 const BEYOND_PX: f64 = 3.0;
 
 const SIGNS: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-/// Place, sharpness and shades of a tag in a picture.
+/// Position, sharpness and shades of a tag in a picture.
 #[derive(Clone, Copy)]
 pub(crate) struct Model {
     pub(crate) corners: Quad,
@@ -31,7 +31,7 @@ impl Model {
         Model { corners, bend: Vector2::zeros(), blur: 1.1, dark: 0.0, light: 0.0, slope }
     }
 
-    /// From the picture to the tag, without the bend.
+    /// Map from the picture to the tag, without the bend.
     pub(crate) fn back(&self) -> Option<Homography> {
         Homography::of_corners(&self.corners, &SIGNS.map(Vector2::from))
     }
@@ -41,7 +41,7 @@ impl Model {
         self.light == self.dark
     }
 
-    /// First and last column in a row that may see the tag or its rim, as far as they are in a patch.
+    /// First and last column in a row that may see the tag or its rim, within a patch.
     pub(crate) fn span(&self, first: [usize; 2], size: [usize; 2], row: usize) -> std::ops::Range<usize> {
         let middle = self.corners.iter().sum::<Vector2<f64>>() * 0.25;
         let around = self.corners.map(|it| {
@@ -83,7 +83,7 @@ impl Model {
     }
 }
 
-/// From the picture to the tag, by a homography and a bend: from the middle of a patch.
+/// Map from the picture to the tag, by a homography and a bend: relative to the middle of a patch.
 pub(crate) struct Bent {
     back: [[f32; 3]; 3],
     bend: [f32; 2],
@@ -96,7 +96,7 @@ impl Bent {
         Bent { back, bend: [model.bend.x as f32, model.bend.y as f32], sides: sides.map(|it| it as f32) }
     }
 
-    /// The place on the tag without the bend, and 1 by what it is in front.
+    /// Position on the tag without the bend, and 1 over the depth factor.
     #[inline(always)]
     fn flat(&self, [x, y]: [f32; 2]) -> ([f32; 2], f32) {
         let [u, v, w] = self.back.map(|row| row[0] * x + row[1] * y + row[2]);
@@ -104,8 +104,8 @@ impl Bent {
         ([u * scale, v * scale], scale)
     }
 
-    /// The place on the tag; half the sides of the upright rectangle there that spreads as far along both of its axes as a pixel does; and whether
-    /// the tag is near.
+    /// Position on the tag; half the sides of the upright rectangle there with the same spread along both of its axes as a pixel; and true if the tag
+    /// is near.
     #[inline(always)]
     pub(crate) fn map(&self, [x, y]: [f32; 2]) -> ([f32; 2], [f32; 2], bool) {
         let (first, front) = self.flat([x, y]);
@@ -121,7 +121,7 @@ impl Bent {
     }
 }
 
-/// The bend of a place on the tag, by the squares of its sides: nothing at corners.
+/// The bend at a point of the tag, by the squares of its sides: zero at corners.
 #[inline(always)]
 pub(crate) fn bent([x, y]: [f32; 2], sides: [f32; 2]) -> f32 {
     -(x * (1.0 - x) * sides[0] + y * (1.0 - y) * sides[1])

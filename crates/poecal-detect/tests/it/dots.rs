@@ -6,7 +6,7 @@ use poecal_detect::{Detector, Kind, Layout};
 use crate::found::Tally;
 use poecal_testing::trials::trials;
 
-/// What the part of the dots that is found in a picture scatters by: a grid of which too much is covered is not found.
+/// Scatter of the share of the detected dots of a picture: a grid with too much covered is not found.
 const MISSED: f64 = 0.15;
 
 #[test]
@@ -15,7 +15,7 @@ fn middles_of_dots_at_all_tilts() {
     for (low, high) in [(0.0, 30.0), (45.0, 60.0)] {
         let trials = trials(12).at_least(3);
         let tally = Tally::from_drawn_pictures("circles:9x6:30mm", &draw(low, high), trials.count);
-        // OpenCV has 71 % of such pictures, 0.035 px below 30° and 0.114 px above 45°, where the middle of an ellipse is off.
+        // OpenCV finds 71 % of such pictures, with 0.035 px below 30° and 0.114 px above 45°, since the middle of an ellipse is biased.
         assert!(tally.part() >= 0.97 - trials.more(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
     }
 }
@@ -26,7 +26,7 @@ fn dots_of_an_asymmetric_grid() {
     let trials = trials(16).at_least(4);
     let tally = Tally::from_drawn_pictures("circles:4x11:20mm:asymmetric", &draw, trials.count);
     assert!(tally.part() >= 0.96 - trials.more(MISSED) && tally.rms_px() <= 0.05 && tally.farthest < 1.0);
-    // 68 % of a normal error, within what 1000 numbers leave open, and the smallest sigma, which is a floor.
+    // 68 % of a normal error, within the scatter of 1000 numbers, and the smallest sigma, which is a floor.
     assert!((0.60..0.78).contains(&tally.within()));
 }
 

@@ -1,4 +1,4 @@
-//! Pictures in files: depths, colours, orientation, and what is none.
+//! Pictures in files: depths, colours, orientation, and files that are none.
 
 use std::borrow::Cow;
 use std::fs;
@@ -13,7 +13,7 @@ fn path(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// A PNG file with these samples; `more` sets what else it has.
+/// A PNG file with these samples; `more` sets its other properties.
 fn png(
     [width, height]: [u32; 2],
     (colours, depth): (ColorType, BitDepth),
@@ -65,7 +65,7 @@ fn every_form_of_png_is_read() {
     ] {
         assert_eq!(read((ColorType::Grayscale, depth), samples), expected);
     }
-    // How opaque a pixel is does not count.
+    // Opacity is ignored.
     assert_eq!(read((ColorType::GrayscaleAlpha, BitDepth::Eight), &[3, 0, 250, 9]), [3.0, 250.0]);
     assert_eq!(read((ColorType::Rgba, BitDepth::Eight), &[200, 100, 50, 0, 0, 0, 255, 7]), [124.0, 29.0]);
     let deep = |samples: &[u16]| samples.iter().flat_map(|it| it.to_be_bytes()).collect::<Vec<u8>>();
@@ -105,7 +105,7 @@ fn palettes_and_interlaced_pictures_are_read() {
 
 #[test]
 fn every_form_of_jpeg_is_read() {
-    // Of the same colours: red and green rise, and blue falls along a row.
+    // Files with the same colours: red and green rise, and blue falls along a row.
     for (bytes, expected) in [
         (include_bytes!("pictures/colour.jpg").as_slice(), [29.0, 121.0, 127.0, 193.0]),
         (include_bytes!("pictures/progressive.jpg"), [29.0, 121.0, 127.0, 193.0]),
@@ -138,7 +138,7 @@ fn jpeg(orientation: u8) -> Vec<u8> {
 
 #[test]
 fn a_picture_stands_upright() {
-    // Width, and where the dark corner is: of each orientation of EXIF.
+    // Width, and position of the dark corner, for each orientation of EXIF.
     for (orientation, width, dark, degrees, mirrored) in [
         (1, 32, (0, 0), 0, false),
         (2, 32, (31, 0), 0, true),
@@ -187,7 +187,7 @@ fn a_png_stands_upright() {
 #[test]
 fn a_head_that_lies_takes_no_memory() {
     let mut lying = png([1, 1], (ColorType::Rgba, BitDepth::Sixteen), &[0; 8], |_| ());
-    // Width and height, and the checksum of the head: of 100 000 × 100 000 pixels.
+    // Width and height, and the checksum of the header: of 100 000 × 100 000 pixels.
     lying[16..24].copy_from_slice(&[0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0]);
     lying[29..33].copy_from_slice(&[0xf8, 0xc2, 0xd7, 0x8b]);
     let mut jpeg = jpeg(1);

@@ -1,4 +1,4 @@
-//! How many corners are found, and how well, in pictures whose truth is known.
+//! Number and accuracy of the detected corners, in pictures with known truth.
 
 use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Drawn};
@@ -6,7 +6,7 @@ use poecal_detect::{Detector, Found};
 
 use poecal_testing::trials::trials;
 
-/// What was found in some pictures.
+/// Counts over some pictures.
 #[derive(Default)]
 pub(crate) struct Tally {
     visible: usize,
@@ -79,9 +79,9 @@ fn corners_of_a_charuco_board() {
         &Draw::default(),
         trials(40).at_least(10).count,
     );
-    // The figures that the detector is made for: OpenCV has 83 % and 0.076 px of such pictures.
+    // Required figures of the detector: OpenCV finds 83 % with 0.076 px in such pictures.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
-    // 68 % of a normal error, within what 700 numbers leave open, and the smallest sigma, which is a floor.
+    // 68 % of a normal error, within the scatter of 700 numbers, and the smallest sigma, which is a floor.
     assert!((0.60..0.78).contains(&tally.within()));
 }
 
@@ -103,7 +103,7 @@ fn corners_of_a_board_that_looks_the_same_from_both_ends() {
 fn corners_of_the_old_pattern() {
     let tally =
         Tally::from_drawn_pictures("charuco:7x6:30mm:22mm:DICT_4X4_50:legacy", &Draw::default(), trials(20).at_least(5).count);
-    // Markers leave a fifth of a square plain: fewer pixels than on the first board.
+    // Markers leave only a fifth of a square plain: fewer pixels than on the first board.
     assert!(tally.part() >= 0.95 && tally.rms_px() <= 0.08 && tally.farthest < 1.0);
 }
 
@@ -156,7 +156,7 @@ fn corners_of_half_a_board() {
         assert!(whole.corners.len() == 24 && whole.markers >= 12);
     }
     println!("{seen} of {visible} corners that are left");
-    // What is next to the cut may have too little of its edges.
+    // Corners next to the cut may lack parts of their edges.
     assert!(seen * 100 >= visible * 90);
 }
 

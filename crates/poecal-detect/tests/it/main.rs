@@ -1,4 +1,4 @@
-//! Corners of rendered pictures against the truth, boards on paper, reasons and suggestions, files, and real pictures where they are.
+//! Corners of rendered pictures against the truth, boards on paper, reasons and suggestions, files, and real pictures if they are available.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 

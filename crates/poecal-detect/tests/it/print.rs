@@ -1,4 +1,4 @@
-//! Boards on paper: what is drawn is what is found, and the files say what was drawn.
+//! Boards on paper: the detector finds the drawn board, and the files contain it.
 
 use poecal_detect::print::{Page, Rectangle, Sheet, Words};
 use poecal_detect::{Detector, Gray, Layout, Spec};
@@ -27,7 +27,7 @@ fn sheet(spec: &str, page: &str) -> Sheet {
     Sheet::new(&spec.parse().unwrap(), &page.parse().unwrap()).unwrap()
 }
 
-/// Where words are: a bar as high as capitals, darker than any print of them.
+/// Area of words: a bar as high as capitals, darker than any print of them.
 fn bar(words: &Words) -> Rectangle {
     let [x, y] = words.at_mm;
     let (length, high) = (words.length_mm, 0.72 * words.size_mm);
@@ -38,7 +38,7 @@ fn bar(words: &Words) -> Rectangle {
     }
 }
 
-/// The page as a picture: each pixel as dark as the part of it that is covered.
+/// The page as a picture: each pixel as dark as its covered share.
 fn picture(sheet: &Sheet, px_per_mm: f64) -> Gray {
     let [width, height] = sheet.size_mm.map(|it| (it * px_per_mm).ceil() as usize);
     let mut levels = vec![235.0_f32; width * height];
@@ -59,7 +59,7 @@ fn picture(sheet: &Sheet, px_per_mm: f64) -> Gray {
         }
     }
     for disc in &sheet.discs {
-        // Where the disc is dark, in pixels of 8 × 8 parts.
+        // Dark part of the disc, in pixels of 8 × 8 samples.
         let [x, y] = disc.middle_mm.map(|it| it * px_per_mm);
         let radius = disc.radius_mm * px_per_mm;
         for row in (y - radius) as usize..=(y + radius) as usize {
@@ -83,7 +83,7 @@ fn the_detector_finds_every_corner_of_what_is_drawn() {
         let layout = Layout::new(&spec);
         let sheet = sheet(text, "a4");
         let found = Detector::new(&spec).detect(&picture(&sheet, PX_PER_MM)).unwrap();
-        // Of loose tags there are as many as the page has room for.
+        // Loose tags are as many as fit on the page.
         let markers = if matches!(spec, Spec::Tags(_)) { sheet.points() / 4 } else { layout.marker_count() };
         assert_eq!((found.corners.len(), found.markers), (sheet.points(), markers), "{text}");
         let mut farthest = 0.0_f64;
@@ -110,7 +110,7 @@ fn the_legacy_pattern_of_even_rows_is_another_board() {
     assert!(Detector::new(&spec.parse().unwrap()).detect(&drawn).is_err());
 }
 
-/// Whether a rectangle has no point in common with another one.
+/// True if a rectangle has no point in common with another one.
 fn apart(one: &Rectangle, other: &Rectangle) -> bool {
     [0, 1].into_iter().any(|axis| {
         one.to_mm[axis] <= other.from_mm[axis] + 1e-9 || other.to_mm[axis] <= one.from_mm[axis] + 1e-9
@@ -142,7 +142,7 @@ fn rulers_and_words_stand_between_board_and_edge() {
         let lines = sheet.rectangles.iter().copied().filter(|it| !inside(it));
         let bars: Vec<Rectangle> = sheet.words.iter().map(bar).collect();
         let (names, bars): (Vec<Rectangle>, Vec<Rectangle>) = bars.into_iter().partition(inside);
-        // Names of loose tags stand between them.
+        // Names of loose tags are between them.
         assert!(names.is_empty() || spec.starts_with("tags"), "{spec} on {page}: words on the board");
         assert!(
             names.iter().all(|name| sheet.rectangles.iter().all(|it| apart(name, it))),
@@ -199,7 +199,7 @@ fn a_board_too_large_for_the_page_is_told_with_what_would_do() {
         message.contains("at least 300 x 216 mm") && message.ends_with("or squares of at most 27.1 mm"),
         "{message}"
     );
-    // What is told fits.
+    // The recommended sizes fit.
     sheet("chessboard:10x7:27.1mm", "a4");
     sheet("charuco:5x7:60mm:40mm:DICT_6X6_250", "320x440mm");
     assert!(refused("chessboard:250x250:28mm", "50x50mm").ends_with("for rulers and words"));
@@ -232,7 +232,7 @@ fn the_svg_has_the_rectangles_and_words_in_millimetres() {
     assert_eq!(words, sheet.words.iter().map(|it| it.text.as_str()).collect::<Vec<_>>());
 }
 
-/// The bytes of an object of a PDF, at the place that its table of objects says.
+/// The bytes of an object of a PDF, at the offset in its table of objects.
 fn object(pdf: &str, number: usize) -> &str {
     let table: usize = pdf.rsplit("startxref\n").next().unwrap().lines().next().unwrap().parse().unwrap();
     let mut lines = pdf[table..].split_inclusive('\n');
@@ -281,7 +281,7 @@ fn a_page_of_tags_has_as_many_as_fit() {
         a4.words.iter().map(|it| it.text.as_str()).filter(|it| it.starts_with("tag")).collect();
     // Pitches of 70 mm: two and a tag beside each other, three below.
     assert_eq!((a4.points(), names.len(), names[0], names[8]), (4 * 9, 9, "tag0", "tag8"));
-    // No more than there are.
+    // No more than exist.
     assert_eq!(sheet("tags:16h5:20mm", "3000x2000mm").points(), 4 * 30);
     let refused = Sheet::new(&"tags:36h11:250mm".parse().unwrap(), &"a4".parse().unwrap()).unwrap_err();
     assert!(

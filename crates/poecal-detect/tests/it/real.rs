@@ -1,4 +1,4 @@
-//! Real pictures, in the folder that POECAL_DATASETS names: beside the corners of OpenCV.
+//! Real pictures, in the folder that POECAL_DATASETS names, compared with the corners of OpenCV.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -36,7 +36,7 @@ fn known(file: &Path, [picture, corner, u, v]: [&str; 4]) -> Known {
     known
 }
 
-/// How many of the known corners were found, how many in all, and the RMS distance of those that agree within a pixel.
+/// Number of known corners that were found, number of all, and RMS distance of those that agree within a pixel.
 fn compared(detector: &Detector, known: &Known, picture: impl Fn(&str) -> PathBuf) -> (usize, usize, f64) {
     let (mut both, mut all, mut squares, mut near) = (0, 0, 0.0, 0);
     for (name, own) in known {
@@ -75,7 +75,7 @@ fn the_charuco_board_before_a_fixed_camera() {
     let known = known(&folder.join("corners.csv"), ["image", "corner_id", "u_px", "v_px"]);
     let detector = Detector::new(&"charuco:5x7:36.195mm:18.256mm:DICT_6X6_250".parse().unwrap());
     let (both, all, rms_px) = compared(&detector, &known, |name| folder.join("images_gray_jpeg").join(name));
-    // OpenCV has 294; both are off by some 0.07 px from each other's windows.
+    // OpenCV has 294; both are off by some 0.07 px because of each other's windows.
     assert!(both >= 280 && all >= 370 && rms_px < 0.15);
 }
 
@@ -111,7 +111,7 @@ fn the_dots_before_a_camera_on_an_arm() {
     }
     let rms_px = (squares / near as f64).sqrt();
     println!("{both} of 1300 known dots, {near} of them near, RMS {rms_px:.3} px");
-    // The first dot is twice as large as the others, and left out. The known ones are middles of ellipses: 0.08 px was seen, up to 0.15 px in
+    // The first dot is twice as large as the others, and left out. The known ones are middles of ellipses: 0.08 px was observed, up to 0.15 px in
     // pictures with glossy dots.
     assert!(both >= 1235 && near + 5 >= both && rms_px < 0.15);
 }
@@ -127,7 +127,7 @@ fn the_chessboards_before_two_arms() {
         let (both, _, rms_px) = compared(&detector, &known, |name| {
             folder.join("images").join(name.replace("ur10e/", "measurements-2023-02-07/"))
         });
-        // 0.09 and 0.11 px were seen: OpenCV's corners scatter by 0.10 and 0.07 px about a smooth map, ours by 0.09 and 0.04.
+        // Observed: 0.09 and 0.11 px. OpenCV's corners scatter by 0.10 and 0.07 px about a smooth map, ours by 0.09 and 0.04.
         assert!(both >= least && rms_px < 0.15);
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures without the board: no corner, the reason, and what else it may be.
+//! Pictures without the board: no corner, the reason, and the suggested board.
 
 use nalgebra::Vector2;
 use poecal_detect::render::{Draw, Random, clutter, finished};
@@ -64,7 +64,7 @@ fn no_corner_on_another_board() {
     }
 }
 
-/// Dots on paper at columns and rows, of an asymmetric grid at those whose sum is even.
+/// Dots on paper at columns and rows, of an asymmetric grid only at those with an even sum.
 fn dots_at(places: impl Iterator<Item = [i32; 2]>) -> Gray {
     const UNIT_PX: f64 = 24.0;
     let places: Vec<Vector2<f64>> =
@@ -83,7 +83,7 @@ fn dots_that_go_on_are_no_board() {
     let detector = detector(ASYMMETRIC);
     let board = (1..=11).flat_map(|y| (1..=8).map(move |x| [x, y])).filter(|[x, y]| (x + y) % 2 == 0);
     let with = |more: &[[i32; 2]]| detector.detect(&dots_at(board.clone().chain(more.iter().copied())));
-    // One may be something else, two are the next column of a field of which most is not seen.
+    // One may be another object; two are the next column of a field that is mostly hidden.
     for (more, is_board) in [(&[][..], true), (&[[0, 4]][..], true), (&[[0, 4], [0, 6]][..], false)] {
         let found = with(more);
         println!("{} beyond: {:?}", more.len(), found.as_ref().map(|it| it.corners.len()));
@@ -115,7 +115,7 @@ fn what_the_board_may_be_is_suggested() {
         assert!(pictures.iter().all(|it| detector.detect(it).is_err()));
         let suggestion = detector.suggest(&pictures.iter().collect::<Vec<_>>()).unwrap();
         println!("{stated}: {suggestion}");
-        // What is seen by its squares first is not tried with every board.
+        // A board recognised first by its squares is not tried with every board.
         assert!(suggestion.spec.to_string() == shown && suggestion.pictures >= 2);
     }
     let empty = Gray::new(200, 200, vec![128.0; 40_000]).unwrap();

@@ -15,11 +15,11 @@ fn corners_of_loose_tags() {
     ] {
         let trials = trials(16).at_least(4);
         let tally = Tally::from_drawn_pictures(spec, &draw, trials.count);
-        // A tag that is covered in part is not read, though some of its corners are seen.
+        // A partly covered tag is not read, though some of its corners are visible.
         assert!(
             tally.part() >= 0.94 - trials.more(0.06) && tally.rms_px() <= limit_px && tally.farthest < 1.0
         );
-        // 68 % of a normal error, within what 800 numbers leave open, and the smallest sigma, which is a floor.
+        // 68 % of a normal error, within the scatter of 800 numbers, and the smallest sigma, which is a floor.
         assert!((0.60..0.78).contains(&tally.within()));
     }
 }
@@ -27,7 +27,7 @@ fn corners_of_loose_tags() {
 #[test]
 fn corners_of_kalibrs_grid() {
     let tally = Tally::from_drawn_pictures("aprilgrid:6x6:88mm:0.3", &Draw::default(), trials(16).at_least(4).count);
-    // As of a ChArUco board: two edges cross.
+    // As on a ChArUco board: two edges cross.
     assert!(tally.part() >= 0.97 && tally.rms_px() <= 0.06 && tally.farthest < 1.0);
     assert!((0.60..0.78).contains(&tally.within()));
 }

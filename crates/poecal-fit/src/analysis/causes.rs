@@ -1,4 +1,4 @@
-//! Descriptions of undetermined and weakly determined directions. Each rule looks for one cause in the configurations, and explains the
+//! Descriptions of undetermined and weakly determined directions. Each rule looks for one cause in the configurations. It explains the
 //! directions that would be determined if the quantities it names were known (theory.md §7 (36a)).
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -12,7 +12,7 @@ use super::subspace;
 use crate::parameters::{Parameter, TargetFrame, TargetPlace, Unit};
 use poecal_model::robot::{JointKind, Term};
 
-/// Largest range of a joint with small motion: 20°, or of a prismatic joint this share of the length that a radian counts.
+/// Largest range of a joint with small motion: 20°. For a prismatic joint it is this share of the length that a radian counts.
 const LITTLE_RAD: f64 = 0.35;
 const LITTLE_SLIDE: f64 = 0.2;
 /// Smallest squared component of a direction that is named in its description.
@@ -21,9 +21,9 @@ pub(crate) const NOTABLE: f64 = 0.02;
 /// Directions to be explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Degree {
-    /// Undetermined ones.
+    /// Undetermined directions.
     Undetermined,
-    /// So many weakly determined ones above them.
+    /// This many weakly determined directions, which follow them in the spectrum.
     Weak(usize),
 }
 
@@ -142,7 +142,7 @@ impl Rules<'_> {
         format!("{verb} known to {known} only (without the prior)")
     }
 
-    /// Whether directions have a part in metres, and in radians.
+    /// Marks whether directions have a component in metres, and one in radians.
     fn units(&self, directions: &[Vec<f64>]) -> (bool, bool) {
         let (mut lengths, mut angles) = (false, false);
         for (parameter, places) in self.setup.layout.parameters() {
@@ -286,8 +286,8 @@ impl Rules<'_> {
         self.add(cause, &joints, taken, description);
     }
 
-    /// All axes shifted one way in the base, and the tool as much the other way on its link, along a direction in the axes of the last
-    /// link: without effect if the link never turns that direction.
+    /// Motion of all axes in one direction of the base, and of the tool by as much in the opposite direction on its link. The direction is
+    /// constant in the axes of the last link. The motion is without effect if the link never turns that direction.
     fn shift(&self, direction: &Vector3<f64>) -> Vec<f64> {
         let estimate = self.setup.estimate;
         let last = self.excitation.last_joint.and_then(|joint| estimate.base_from_axis.get(joint));

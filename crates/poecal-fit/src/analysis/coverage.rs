@@ -1,4 +1,4 @@
-//! How much of each joint's range was sampled.
+//! Sampled share of each joint's range.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,8 +18,8 @@ pub struct JointCoverage {
     pub sampled_min: f64,
     /// Largest value sampled.
     pub sampled_max: f64,
-    /// Share of that range at its ends which at most a fiftieth of the rows reach, beyond a gap of more than 15 % of the range: it does not
-    /// count as sampled.
+    /// Share of the sampled range, at its ends, that at most a fiftieth of the rows reach. A gap of more than 15 % of the range separates
+    /// it from the rest. It does not count as sampled.
     #[serde(default)]
     pub isolated_share: f64,
     /// Smallest allowed value; null without limits, or with placeholders.
@@ -29,7 +29,7 @@ pub struct JointCoverage {
 }
 
 impl JointCoverage {
-    /// Of a give, which has no range.
+    /// Coverage of a compliant joint, which has no range.
     pub fn of_give(name: &str) -> Self {
         let joint = name.to_owned();
         let (limit_min, limit_max) = (None, None);
@@ -50,14 +50,14 @@ impl JointCoverage {
         (allowed > 0.0).then(|| (sampled / allowed).min(1.0))
     }
 
-    /// Whether [`Self::share`] is of one turn, since the limits span more.
+    /// True if [`Self::share`] is of one turn, since the limits span more.
     #[must_use]
     pub fn is_of_a_turn(&self, kind: JointKind) -> bool {
         let span = self.limit_min.zip(self.limit_max).map(|(least, most)| most - least);
         kind == JointKind::Revolute && span.is_some_and(|span| span > Limits::TURN_RAD)
     }
 
-    /// Whether a value is in the sampled range; for a revolute joint also after whole turns.
+    /// True if a value is in the sampled range; for a revolute joint also after whole turns.
     #[must_use]
     pub fn contains(&self, kind: JointKind, value: f64) -> bool {
         // Readings are rounded: smaller differences do not count.
@@ -103,13 +103,13 @@ pub fn coverage(session: &Session<'_>, rows: &[u32]) -> Vec<JointCoverage> {
         .collect()
 }
 
-/// Parts of a turn by which values on a circle are told apart.
+/// Parts of a turn by which values on a circle are distinguished.
 const PARTS: usize = 3600;
 /// Gap on the circle (rad) from which it counts: smaller ones are those of random samples.
 const GAP_ON_CIRCLE: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Smallest and largest value of a joint that turns on without end, where 350° and 10° are 20° apart: if a gap on the circle is larger than a
-/// right angle and than what the values leave of a turn, the range begins behind it.
+/// Smallest and largest value of a joint that turns without end, where 350° and 10° are 20° apart. A gap on the circle counts if it exceeds a
+/// right angle and the rest of a turn outside the values. The range then begins behind it.
 fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f64)) -> (f64, f64) {
     use std::f64::consts::TAU;
     let outside = (TAU - (most - least)).max(0.0);
@@ -145,7 +145,7 @@ fn on_circle(packed: &Packed, rows: &[u32], joint: usize, (least, most): (f64, f
     (from - turns, to - turns)
 }
 
-/// Share of a joint's sampled range that only stragglers reach: at each end at most a fiftieth of the rows, beyond a gap.
+/// Share of a joint's sampled range that only isolated values reach: at each end at most a fiftieth of the rows, beyond a gap.
 fn isolated_share(packed: &Packed, rows: &[u32], joint: usize) -> f64 {
     const FEW: usize = 50;
     const GAP: f64 = 0.15;
@@ -188,7 +188,7 @@ pub fn ranges(session: &Session<'_>, rows: &[u32]) -> Vec<(f64, f64)> {
     })
 }
 
-/// Whether the joint values of some readings are all within the sampled ranges.
+/// True if the joint values of some readings are all within the sampled ranges.
 pub fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bool {
     let indices = robot.reading_indices();
     robot.joints.iter().zip(&indices).zip(coverage).all(|((joint, &index), coverage)| {
@@ -196,8 +196,8 @@ pub fn inside(robot: &Robot, coverage: &[JointCoverage], readings: &[f64]) -> bo
     })
 }
 
-/// A robot whose joints are limited to the range that all of these coverages sampled; where that is none, to that of the first. A joint that one of
-/// them does not have keeps its limits.
+/// A robot whose joints are limited to the range that all of these coverages sampled. If there is no such range, the range of the first coverage
+/// holds. A joint that one of them does not have keeps its limits.
 pub fn within_sampled(robot: &Robot, coverages: &[&[JointCoverage]]) -> Robot {
     let mut robot = robot.clone();
     for joint in &mut robot.joints {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Why something is not determined. The words stand in `calibration.json` and do not change.
+/// Cause of an undetermined direction. The words appear in `calibration.json` and do not change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -14,7 +14,7 @@ pub enum Cause {
     JointOffsets,
     /// Structure: only positions were measured.
     NoOrientation,
-    /// No way from an instrument to its target passes the joint.
+    /// No kinematic chain from an instrument to its target passes the joint.
     Unseen,
     /// A joint did not move, or its reading only jittered.
     StoodStill,
@@ -30,19 +30,19 @@ pub enum Cause {
     MovedTogether,
     /// A joint moved little.
     SmallMotion,
-    /// Joints moved in combinations that hide something; no simpler cause was found.
+    /// Joints moved in combinations that hide a direction; no simpler cause was found.
     DependentMotion,
-    /// Nothing that was measured has a length, so that the size of the robot does not show.
+    /// No measured quantity has a length, so that the size of the robot is not determined.
     NoLength,
-    /// A target was measured once, so that nothing checks it.
+    /// A target was measured once, so that no second measurement checks it.
     SeenOnce,
-    /// None of these.
+    /// Another cause.
     #[default]
     Other,
 }
 
 impl Cause {
-    /// Whether other combinations of the same joint values would have determined the direction.
+    /// True if other combinations of the same joint values would have determined the direction.
     pub(crate) fn is_combination(self) -> bool {
         match self {
             Cause::OneOrientation
@@ -81,9 +81,9 @@ impl Cause {
 pub struct Direction {
     /// Description.
     pub description: String,
-    /// The joints concerned.
+    /// Joints concerned.
     pub joints: Vec<String>,
-    /// Its cause.
+    /// Cause.
     #[serde(default)]
     pub cause: Cause,
     /// Number of independent directions.

@@ -22,7 +22,7 @@ const STILL_M: f64 = 1e-4;
 const TOGETHER: f64 = 0.01;
 /// Sine of the angle (about 3°) within which axes are parallel: nominally so, but for manufacturing errors.
 const PARALLEL: f64 = 0.05;
-/// Variance (about 1°) about a direction below which orientations count as one.
+/// Variance about a direction (that of about 1°) below which orientations count as one.
 const ONE_ORIENTATION: f64 = 3e-4;
 /// A point lies on an axis within this share of the length that a radian counts.
 const ON_AXIS: f64 = 0.02;
@@ -30,33 +30,33 @@ const ON_AXIS: f64 = 0.02;
 /// Turning of the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Turning {
-    /// Not at all.
+    /// No turning.
     Not,
     /// About one direction only, in the axes of the last link.
     About(Vector3<f64>),
-    /// Otherwise.
+    /// Turning about more than one direction.
     Freely,
 }
 
 /// Excitation by the configurations.
 pub(crate) struct Excitation {
-    /// Whether some row's way from its instrument to its target passes the joint.
+    /// For each joint, true if some row's kinematic chain from instrument to target passes it.
     pub(crate) seen_joints: Vec<bool>,
-    /// The joint that every way passes last; none if there are different ways.
+    /// Joint that every kinematic chain passes last; `None` if the chains differ.
     pub(crate) last_joint: Option<usize>,
     /// Range of each joint's value, radians or metres.
     pub(crate) ranges: Vec<f64>,
-    /// Which joints stood still.
+    /// For each joint, true if it stood still.
     pub(crate) still: Vec<bool>,
     /// Groups of joints that moved only together.
     pub(crate) together: Vec<Vec<usize>>,
-    /// How the tool turned.
+    /// Turning of the tool.
     pub(crate) turning: Turning,
     /// Mean rotation of the last link's frame in the device's axes.
     pub(crate) mean_turn: Matrix3<f64>,
     /// For each revolute joint whose axis always passes through all targets: their largest distance from it, metres.
     pub(crate) on_axis_m: Vec<Option<f64>>,
-    /// For each pair of joints, row-major: whether both are revolute and their axes always parallel.
+    /// For each pair of joints, row-major: true if both are revolute and their axes always parallel.
     parallel: Vec<bool>,
     /// Number of measured numbers in distinct configurations, counted up to the number of unknowns.
     pub(crate) numbers: usize,
@@ -99,7 +99,7 @@ impl Excitation {
         found
     }
 
-    /// Whether the axes of some joints are always parallel.
+    /// True if the axes of some joints are always parallel.
     pub(crate) fn are_parallel(&self, joints: &[usize]) -> bool {
         let n = self.still.len();
         joints.iter().all(|a| joints.iter().all(|b| self.parallel.get(a * n + b).copied().unwrap_or(false)))
@@ -138,7 +138,7 @@ impl Excitation {
             let away = away_m.iter().zip(&is_seen);
             self.on_axis_m = away.map(|(&away, &seen)| (seen && away < near).then_some(away)).collect();
         }
-        // Of different ways, the last links turn each in its own way.
+        // If the chains differ, the last links turn each in a manner of its own.
         let one_way = self.last_joint.is_some();
         self.turning = if one_way { turning(&self.mean_turn) } else { Turning::Freely };
     }
@@ -201,7 +201,7 @@ impl Excitation {
     }
 }
 
-/// Which joints the ways of the rows pass, and the last of a single way.
+/// Joints on the kinematic chains of the rows, and the last joint of a single chain.
 fn passed(setup: &Setup<'_>) -> (Vec<bool>, Option<usize>) {
     let tree = &setup.estimate.tree;
     let mut seen = vec![false; tree.kinds().len()];

@@ -14,7 +14,7 @@ use poecal_model::robot::{Joint, JointKind, Term};
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// What the measurements determine.
+/// Unknowns, their determined directions, and the directions that are not determined.
 ///
 /// ```
 /// # use poecal_fit::analysis::{PlannedSession, identify};
@@ -98,7 +98,7 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     let weak = (spectrum.undetermined..n)
         .take_while(|&k| spectrum.sigma_m(k) > WEAK * setup.session.length_m)
         .count();
-    // A zero whose axis is held is an unknown, also where a free target or device hides it.
+    // The offset of a joint with a held axis is an unknown, also where a free target or device hides it.
     let mut unidentifiable = open_offsets(setup, &base);
     let open: usize = unidentifiable.iter().map(|direction| direction.directions).sum();
     unidentifiable.extend(explain(setup, &excitation, &spectrum, Degree::Undetermined));
@@ -118,7 +118,7 @@ pub fn identifiability(setup: &Setup<'_>, gram: &[f64], variance: f64) -> Identi
     }
 }
 
-/// The information with more of it along some directions, as much as the measurements give of any unknown, and more than the least that
+/// The information, increased along some directions: as much as the measurements have of any unknown, and more than the least that
 /// determines one.
 fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64) -> Cow<'a, [f64]> {
     let mut gram = Cow::Borrowed(gram);
@@ -134,7 +134,7 @@ fn with_known<'a>(gram: &'a [f64], n: usize, directions: &[Vec<f64>], least: f64
     gram
 }
 
-/// Whether the offset of a joint is free.
+/// True if the offset of a joint is free.
 fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
     let name = |at: usize| setup.session.robot.joints.get(at).map(|it| it.name.as_str());
     let is_it = |parameter: &Parameter| {
@@ -145,8 +145,8 @@ fn has_offset(setup: &Setup<'_>, joint: &Joint) -> bool {
     setup.layout.parameters().any(|(parameter, _)| is_it(parameter))
 }
 
-/// The structural kernel, known before anything is measured: theory.md §7 (35). So many motions of the base have no effect though some
-/// things are held.
+/// The structural kernel, known before any measurement: theory.md §7 (35). `base_motions` counts the motions of the base that have no
+/// effect although some blocks are held.
 fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Direction> {
     let unknowns = setup.session.unknowns;
     let joints = setup.session.robot.joints.iter().enumerate();
@@ -185,7 +185,7 @@ fn structural(setup: &Setup<'_>, base_motions: usize, offsets: usize) -> Vec<Dir
         joints.iter().filter(|joint| has_offset(setup, joint)).map(|it| it.name.clone()).collect();
     add(Cause::JointOffsets, offsets, &beside_axes, free);
     let zeros = "joint offsets: later axes and the tool have the same effect: kept as read";
-    // Beside held axes or targets an offset is no other unknown.
+    // Beside held axes or targets an offset is not an additional unknown.
     if unknowns.are_usual() {
         add(Cause::JointOffsets, joints.len(), &names, zeros);
     }

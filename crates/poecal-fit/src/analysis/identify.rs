@@ -1,4 +1,4 @@
-//! Identifiability of planned configurations, before anything is measured.
+//! Identifiability of planned configurations, before the measurement.
 
 use nalgebra::Vector3;
 use rand_chacha::ChaCha8Rng;
@@ -24,8 +24,8 @@ use poecal_numerics::solve::LeastSquares;
 /// Number of random configurations for the expected error, and their seed.
 const CONFIGURATIONS: usize = 1000;
 const SEED: u64 = 1;
-/// A prediction is determined if undetermined directions, uncertain by [`PLAUSIBLE`], move it by at most so many of its standard
-/// deviations.
+/// A prediction is determined if undetermined directions, uncertain by [`PLAUSIBLE`], move it by at most this many of its
+/// standard deviations.
 const UNDETERMINED_EFFECT: f64 = 1.0;
 
 /// A planned session: measurements and their noise.
@@ -45,7 +45,7 @@ pub struct PlannedSession {
     pub kind: Kind,
     /// Noise of each component.
     pub noise: Noise,
-    /// Whether the device frame is unknown; otherwise measurements are in the robot's base frame.
+    /// True if the device frame is unknown; otherwise measurements are in the robot's base frame.
     pub device_free: bool,
 }
 
@@ -103,22 +103,23 @@ pub struct Foresight {
     pub pictures: Option<MeasuredPictures>,
 }
 
-/// Pictures whose corners say how well they determine a pose.
+/// Pictures whose corners determine how accurate their poses are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredPictures {
-    /// Their number.
+    /// Number of pictures.
     pub count: usize,
     /// Number of corners in all of them.
     pub corners: usize,
     /// Standard deviation of each coordinate of a corner that states none, pixels.
     pub sigma_px: f64,
-    /// Standard deviations of each component of the shift (m) and the turn (rad) that the corners of a picture share: before a calibration what is
-    /// usual.
+    /// Standard deviations of each component of the shift (m) and the turn (rad) that the corners of a picture share: usual values before a
+    /// calibration.
     pub shared: [f64; 2],
 }
 
-/// Judges configurations, in which every instrument on the robot measures every target of the model, or a device beside it the tip (readings one after the other, in the order of [`Robot::reading_names`]; radians, metres) before they are
-/// measured: theory.md §7 (36), (36c), with the nominal model and the stated noise.
+/// Expected result of measuring some configurations, before they are measured: theory.md §7 (36), (36c), with the nominal model and the stated noise.
+/// Every instrument on the robot measures every target of the model; a device beside the robot measures the tip. `readings` are one after the other,
+/// in the order of [`Robot::reading_names`] (radians, metres).
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] if there is no configuration, the number of readings does not fit the robot, or one is not finite;
@@ -156,9 +157,9 @@ pub fn identify(robot: &Robot, readings: &[f64], planned: &PlannedSession) -> Re
     Ok(Foresight { count, ..foresee(robot, &data, estimate, planned)? })
 }
 
-/// The same for rows that name more than a configuration, by the measurements (`poecal_import` reads them): pictures, as their corners
-/// determine their poses, and rows that touch something: balls in sockets, points and faces on planes, points of spheres. Cameras, boards and what
-/// is touched are where the nominal robot has them best.
+/// The same for rows that state more than a configuration (`poecal_import` reads them). Pictures count as their corners determine their poses.
+/// Rows may touch balls in sockets, points and faces on planes, or points of spheres. Cameras, boards and touched objects are placed where the
+/// nominal robot has them best.
 ///
 /// # Errors
 /// As [`identify`].
@@ -192,7 +193,7 @@ fn check_unknowns(robot: &Robot, frames: usize) -> Result<()> {
     ))
 }
 
-/// What data would determine, at an estimate that predicts them.
+/// Expected result of data, at an estimate that predicts them.
 fn foresee(
     robot: &Robot,
     data: &Dataset,
@@ -311,7 +312,7 @@ mod tests {
     use super::*;
     use poecal_model::simulate::{Simulation, elbow};
 
-    /// As of a calibration by them: 4 of each of six joints and 2 more; how large the robot is stays open.
+    /// The rank is that of a calibration by them: 4 of each of six joints and 2 more; the size of the robot stays undetermined.
     #[test]
     fn balls_in_sockets_have_the_rank_of_the_closed_form() {
         let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::SOCKET).unwrap();

@@ -81,7 +81,7 @@ mod tests {
     use poecal_numerics::kernels::simd_levels;
     use poecal_numerics::solve::LeastSquares;
 
-    /// The formulas of theory.md as they stand there, one row after the other.
+    /// The formulas of theory.md, evaluated literally, one row after the other.
     fn by_the_book(factor: &linalg::Factor, jacobian: &[f64], residual: &[f64], weight: f64) -> Influence {
         let (dim, n) = (residual.len(), jacobian.len() / residual.len());
         let row = |i: usize| &jacobian[i * n..(i + 1) * n];
@@ -97,7 +97,7 @@ mod tests {
         Influence { leverage, studentized: squared.sqrt() }
     }
 
-    /// Rows of which every third has a position only: lanes of one block then differ.
+    /// Rows of which every third has a position only, so that the lanes of one block differ.
     fn mixed(robot: &Robot, count: usize) -> Dataset {
         let mut made = Simulation { count, ..Simulation::default() }.run(robot, Kind::POSE).unwrap();
         for observation in made.data.observations.iter_mut().step_by(3) {
@@ -190,7 +190,7 @@ mod tests {
                             apart(&own_jacobian, jacobian),
                             apart(&own_residual[..residual.len()], residual),
                         ];
-                        // Rounding of numbers that come of a few products each.
+                        // Rounding of numbers that result from a few products each.
                         assert!(apart.iter().all(|&apart| apart < 1e-14), "{level:?} {place}: {apart:?}");
                         seen += 1;
                     }
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// Distance of numbers from what they should be, relative to these.
+    /// Difference from the expected numbers, relative to these.
     fn apart(found: &[f64], expected: &[f64]) -> f64 {
         let norm =
             |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! Which unknowns the measurements determine: rank, undetermined directions, coverage, leverage.
+//! Unknowns that the measurements determine: rank, undetermined directions, coverage, leverage.
 
 mod causes;
 mod coverage;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns:
+/// Indices O1 to O5 of sun2008 over the singular values `s₁ ≥ … ≥ sₙ` of the whitened Jacobian of the scaled minimal unknowns:
 /// theory.md §7 (36b). Larger is better. `None` where a singular value is zero but for rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Observability {
@@ -12,7 +12,7 @@ pub struct Observability {
     pub o2: Option<f64>,
     /// `sₙ`, 1/m (metre): the inverse of the largest standard deviation.
     pub o3: Option<f64>,
-    /// `sₙ² / s₁`, 1/m (metre): how noise is amplified.
+    /// `sₙ² / s₁`, 1/m (metre): the noise amplification index.
     pub o4: Option<f64>,
     /// `1 / Σ 1/sₖ`, 1/m (metre).
     pub o5: Option<f64>,

@@ -1,4 +1,4 @@
-//! Zeros of joints whose axes are held, where a free target, a free device or other free zeros have the same effect.
+//! Offsets of joints whose axes are held, where a free target, a free device or other free offsets have the same effect.
 
 use nalgebra::DMatrix;
 
@@ -10,13 +10,13 @@ use poecal_model::robot::Term;
 
 /// Share of an unknown (as a cosine) in directions without effect from which on it is not determined.
 const OPEN: f64 = 0.01;
-/// Singular value of exact directions above which knowing something says something of them.
+/// Singular value of exact directions above which knowing one quantity determines another.
 const EXACT: f64 = 1e-5;
 
-/// A joint, and the place of its offset in a step.
+/// A joint, and the index of its offset in a step.
 pub(crate) type Zero = (usize, usize);
 
-/// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with its place in a step.
+/// Offsets that are unknowns of their own, since the axes of their joints are held: each joint with the index of its offset in a step.
 pub(crate) fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
     let is_held = |joint: usize| {
         !setup
@@ -31,7 +31,8 @@ pub(crate) fn own_offsets(setup: &Setup<'_>) -> Vec<Zero> {
     setup.layout.parameters().filter_map(offset).collect()
 }
 
-/// The offsets that are not determined by directions without effect (orthonormal), grouped by what hides them, with what to hold.
+/// Offsets that are not determined by directions without effect (orthonormal), grouped by the blocks that hide them, with the blocks to
+/// hold.
 pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Direction> {
     let n = setup.layout.dim();
     if directions.is_empty() {
@@ -63,7 +64,7 @@ pub(crate) fn open_offsets(setup: &Setup<'_>, directions: &[Vec<f64>]) -> Vec<Di
     found
 }
 
-/// What may hide the offset of a joint, the simplest first.
+/// Blocks that may hide the offset of a joint, the simplest first.
 fn hiding(setup: &Setup<'_>, open: &[Zero], joint: usize) -> Vec<Vec<Block>> {
     let of = |wanted: &dyn Fn(Block) -> bool| -> Vec<Block> {
         setup.layout.parameters().map(|(it, _)| it.block()).filter(|it| wanted(*it)).collect()
@@ -90,7 +91,7 @@ fn units(setup: &Setup<'_>, blocks: &[Block]) -> Vec<Vec<f64>> {
     own.flat_map(|(_, places)| places.iter().map(|(place, _)| unit(n, *place))).collect()
 }
 
-/// The unit vector of an unknown.
+/// Unit vector of an unknown.
 fn unit(n: usize, place: usize) -> Vec<f64> {
     (0..n).map(|k| f64::from(u8::from(k == place))).collect()
 }

@@ -20,7 +20,7 @@ use poecal_numerics::solve::LeastSquares;
 const SHUFFLED: usize = 400;
 
 impl Rules<'_> {
-    /// The size of everything: angles, contacts and directions alone do not show it.
+    /// The size of the robot and the cell: angles, contacts and directions alone do not determine it.
     pub(crate) fn size(&mut self) {
         let has_length = |row: &u32| self.setup.session.observation(*row).measurement.has_length();
         if self.setup.rows.iter().all(has_length) {
@@ -44,7 +44,7 @@ impl Rules<'_> {
         self.add(Cause::NoLength, &[], 1, description);
     }
 
-    /// Everything grown about the origin of the first device of the rows: axes, targets, other devices, zeros of distances.
+    /// Growth of axes, targets, other devices and zeros of distances about the origin of the first device of the rows.
     fn growth(&self) -> Vec<f64> {
         let estimate = self.setup.estimate;
         let origin = |station: usize| estimate.device_at_zero(station).inverse().translation;
@@ -92,7 +92,7 @@ impl Rules<'_> {
             return;
         }
         let joints = self.unexplained_joints();
-        // Of tool and device alone: described by its parts.
+        // A direction of tool and device alone is described by its parts.
         if joints.is_empty() {
             return;
         }
@@ -133,7 +133,7 @@ impl Rules<'_> {
         let scale = setup.rows.len() as f64 / count.max(1) as f64;
         gram.iter_mut().for_each(|value| *value *= scale);
         let shuffled_spectrum = Spectrum::new(&gram, setup.layout.dim(), self.spectrum.variance, length_m);
-        // Weak directions have to improve by a factor of two: less is no cause.
+        // Weak directions have to improve by a factor of two; a smaller gain is no cause.
         let (limit_m, now) = match self.degree {
             Degree::Undetermined => (PLAUSIBLE * length_m, self.spectrum.undetermined),
             Degree::Weak(count) => (0.5 * WEAK * length_m, self.spectrum.undetermined + count),

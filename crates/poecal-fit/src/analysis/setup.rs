@@ -11,11 +11,11 @@ use poecal_model::measurement::Noise;
 pub struct Setup<'a> {
     /// Robot and measurements.
     pub session: Session<'a>,
-    /// The rows of the fit.
+    /// Rows of the fit.
     pub rows: &'a [u32],
-    /// The estimate at which the information was computed.
+    /// Estimate at which the information was computed.
     pub estimate: &'a Estimate,
-    /// The unknowns.
+    /// Unknowns.
     pub layout: &'a Layout,
     /// Noise of rows that state none.
     pub noise: Noise,

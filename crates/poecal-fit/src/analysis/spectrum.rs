@@ -9,10 +9,10 @@ pub(crate) const ROUNDING: f64 = 3e-7;
 /// A direction is determined if its standard deviation is below this share of the length that a radian counts (about 2°, or 10 to 20 mm on
 /// an arm of ordinary size): nominal models are better than that.
 pub const PLAUSIBLE: f64 = 0.03;
-/// A direction is weakly determined above this share of that length (some 1 to 2 mm, or 0.2°): about the accuracy of a nominal model, so
-/// that a calibration adds little.
+/// A direction is weakly determined above this share of that length (some 1 to 2 mm, or 0.2°). That is about the accuracy of a nominal
+/// model, so that a calibration adds little.
 pub(crate) const WEAK: f64 = 0.003;
-/// An unknown is determined if at most this share of it (as a cosine) lies in undetermined directions; uncertain by [`PLAUSIBLE`], these
+/// An unknown is determined if at most this share of it (as a cosine) lies in undetermined directions. Uncertain by [`PLAUSIBLE`], these
 /// then move it by less than 0.1 mm on an arm of ordinary size.
 const UNDETERMINED_SHARE: f64 = 0.01;
 
@@ -22,7 +22,7 @@ const UNDETERMINED_SHARE: f64 = 0.01;
 pub struct Spectrum {
     /// Eigenvalues, the smallest first, 1/m².
     pub values: Vec<f64>,
-    /// Their eigenvectors, a column each, in the order of a step ([`crate::problem::Layout`]).
+    /// Eigenvectors, a column each, in the order of a step ([`crate::problem::Layout`]).
     pub vectors: DMatrix<f64>,
     /// Number of undetermined directions: the first eigenvalues, below noise or rounding.
     pub undetermined: usize,
@@ -36,7 +36,7 @@ impl Spectrum {
     #[must_use]
     pub fn new(gram: &[f64], n: usize, variance: f64, length_m: f64) -> Self {
         if !gram.iter().all(|value| value.is_finite()) {
-            // After an overflow nothing is determined.
+            // After an overflow no unknown is determined.
             return Spectrum {
                 values: vec![0.0; n],
                 vectors: DMatrix::identity(n, n),
@@ -59,7 +59,7 @@ impl Spectrum {
         }
     }
 
-    /// For each unknown in the order of a step, whether the measurements determine it: theory.md §7, below (36).
+    /// For each unknown in the order of a step, true if the measurements determine it: theory.md §7, below (36).
     #[must_use]
     pub fn determined(&self) -> Vec<bool> {
         let n = self.vectors.nrows();

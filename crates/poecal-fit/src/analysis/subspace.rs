@@ -1,4 +1,4 @@
-//! Subspaces of the unknowns, given by orthonormal columns.
+//! Subspaces of the unknowns, represented by orthonormal columns.
 
 use nalgebra::DMatrix;
 
@@ -7,8 +7,8 @@ use poecal_numerics::linalg;
 /// Singular value of (36a) above which a direction counts.
 const VISIBLE: f64 = 0.1;
 
-/// The part of `space` that would still be undetermined if the quantities along some directions (unit vectors, not necessarily orthogonal)
-/// were known, and the number of dimensions removed: theory.md §7 (36a).
+/// The part of `space` that would stay undetermined if the quantities along some directions were known, and the number of dimensions
+/// removed: theory.md §7 (36a). The directions are unit vectors, not necessarily orthogonal.
 pub(crate) fn without(space: &DMatrix<f64>, directions: &[Vec<f64>]) -> (DMatrix<f64>, usize) {
     without_beyond(space, directions, VISIBLE)
 }
@@ -57,7 +57,7 @@ fn orthonormal(vectors: &[Vec<f64>], n: usize) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Basis of the same space with as many zeros as elimination gives: unit directions of few unknowns each.
+/// Basis of the same space with as many zeros as elimination produces: unit directions of few unknowns each.
 pub(crate) fn sparse(space: &DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> =
         space.column_iter().map(|column| column.iter().copied().collect()).collect();
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn known_directions_leave_the_others_undetermined() {
-        // Open: e0 + e1 together, and e2.
+        // Undetermined: e0 + e1 together, and e2.
         let half = 0.5f64.sqrt();
         let space = DMatrix::from_column_slice(4, 2, &[half, half, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let unit = |k: usize| (0..4).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();

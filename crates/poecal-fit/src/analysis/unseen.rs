@@ -1,10 +1,10 @@
-//! Joints of a tree that no measurement sees.
+//! Joints of a tree that no measurement involves.
 
 use super::causes::Rules;
 use super::direction::Cause;
 
 impl Rules<'_> {
-    /// Joints that no row's way from its instrument to its target passes: nothing measured depends on their screws.
+    /// Joints that no row's kinematic chain from instrument to target passes: no measurement depends on their screws.
     pub(crate) fn unseen(&mut self) {
         let count = self.excitation.seen_joints.len();
         let joints: Vec<usize> = (0..count).filter(|&joint| !self.excitation.seen_joints[joint]).collect();

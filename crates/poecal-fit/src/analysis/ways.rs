@@ -1,4 +1,4 @@
-//! The joints between instruments and targets.
+//! Kinematic chains between instruments and targets.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Body, Mount, Robot};
 use poecal_model::simulate::pairs;
 
-/// The joints that move a target against an instrument: measurements of such a pair can determine them and no others.
+/// Joints that move a target against an instrument: measurements of such a pair can determine only these.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Way {
-    /// Name of the instrument; none of a device beside the robot.
+    /// Name of the instrument; `None` for a device beside the robot.
     pub instrument: Option<String>,
-    /// Name of the target; none of the tip.
+    /// Name of the target; `None` for the tip.
     pub target: Option<String>,
-    /// The joints, from the instrument on.
+    /// Joints, from the instrument on.
     pub joints: Vec<String>,
-    /// Number of rows, if measurements are given.
+    /// Number of rows; `None` without measurements.
     pub rows: Option<usize>,
 }
 
-/// The ways of some measurements, else of all instruments and targets that a model names.
+/// Kinematic chains of some measurements; without measurements, of all instruments and targets that a model names.
 #[must_use]
 pub fn ways(robot: &Robot, data: Option<&Dataset>) -> Vec<Way> {
     match data {

@@ -10,19 +10,20 @@ use super::hypotheses::Hypothesis;
 use poecal_model::camera::{Board, Pictures};
 use poecal_model::measurement::{Dataset, Observation, Quantity};
 
-/// Largest factor that is looked for.
+/// Largest factor that is searched.
 const LARGEST: f64 = 6.0;
 /// Factor from one size to the next that are compared.
 const STEP: f64 = 1.1;
-/// Least difference from 1 that is a mistake: a calibration finds a smaller one.
+/// Smallest difference from 1 that counts as a mistake: a calibration corrects a smaller one.
 const LEAST: f64 = 0.02;
-/// Share to which the size is found.
+/// Relative accuracy of the size.
 const FINE: f64 = 1e-3;
 
-/// The size of the boards with which the nominal robot fits the pictures best, if all rows are pictures and it is another than stated.
+/// Size of the boards with which the nominal robot fits the pictures best. `None` if some rows are no pictures, or if the size is the
+/// stated one.
 pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypothesis> {
     let Pictures { boards, cameras, .. } = &sample.pictures;
-    // The rows have lost their pictures, but not the names of what is seen in them.
+    // The rows have lost their pictures, but not the names of the boards and cameras.
     let names: Vec<&str> =
         boards.iter().map(|it| it.name.as_str()).chain(cameras.iter().map(|it| it.name.as_str())).collect();
     let is_picture = |row: &Observation| {
@@ -33,7 +34,7 @@ pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypoth
         return None;
     }
     let change = |log: f64| Change::Resize(log.exp(), Quantity::Position, true);
-    // In lengths of the robot, which are the same for all sizes of the board.
+    // The misfit is in lengths of the robot, which are the same for all sizes of the board.
     let misfit = |log: f64| fitter.roughly_registered(&change(log).apply(sample)).1.total_m;
     let steps = (LARGEST.ln() / STEP.ln()).ceil() as i32;
     let coarse = (-steps..=steps).map(|step| f64::from(step) * STEP.ln());
@@ -56,7 +57,7 @@ pub(crate) fn board_size(fitter: &Fitter<'_>, sample: &Dataset) -> Option<Hypoth
     ))
 }
 
-/// Place of the lowest value of a function between two, by the golden section.
+/// Argument of the lowest value of a function between two arguments, by golden-section search.
 fn lowest(value: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> f64 {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (to - golden * (to - from), from + golden * (to - from));

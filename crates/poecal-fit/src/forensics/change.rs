@@ -20,9 +20,9 @@ pub(crate) enum Change {
     Combine { column: usize, own: f64, other: usize, factor: f64 },
     /// A number added to a column, radians or metres.
     Add(usize, f64),
-    /// Each reading paired with the measurement so many rows later in the same stream.
+    /// Each reading paired with the measurement this many rows later in the same stream.
     Shift(i32, Stream),
-    /// Lengths of a quantity times a factor; the last says whether no other one is measured.
+    /// Lengths of a quantity times a factor; the last is true if no other quantity is measured.
     Resize(f64, Quantity, bool),
     /// Positions of the rows of a file times a factor.
     ResizeFile(f64, u32),
@@ -171,13 +171,13 @@ impl Change {
 /// Rows that a shift counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stream {
-    /// Those of the same target.
+    /// Rows of the same target.
     Target,
     /// All rows: the target's name stays with the reading.
     File,
 }
 
-/// A data set without rows, with the same readings, targets and places.
+/// A data set without rows, with the same readings, targets and stations.
 pub(crate) fn like(data: &Dataset) -> Dataset {
     let mut empty = data.only(&[]);
     empty.pose_residual = None;
@@ -189,7 +189,7 @@ pub(crate) fn push(data: &mut Dataset, readings: &[f64], observation: Observatio
     data.push_observation(readings, observation).ok();
 }
 
-/// Readings of each row with the measurement of the same stream and file `by` such rows later.
+/// Readings of each row with the measurement `by` rows later in the same stream and file.
 fn shifted(data: &Dataset, by: i32, stream: Stream) -> Dataset {
     let mut streams: BTreeMap<(Option<usize>, u32), Vec<usize>> = BTreeMap::new();
     for (row, observation) in data.observations.iter().enumerate() {

@@ -13,7 +13,7 @@ use poecal_model::measurement::{Dataset, Measurement, Observation};
 
 /// Conventions that are tested as hypotheses.
 const CANDIDATES: usize = 3;
-/// Largest difference of rotations that are the same but for rounding.
+/// Largest difference of rotations that are equal but for rounding.
 const SAME: f64 = 1e-9;
 /// Rows of each target whose orientations are tried as the target's.
 const GUESSES: usize = 6;
@@ -26,7 +26,7 @@ struct MeasuredOrientation {
     turned: Matrix3<f64>,
 }
 
-/// The best conventions of the angles, judged by rotations alone, with device frame and arm as the positions give them.
+/// Best conventions of the angles, judged by rotations alone. Device frame and arm are those that fit the positions.
 pub(crate) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis> {
     let mut points = like(data);
     for (row, seen) in data.observations.iter().enumerate() {
@@ -59,10 +59,10 @@ pub(crate) fn conventions(fitter: &Fitter<'_>, data: &Dataset) -> Vec<Hypothesis
     judged.into_iter().map(|((_, rotations), (_, one))| hypothesis(one, turns(rotations))).collect()
 }
 
-/// Mean squared distance of the orientations from the arm's, the orientations, and the rank and convention that give them.
+/// Mean squared distance of the orientations from the arm's, the orientations, and the rank and convention that produce them.
 type ScoredConvention = ((f64, Vec<Matrix3<f64>>), (usize, Reinterpretation));
 
-/// The best conventions with different orientations. Of equivalent ones the first in the order of all is named, which is read from the
+/// Best conventions with different orientations. Of equivalent ones the first in the order of all is named, which is read from the
 /// usual columns.
 fn distinct(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
     let mut kept: Vec<ScoredConvention> = Vec::new();
@@ -79,8 +79,8 @@ fn distinct(judged: Vec<ScoredConvention>) -> Vec<ScoredConvention> {
     kept
 }
 
-/// The orientations in a convention, and their mean squared chordal distance from ones that follow the arm. Of the two sets of angles of a
-/// rotation the better one counts.
+/// The orientations in a convention, and their mean squared chordal distance from orientations that follow the arm. A rotation has two
+/// sets of angles; the better one counts.
 fn scored(seen: &[MeasuredOrientation], meaning: &Reinterpretation) -> (f64, Vec<Matrix3<f64>>) {
     let pairs: Vec<[Matrix3<f64>; 2]> = seen.iter().map(|one| meaning.rotations(&one.turned)).collect();
     let relative = |k: usize, branch: usize| seen[k].link_from_device * pairs[k][branch];

@@ -1,4 +1,4 @@
-//! What a diagnosis says: a mistake with its evidence.
+//! Result of a diagnosis: a mistake with its evidence.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,13 +11,13 @@ pub enum DiagnosisKind {
     JointUnit,
     /// Positions in another unit than stated.
     PositionUnit,
-    /// A joint counts the other way.
+    /// A joint counts in the opposite direction.
     JointSign,
     /// Two joint columns are exchanged.
     JointsSwapped,
     /// The readings of a joint are the sum or the difference of two joints.
     JointsCoupled,
-    /// The zero of a joint is elsewhere.
+    /// The zero of a joint is at another value.
     JointZero,
     /// Parts of the quaternions are in another order.
     QuaternionOrder,
@@ -39,11 +39,11 @@ pub enum DiagnosisKind {
     BoardSize,
     /// Distances or heights in another unit than stated.
     LengthUnit,
-    /// Distances that do not count from their anchor, or a radius that is another.
+    /// Distances that do not count from their anchor, or a radius that differs from the stated one.
     DistanceZero,
-    /// A known distance that is another.
+    /// A known distance that differs from the stated one.
     KnownLength,
-    /// Heights that count the other way in some rows.
+    /// Heights that count in the opposite direction in some rows.
     HeightSign,
     /// Tilts in another unit than stated.
     TiltUnit,
@@ -80,21 +80,21 @@ pub struct Diagnosis {
     pub statement: String,
     /// Rows concerned; empty if all are.
     pub rows: Vec<u32>,
-    /// Root mean square error of the data as given, millimetres; angles count as arcs at a third of the robot's reach.
+    /// Root mean square error of the data as supplied, millimetres; angles count as arcs at a third of the robot's reach.
     pub before_mm: f64,
-    /// The same with the mistake undone.
+    /// Root mean square error with the mistake undone, millimetres.
     pub after_mm: f64,
 }
 
 impl Diagnosis {
-    /// Whether it concerns the meaning of numbers, not repeated rows.
+    /// True if it concerns the meaning of numbers, not repeated rows.
     #[must_use]
     pub fn is_of_input(&self) -> bool {
         self.kind != DiagnosisKind::DuplicateRows
     }
 }
 
-/// Three significant digits.
+/// A number with three significant digits.
 pub(crate) fn short(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return value.to_string();

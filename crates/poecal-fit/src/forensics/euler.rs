@@ -43,8 +43,8 @@ impl Reinterpretation {
         let mut all = Vec::new();
         for read in Angles::all() {
             for meant in Angles::all() {
-                // The angles of an extrinsic convention are those of an intrinsic one backwards, so that half of the pairs are equivalent.
-                // Those read as extrinsic, as in most files, represent both.
+                // The angles of an extrinsic convention are those of an intrinsic one in reverse order, so that half of the pairs are
+                // equivalent. Those read as extrinsic, as in most files, represent both.
                 if read == meant || matches!((read, meant), (Angles::Intrinsic(_), Angles::Intrinsic(_))) {
                     continue;
                 }

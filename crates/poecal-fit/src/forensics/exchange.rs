@@ -1,4 +1,4 @@
-//! Two names that are exchanged in some rows: of targets, of places, or of the sides of a plane.
+//! Two names that are exchanged in some rows: of targets, of stations, or of the sides of a plane.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -14,36 +14,36 @@ use crate::state::Estimate;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::measurement::{Dataset, Observation, Quantity};
 
-/// Most rounds of reassigning rows and refitting.
+/// Largest number of rounds of reassigning rows and refitting.
 const ROUNDS: usize = 6;
 /// Least reduction of the error of the rows concerned, and of all rows.
 const ROW_GAIN: f64 = 5.0;
 const GAIN: f64 = 1.5;
-/// Parts of a session of which blocks are made, blocks that are fitted, and those of them from which rows are assigned.
+/// Number of parts of a session that make up blocks; blocks that are fitted; and those of them from which rows are assigned.
 const BLOCKS: usize = 8;
 const NEARER: usize = 16;
 const FIRSTS: usize = 4;
-/// Most rows in a statement.
+/// Largest number of rows in a statement.
 const NAMED: usize = 5;
 
 /// Two names that may be exchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Names {
-    /// Of what was seen.
+    /// Names of measured targets.
     Targets(usize, usize),
-    /// From where it was seen, or of what it touched.
+    /// Names of stations: of the device, or of the touched object.
     Stations(usize, usize),
     /// The sides of planes: the names of heights are their signs.
     Sides,
 }
 
 impl Names {
-    /// By how many mean squared errors a row must fit better: heights near zero hardly show their sign.
+    /// Number of mean squared errors by which a row must fit better: heights near zero hardly determine their sign.
     fn margin(self) -> f64 {
         if self == Names::Sides { 1.0 } else { 0.0 }
     }
 
-    /// Whether an exchange changes a row: a touched plane has no side.
+    /// True if an exchange changes a row: a touched plane has no side.
     fn counts(self, row: &Observation) -> bool {
         match self {
             Names::Targets(a, b) => [a, b].contains(&row.target),
@@ -52,7 +52,7 @@ impl Names {
         }
     }
 
-    /// Rows of which the exchange of all is as good as that of none: those of each plane, or all that count.
+    /// Groups of rows for which exchanging all is as good as exchanging none: those of each plane, or all that count.
     fn groups(self, all: &Dataset) -> Vec<Vec<usize>> {
         let place = |row: &usize| if self == Names::Sides { all.observations[*row].station } else { 0 };
         let mut groups = vec![Vec::new(); all.station_count()];
@@ -73,7 +73,7 @@ impl Names {
         }
     }
 
-    /// Exchanges the names in an estimate; of sides, those of the plane of a row.
+    /// Exchanges the names in an estimate; for sides, those of the plane of a row.
     fn exchange(self, estimate: &mut Estimate, row: &Observation) {
         match self {
             Names::Targets(a, b) => estimate.base_from_target.swap(a, b),
@@ -98,14 +98,14 @@ pub(crate) fn starts(all: &Dataset) -> [Range<usize>; 3] {
     [0..all.len(), 0..half, half..all.len()]
 }
 
-/// Two names, with the rows that fit better if they are exchanged in them.
+/// Two names, with the rows that fit better if the names are exchanged in them.
 pub(crate) struct Exchange {
     /// Error of all rows after the exchange, metres.
     pub(crate) error_m: f64,
     pub(crate) names: Names,
-    /// The rows, of those that were searched.
+    /// Exchanged rows, of those that were searched.
     pub(crate) rows: Vec<usize>,
-    /// Their errors before and after, metres.
+    /// Errors of these rows before and after, metres.
     before_m: f64,
     after_m: f64,
 }
@@ -139,7 +139,7 @@ impl Exchange {
     }
 }
 
-/// First models: of all rows, and of either half; of sides, with those blocks of rows exchanged that fit best so.
+/// First models: of all rows, and of either half. For sides, those blocks of rows are exchanged that fit best so.
 fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names) -> Vec<Estimate> {
     if names != Names::Sides {
         let part = |range: Range<usize>| {
@@ -172,7 +172,7 @@ fn firsts(fitter: &Fitter<'_>, all: &Dataset, names: Names) -> Vec<Estimate> {
     found.into_iter().take(FIRSTS).map(|(estimate, _)| estimate).collect()
 }
 
-/// The rows of a pair that fit better exchanged, from several first models.
+/// Rows of a pair of names that fit better exchanged, from several first models.
 pub(crate) fn exchanged(fitter: &Fitter<'_>, all: &Dataset, names: Names, base: &Score) -> Option<Exchange> {
     let best = firsts(fitter, all, names)
         .into_iter()
@@ -227,7 +227,7 @@ fn reassigned(
             least = misfit.total_m;
         }
     }
-    // The data do not show which of the two names is right: the smaller set of rows counts as exchanged.
+    // The data do not determine which of the two names is right: the smaller set of rows counts as exchanged.
     for group in names.groups(all) {
         let chosen = group.iter().filter(|&&row| swapped[row]).count();
         if let Some(&first) = group.first()
@@ -247,7 +247,7 @@ fn reassigned(
     error.is_finite().then_some((error, concerned, before, after, rest))
 }
 
-/// The data with the names exchanged in those of some rows that count.
+/// The data with the names exchanged in the chosen rows that count.
 fn with_exchanged(all: &Dataset, names: Names, which: impl Fn(usize) -> bool) -> Dataset {
     let mut data = all.clone();
     for (row, observation) in data.observations.iter_mut().enumerate() {
@@ -258,7 +258,7 @@ fn with_exchanged(all: &Dataset, names: Names, which: impl Fn(usize) -> bool) ->
     data
 }
 
-/// Place of some of a pair's rows: from a row on, up to a row, or single rows.
+/// Description of some of a pair's rows: from a row on, up to a row, or single rows.
 fn where_words(data: &Dataset, rows: &[u32], names: Names, concerned: &[u32]) -> String {
     let own = |row: &u32| names.counts(&data.observations[*row as usize]);
     let own: Vec<u32> = rows.iter().copied().filter(own).collect();

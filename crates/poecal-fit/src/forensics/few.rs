@@ -11,16 +11,16 @@ use crate::state::{Chain, Estimate, Linkage};
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::{Dataset, Observation};
 
-/// Most targets that are all fitted together: each adds unknowns, and a subsample has few rows of each.
+/// Largest number of targets that are all fitted together: each adds unknowns, and a subsample has few rows of each.
 const TARGETS: usize = 12;
-/// Most targets that are fitted together where fewer have too few rows for a subsample.
+/// Largest number of targets that are fitted together where fewer have too few rows for a subsample.
 const MOST_TARGETS: usize = 24;
 
 /// The rows of a few targets, renumbered.
 pub(crate) struct FewTargets<'a, 'd> {
     pub(crate) fitter: Cow<'d, Fitter<'a>>,
     pub(crate) data: Cow<'d, Dataset>,
-    /// Their numbers among all targets; `None` if they are all.
+    /// Numbers of these targets among all; `None` if they are all.
     kept: Option<Vec<usize>>,
 }
 
@@ -90,7 +90,7 @@ impl<'a, 'd> FewTargets<'a, 'd> {
         }
     }
 
-    /// An estimate of these targets, with all others at the mean place of their rows (theory.md §6 (32)).
+    /// An estimate of these targets, with all others at the mean position of their rows (theory.md §6 (32)).
     pub(crate) fn placed(&self, fitter: &Fitter<'_>, all: &Dataset, found: &Estimate) -> Estimate {
         let Some(kept) = &self.kept else { return found.clone() };
         let mut estimate = fitter.start.clone();
@@ -105,7 +105,7 @@ impl<'a, 'd> FewTargets<'a, 'd> {
     }
 }
 
-/// The rows of these targets, renumbered, and their places in all data.
+/// The rows of these targets, renumbered, and their indices in all data.
 fn reduced(all: &Dataset, kept: &[usize]) -> (Dataset, Vec<usize>) {
     let mut numbers = vec![None; all.targets.len()];
     kept.iter().enumerate().for_each(|(number, &target)| numbers[target] = Some(number));
@@ -121,7 +121,7 @@ fn reduced(all: &Dataset, kept: &[usize]) -> (Dataset, Vec<usize>) {
     (few, rows)
 }
 
-/// Puts each target at the mean place of its rows.
+/// Moves each target to the mean position of its rows.
 fn place(fitter: &Fitter<'_>, all: &Dataset, estimate: &mut Estimate) {
     let mut places = vec![(0_usize, Vector3::zeros()); estimate.base_from_target.len()];
     let mut turns: Vec<Vec<Matrix3<f64>>> = vec![Vec::new(); places.len()];

@@ -20,17 +20,18 @@ use poecal_numerics::solve::{Options, minimize};
 pub(crate) const SAMPLE: usize = 90;
 /// Position noise that weights the rows, metres: only its ratio to the rotation noise counts.
 const NOISE_M: f64 = 1e-3;
-/// Calibrated error, as a share of the reach, that needs no diagnosis: real robots are below it.
+/// Calibrated error, as a share of the reach, that needs no diagnosis: the errors of real robots are below it.
 const QUIET_SHARE: f64 = 5e-4;
 /// Largest ratio of a single row's error to the root mean square.
 const OUTSTANDING: f64 = 8.0;
-/// Largest tilt of an axis by a calibration that does not put its joint's zero or sign in doubt: 4 degrees.
+/// Largest tilt of an axis by a calibration at which its joint's zero and sign are not in doubt: 4 degrees.
 const QUIET_TILT_RAD: f64 = 0.07;
 /// The same for the shift of an axis, as a share of the reach.
 const QUIET_SHIFT_SHARE: f64 = 0.01;
-/// Weight of the prior in the end: enough for what the measurements do not show, too little to be seen in the errors.
+/// Weight of the prior at the end. It constrains the unknowns that the measurements do not determine, and is too small to affect the
+/// errors.
 const WEAK: f64 = 1e-3;
-/// Weight of a prior by which gross errors are not taken in.
+/// Weight of a prior with which gross errors do not move the axes.
 const STRONG: f64 = 100.0;
 /// Iterations of a calibration to the optimum.
 pub(crate) const LONG: usize = 60;
@@ -42,7 +43,7 @@ pub(crate) const SHORT: usize = 12;
 pub(crate) struct Misfit {
     /// Root mean square distance, metres.
     pub(crate) position_m: f64,
-    /// Root mean square angle, radians; 0 where no angle was measured.
+    /// Root mean square angle, radians; 0 if no angle was measured.
     pub(crate) rotation_rad: f64,
     /// Both together, an angle counted as its arc at `length_m`.
     pub(crate) total_m: f64,
@@ -72,7 +73,8 @@ pub(crate) struct Fitter<'a> {
     pub(crate) length_m: f64,
     pub(crate) start: Estimate,
     pub(crate) noise: Noise,
-    /// Of measurements that may have no length of their own: the prior of the axes, and how far the nominal robot moves the targets.
+    /// For measurements that may have no length of their own: the prior of the axes, and the spread of the targets by the nominal robot,
+    /// metres.
     pub(crate) constrained: Option<(Prior, f64)>,
     /// Weight of the prior.
     pub(crate) weight: f64,
@@ -80,11 +82,11 @@ pub(crate) struct Fitter<'a> {
 
 impl<'a> Fitter<'a> {
     pub(crate) fn new(robot: &'a Robot, data: &Dataset, device_free: bool) -> Self {
-        // Not from strokes in the data, whose unit may be wrong.
+        // The length is not taken from strokes in the data, whose unit may be wrong.
         let length_m = robot.reach_m() / 3.0;
         let noise = Noise::new(NOISE_M, NOISE_M / length_m);
         let start = delivered(robot, data);
-        // Of directions no smaller robot fits better.
+        // With directions alone no smaller robot fits better.
         let has_lengths = [Quantity::Position, Quantity::Distance, Quantity::Contact, Quantity::Height];
         let weight = if has_lengths.iter().any(|&quantity| data.has(quantity)) { 1.0 } else { WEAK };
         let mut fitter = Fitter { robot, device_free, length_m, start, noise, constrained: None, weight };
@@ -97,7 +99,7 @@ impl<'a> Fitter<'a> {
         fitter
     }
 
-    /// Whether measurements may have no length of their own.
+    /// True if measurements may have no length of their own.
     pub(crate) fn is_constrained(&self) -> bool {
         self.constrained.is_some()
     }
@@ -121,8 +123,8 @@ impl<'a> Fitter<'a> {
         (places.iter().map(|place| (place - mean).norm_squared()).sum::<f64>() / count).sqrt()
     }
 
-    /// Factor on errors of data whose targets move less than those that were given: without a length of their own, smaller motions have
-    /// smaller errors.
+    /// Factor on errors of data whose targets move less than those of the original data: without a length of their own, smaller motions
+    /// have smaller errors.
     fn enlarged(&self, data: &Dataset) -> f64 {
         let ratio = |(_, given): &(Prior, f64)| (given / self.spread_m(data).max(f64::MIN_POSITIVE)).max(1.0);
         self.constrained.as_ref().map_or(1.0, ratio)
@@ -182,12 +184,12 @@ impl<'a> Fitter<'a> {
         self.fit(data, registered, free, iterations)
     }
 
-    /// The same, with a prior that leaves errors to what the measurements show.
+    /// The same fitter, with a prior that leaves the errors to the measurements.
     pub(crate) fn with_weak_prior(&self) -> Self {
         Fitter { weight: WEAK, ..self.clone() }
     }
 
-    /// The same, with a prior that keeps the axes near nominal whatever the errors.
+    /// The same fitter, with a prior that keeps the axes near nominal whatever the errors.
     pub(crate) fn with_strong_prior(&self) -> Self {
         Fitter { weight: STRONG, ..self.clone() }
     }
@@ -234,19 +236,19 @@ impl<'a> Fitter<'a> {
         start.recentre(&session, &rows);
         let prior = self.constrained.as_ref().map(|(prior, _)| (prior, self.weight));
         let problem = Problem::new(session, rows, free, self.noise).with_prior(prior);
-        // Without geodesic steps: hypotheses that explain nothing would take most of the time.
+        // Geodesic steps are off: hypotheses that explain nothing would take most of the time.
         let options = Options { iterations, acceleration: false, ..Options::default() };
         let (estimate, _, _) = minimize(&problem, start, &options);
         let misfit = self.misfit(&session, &estimate);
         (estimate, misfit)
     }
 
-    /// Estimate and errors of the given data.
+    /// Estimate and errors of the supplied data.
     pub(crate) fn judged(&self, data: &Dataset) -> (Estimate, Score) {
         let (start, registered) = self.registered(data);
         let (mut estimate, mut calibrated) = self.calibrated(data, &start, LONG);
         if self.is_constrained() {
-            // Less is seen of each row, so that a fit ends in another valley sooner: not from a model that is near nominal.
+            // Each row measures less, so that a fit ends in a local minimum more often; a start near nominal does not.
             let near = self.with_strong_prior().calibrated(data, &start, LONG).0;
             let (other, misfit) = self.calibrated(data, &near, LONG);
             if misfit.total_m < calibrated.total_m {
@@ -256,7 +258,7 @@ impl<'a> Fitter<'a> {
         (estimate, Score { registered, calibrated })
     }
 
-    /// Whether nothing needs a diagnosis: a calibration explains the data with each axis near nominal.
+    /// True if the data need no diagnosis: a calibration explains them with each axis near nominal.
     pub(crate) fn is_sound(&self, data: &Dataset, calibrated: &Estimate) -> bool {
         let errors = self.session(data, &self.packed(data)).errors(&data.all_rows(), calibrated);
         let totals = errors.iter().map(|error| self.squared_m2(error));
@@ -275,7 +277,7 @@ impl<'a> Fitter<'a> {
         let is_near = |(screw, joint): (&Screw, &Joint)| {
             let tilt = screw.direction().angle(&joint.screw.direction());
             let place = joint.frame.translation;
-            // A prismatic joint has no place.
+            // A prismatic joint has no position.
             let shift = match joint.kind {
                 JointKind::Revolute => (screw.nearest_point(&place) - place).norm(),
                 JointKind::Prismatic => 0.0,

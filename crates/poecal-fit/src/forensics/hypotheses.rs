@@ -8,7 +8,7 @@ use super::change::{Change, Stream};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::{Joint, ReadingKind, Robot, level};
 
-/// Most files of which the units of each are compared.
+/// Largest number of files of which the units are compared.
 const MOST_FILES: usize = 6;
 
 /// A hypothetical mistake.
@@ -28,7 +28,7 @@ impl Hypothesis {
         Hypothesis { kind, changes: vec![change], action, advice }
     }
 
-    /// The factor on all that was measured.
+    /// Factor on all measured lengths.
     pub(crate) fn resized(&self) -> f64 {
         let factor =
             |change: &Change| if let Change::Resize(factor, _, true) = change { *factor } else { 1.0 };
@@ -47,7 +47,7 @@ impl Hypothesis {
 pub(crate) struct ReadingColumns {
     pub(crate) names: Vec<String>,
     pub(crate) kinds: Vec<ReadingKind>,
-    /// Of a third axis that counts from the level: the second and third reading, and the factor of the second.
+    /// For a third axis that counts from the horizontal: the second and third reading, and the factor of the second.
     level: Option<(usize, usize, f64)>,
 }
 
@@ -135,7 +135,7 @@ pub(crate) fn joint_exchanges(columns: &ReadingColumns) -> Vec<Hypothesis> {
     all
 }
 
-/// A revolute joint's readings as sum or difference with those of the revolute joint before it, as where a controller states the third axis
+/// A revolute joint's readings as sum or difference with those of the revolute joint before it. Some controllers state the third axis
 /// relative to the horizontal.
 pub(crate) fn joint_couplings(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let turning = columns.columns_of_kind(ReadingKind::Angle);
@@ -212,7 +212,7 @@ pub(crate) fn row_shifts(targets: usize) -> Vec<Hypothesis> {
     all
 }
 
-/// Factors that put lengths right which were read in another unit, and what happened then.
+/// Factors that correct lengths read in another unit, and the mistake in words.
 const OTHER_LENGTHS: [(f64, &str); 10] = [
     (1e-3, "millimetres had been read as metres"),
     (1e3, "metres had been read as millimetres"),
@@ -243,7 +243,7 @@ pub(crate) fn length_units(of: Quantity, is_all: bool) -> Vec<Hypothesis> {
     OTHER_LENGTHS.into_iter().map(one).collect()
 }
 
-/// A factor as people read it.
+/// A factor as text of at most four digits.
 fn factor_words(factor: f64) -> String {
     format!("{factor:.3e}").parse::<f64>().unwrap_or(factor).to_string()
 }
@@ -300,7 +300,7 @@ pub(crate) fn zeros() -> Hypothesis {
     )
 }
 
-/// Tilts in another unit. Mirrored ones are those of the opposite direction, seen by a tool that is turned.
+/// Tilts in another unit. Mirrored tilts are those of the opposite direction, measured by a tool that is turned.
 pub(crate) fn tilt_units() -> Vec<Hypothesis> {
     let unit = |factor: f64, meant: &str, read: &str| {
         Hypothesis::new(

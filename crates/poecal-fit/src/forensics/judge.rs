@@ -35,13 +35,13 @@ const SLACK: f64 = 1.2;
 /// Largest registered and calibrated error with the mistake undone, as shares of the reach.
 const REGISTERED_SHARE: f64 = 0.12;
 pub(crate) const CALIBRATED_SHARE: f64 = 5e-3;
-/// Registered error, as a share of the reach, above which a single mistake may not be all: real robots are below it.
+/// Registered error, as a share of the reach, above which there may be more than a single mistake: the errors of real robots are below it.
 pub(crate) const POOR: f64 = 1e-2;
 /// Ratio of the products of both errors from which on several mistakes explain more than one.
 const SEVERAL: f64 = 5.0;
 /// Calibrated errors below this share of the reach are noise.
 const NOISE_SHARE: f64 = 3e-5;
-/// The same of one more unknown: nothing else is compared with it.
+/// The same limit for one more unknown: no other hypothesis is compared with it.
 const FREED_SHARE: f64 = 3e-6;
 /// Factor on the score of a hypothesis with a fitted number: half a turn of one joint is often the sign of its neighbour.
 const FITTED: f64 = 3.0;
@@ -58,7 +58,7 @@ struct Candidate {
     score: Score,
 }
 
-/// The mistake that explains the measurements, if there is one.
+/// Mistake that explains the measurements, if there is one.
 pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) -> Option<Diagnosis> {
     let fitter = &*few.fitter;
     let columns = ReadingColumns::new(fitter.robot);
@@ -69,7 +69,7 @@ pub(crate) fn diagnose(few: &FewTargets<'_, '_>, all: &Dataset, base: &Score) ->
         Some((hypotheses[index].clone(), score))
     };
     let single = of(&hypotheses);
-    // One of two mistakes often explains something.
+    // One of two mistakes often explains part of the error.
     let is_poor = single.as_ref().is_none_or(|(_, score)| fitter.is_poor(score));
     let several = is_poor.then(|| of(&sign_pairs(&columns))).flatten();
     let (best, score) = several
@@ -90,7 +90,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     for of in Quantity::ALL.into_iter().filter(|it| it.unit() == Unit::Metre) {
         let is_of = |row: &Observation| row.measurement.has_length_of(of);
         if sample.observations.iter().any(is_of) {
-            // A height is small beside how far the target moves.
+            // A height is small compared with the motion of the target.
             let is_all = of != Quantity::Height && sample.observations.iter().all(is_of);
             all.extend(length_units(of, is_all));
         }
@@ -119,7 +119,7 @@ fn single_mistakes(fitter: &Fitter<'_>, columns: &ReadingColumns, sample: &Datas
     all
 }
 
-/// Distances that count from elsewhere, which a calibration may take in.
+/// Hypothesis of distances that count from another zero, which a calibration may absorb.
 fn of_zeros(sample: &Dataset) -> Option<Hypothesis> {
     let is_counted = |row: &Observation| {
         row.measurement.has_length_of(Quantity::Distance) && !row.measurement.function().zero_is_unknown
@@ -141,7 +141,7 @@ pub(crate) fn of_lengths(few: &FewTargets<'_, '_>, all: &Dataset) -> Option<Diag
 /// Two or three joints with wrong signs.
 fn sign_pairs(columns: &ReadingColumns) -> Vec<Hypothesis> {
     let count = columns.names.len();
-    // Of many joints only neighbours: triples grow with the cube.
+    // With many joints, only neighbours are combined: the number of triples grows with the cube.
     let reach = if count > MANY_JOINTS { 3 } else { count };
     let mut all = Vec::new();
     for a in 0..count {
@@ -203,7 +203,7 @@ fn best_of(
 }
 
 impl Score {
-    /// Whether both errors together are so much smaller that a mistake more is worth it.
+    /// True if both errors together are so much smaller that one more mistake is justified.
     fn is_far_better(&self, other: &Score) -> bool {
         let product = |it: &Score| it.registered.total_m * it.calibrated.total_m;
         SEVERAL * product(self) < product(other)
@@ -211,8 +211,8 @@ impl Score {
 }
 
 impl Candidate {
-    /// Registered and calibrated error, metres, at the size of the given data. The calibrated robot can have any size; the nominal one
-    /// cannot, so its error counts less only for data that have shrunk.
+    /// Registered and calibrated error, metres, at the size of the supplied data. The calibrated robot can have any size; the nominal
+    /// one cannot, so its error counts less only for data that have shrunk.
     fn errors_m(&self) -> (f64, f64) {
         let registered = self.score.registered.resized_m((1.0 / self.resized).max(1.0));
         (registered, self.score.calibrated.resized_m(1.0 / self.resized))
@@ -227,12 +227,12 @@ impl Fitter<'_> {
         fitted * registered * calibrated.max(NOISE_SHARE * self.reach_m())
     }
 
-    /// Whether what a mistake leaves is more than a robot's own errors.
+    /// True if the error that remains is more than a robot's own errors.
     fn is_poor(&self, score: &Score) -> bool {
         score.registered.total_m > POOR * self.reach_m()
     }
 
-    /// Whether a hypothesis reduces the errors enough, to a plausible size.
+    /// True if a hypothesis reduces the errors enough, to a plausible size.
     fn explains(&self, base: &Score, one: &Candidate) -> bool {
         let (reach, after) = (self.reach_m(), one.errors_m());
         let is_freed = one.kind == DiagnosisKind::DistanceZero;
@@ -241,7 +241,7 @@ impl Fitter<'_> {
         let calibrated = base.calibrated.total_m.max(noise) / after.1.max(noise);
         let least = if one.kind == DiagnosisKind::JointZero { ZERO_GAIN } else { REGISTERED_GAIN };
         let enough = if is_freed { FREED_GAIN } else { CALIBRATED_GAIN };
-        // A board's depth is noisier than what other devices measure.
+        // A board's depth is noisier than the measurements of other devices.
         let share = if one.kind == DiagnosisKind::BoardSize { 4.0 } else { 1.0 } * CALIBRATED_SHARE;
         (registered > least || calibrated > enough)
             && registered.min(calibrated) * SLACK > 1.0

@@ -1,7 +1,7 @@
 //! Diagnosis of the input: mistakes named with evidence, never corrected (docs/theory.md §9, *Diagnosis of the input*).
 //!
-//! A mistake is a change of readings or measurements. Each hypothesis undoes one, and is named if the nominal robot, or a short
-//! calibration, then explains the measurements far better than before and better than with any other hypothesis.
+//! A mistake is a change of readings or measurements. Each hypothesis undoes one. It is named if the nominal robot, or a short
+//! calibration, then explains the measurements far better than before. It must also be better than any other hypothesis.
 
 mod boards;
 mod change;
@@ -32,12 +32,12 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use repeats::Repeats;
 
-/// DiagnosisOptions of a diagnosis.
+/// Options of a diagnosis.
 #[derive(Clone, Copy, Debug)]
 pub struct DiagnosisOptions<'a> {
-    /// Whether the device frame is unknown (otherwise it is the base frame).
+    /// True if the device frame is unknown (otherwise it is the base frame).
     pub device_free: bool,
-    /// The calibrated model of these data, if there is one: a shortcut where nothing is wrong.
+    /// Calibrated model of these data, if there is one: a shortcut for data without mistakes.
     pub calibrated: Option<&'a Estimate>,
 }
 
@@ -54,7 +54,7 @@ const FEWEST_ROWS: usize = 8;
 /// Rows of the subsample that is searched for single gross errors.
 const WHOLE: usize = 2000;
 
-/// Searches for mistakes in some rows of the data, in their order: docs/theory.md §9, *Diagnosis of the input*. Of robots with more than
+/// Mistakes in some rows of the data, in their order: docs/theory.md §9, *Diagnosis of the input*. For robots with more than
 /// [`MOST_READINGS`] only repeated rows are reported.
 #[must_use]
 pub fn diagnose(
@@ -70,7 +70,7 @@ pub fn diagnose(
         return Vec::new();
     }
     let fitter = Fitter::new(robot, data, options.device_free);
-    // Frames tell enough each by itself; what shows less tells something together only.
+    // Frames suffice each by itself; measurements of less suffice only together.
     if data.station_count() > 1 && !fitter.is_constrained() {
         return station_by_station(robot, data, &rows, options);
     }
@@ -131,7 +131,7 @@ fn station_by_station(
     found
 }
 
-/// The mistake of some rows, repeated rows aside.
+/// Mistake of some rows, apart from repeated rows.
 fn of_rows(
     fitter: &Fitter<'_>,
     data: &Dataset,

@@ -1,4 +1,4 @@
-//! A mistake of a part of the rows: half a file that another program wrote, or wrote otherwise.
+//! A mistake in a part of the rows, such as half a file that another program wrote.
 
 use super::few::FewTargets;
 use super::fitter::{Fitter, sample_of, sampled, taken};
@@ -8,11 +8,12 @@ use poecal_model::measurement::Dataset;
 
 /// Fewest rows of a part.
 const FEWEST: usize = 16;
-/// Least ratio of the registered error of all rows, after a mistake of all of them is undone, and of the other part, to that of a part without one.
+/// Least ratio of other errors to the registered error of a part without a mistake. The others are those of all rows, after a mistake of
+/// all of them is undone, and of the other part.
 const WORSE: f64 = 3.0;
 
-/// The mistake of the first third of the rows or of the last, where the other third is explained far better than it and than all rows are;
-/// `of_all` is what a mistake of all rows leaves, metres.
+/// Mistake of the first third of the rows or of the last. The other third is then explained far better than it and than all rows. `of_all`
+/// is the error that remains after a mistake of all rows is undone, metres.
 pub(super) fn diagnose(
     fitter: &Fitter<'_>,
     data: &Dataset,
@@ -38,7 +39,7 @@ pub(super) fn diagnose(
     Some(Diagnosis { statement, rows: part.to_vec(), ..found })
 }
 
-/// Whether a calibration explains all rows.
+/// True if a calibration explains all rows.
 fn is_explained(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32], options: &DiagnosisOptions<'_>) -> bool {
     let whole = taken(data, &sample_rows(rows, WHOLE));
     options.calibrated.is_some_and(|estimate| fitter.is_sound(&whole, estimate))

@@ -1,4 +1,4 @@
-//! Places under another name, and known distances of places that are others.
+//! Stations under another name, and known distances of stations that differ from the stated ones.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use super::{Diagnosis, DiagnosisKind};
 use crate::state::Estimate;
 use poecal_model::measurement::{Dataset, KnownLength, Observation, Quantity};
 
-/// Most pairs of places that are exchanged.
+/// Largest number of pairs of stations that are exchanged.
 const PAIRS: usize = 15;
-/// Least difference of a known distance from what is found without it: as a share, and in errors of a row.
+/// Least difference of a known distance from the distance that is estimated without it: as a share, and in errors of a row.
 const OTHER_SHARE: f64 = 0.05;
 const OTHER_ERRORS: f64 = 4.0;
 
-/// Two places whose names are exchanged in some rows, or the two sides of one. `rows` are those of `all` in the data.
+/// Two stations whose names are exchanged in some rows, or the two sides of one. `rows` are those of `all` in the data.
 pub(crate) fn names(
     fitter: &Fitter<'_>,
     data: &Dataset,
@@ -36,7 +36,7 @@ pub(crate) fn names(
     Some(best.told(data, rows, |station| data.station_words(station)))
 }
 
-/// Pairs of places that may be exchanged: all pairs of a few of one kind, of many those with the most votes of single rows.
+/// Pairs of stations that may be exchanged: all pairs if there are few of one kind, otherwise those with the most votes of single rows.
 fn pairs(fitter: &Fitter<'_>, all: &Dataset, estimate: &Estimate) -> Vec<(usize, usize)> {
     let count = all.station_count();
     let is_alike = |a: usize, b: usize| all.station_word(a) == all.station_word(b);

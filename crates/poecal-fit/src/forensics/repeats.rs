@@ -6,9 +6,9 @@ use super::unnamed::{self, contradiction_m};
 use super::{Diagnosis, DiagnosisKind};
 use poecal_model::measurement::Dataset;
 
-/// Most rows of one configuration with which a row is compared: a robot may stand still for thousands.
+/// Largest number of rows of one configuration with which a row is compared: a robot may rest for thousands.
 const NEAR: usize = 100;
-/// Most pairs in a statement.
+/// Largest number of pairs in a statement.
 const NAMED: usize = 3;
 
 /// An earlier and a later row of one target with the same readings.
@@ -20,7 +20,7 @@ pub(crate) struct Repeats {
     pub(crate) repeated: Option<Diagnosis>,
     /// Rows that contradict others.
     pub(crate) contradicting: Option<Diagnosis>,
-    /// Their cause, if they are of several targets.
+    /// Cause of contradicting rows, if they are of several targets.
     pub(crate) unnamed: Option<Diagnosis>,
 }
 
@@ -97,7 +97,7 @@ fn contradiction(data: &Dataset, contradicting: &[Pair], furthest_mm: f64) -> Op
     })
 }
 
-/// The first pairs of rows by name.
+/// Description of the first pairs of rows by name.
 fn pairs(data: &Dataset, pairs: &[(u32, u32)], word: &str) -> String {
     let named = pairs.iter().take(NAMED);
     let named: Vec<String> =

@@ -7,14 +7,15 @@ use super::hypotheses::{Hypothesis, ReadingColumns, toml_key};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{ReadingKind, Term};
 
-/// Least difference of a factor from 1 that is a mistake: a calibration finds smaller errors of gears.
+/// Least difference of a factor from 1 that is a mistake: a calibration corrects smaller errors of gear ratios.
 const LEAST: f64 = 0.03;
-/// Share by which a fitted factor may be off that of per cent of the range, to be it: the nominal screws are off too.
+/// Largest relative difference of a fitted factor from that of per cent of the range at which both count as equal: the nominal screws have
+/// errors too.
 const SAME: f64 = 0.02;
-/// Most per cent.
+/// Largest reading in per cent.
 const WHOLE: f64 = 100.0;
 
-/// The factors that fit best, if some are gross.
+/// Factors that fit best, if some are gross.
 pub(crate) fn joint_scales(
     fitter: &Fitter<'_>,
     columns: &ReadingColumns,
@@ -58,7 +59,7 @@ pub(crate) fn joint_scales(
     describe(columns, factors, is_per_cent)
 }
 
-/// What some factors are called; none if none is off.
+/// Hypothesis of some factors; `None` if each is near 1.
 fn describe(columns: &ReadingColumns, factors: Vec<f64>, is_per_cent: bool) -> Option<Hypothesis> {
     let off: Vec<(&str, f64)> = columns
         .names

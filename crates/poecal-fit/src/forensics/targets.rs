@@ -12,15 +12,15 @@ use super::{Diagnosis, DiagnosisKind};
 use crate::state::Estimate;
 use poecal_model::measurement::Dataset;
 
-/// Least ratio of two targets' distances from their nominal places before and after the exchange.
+/// Least ratio of two targets' distances from their nominal positions before and after the exchange.
 const NEARER: f64 = 3.0;
-/// Most targets whose names are compared: those that are farthest from nominal.
+/// Largest number of targets whose names are compared: those that are farthest from nominal.
 const MOVED: usize = 200;
-/// Most pairs of targets that are tested, and most rows that vote for them.
+/// Largest number of pairs of targets that are tested, and of rows that vote for them.
 const PAIRS: usize = 15;
 const SUSPECTS: usize = 500;
 
-/// Two targets of the model at each other's places: their names are exchanged in all rows.
+/// Two targets of the model at each other's positions: their names are exchanged in all rows.
 pub(crate) fn names(fitter: &Fitter<'_>, data: &Dataset, found: &Estimate) -> Option<Diagnosis> {
     let of_model: BTreeSet<&String> = fitter.robot.targets.iter().map(|(name, _)| name).collect();
     let known = |target: usize| data.targets.get(target)?.as_ref().filter(|name| of_model.contains(name));
@@ -89,7 +89,7 @@ pub(crate) fn rows(
     Some(best.told(data, rows, name))
 }
 
-/// Pairs of targets that may be exchanged: all pairs of few targets, of many those with the most votes of single rows.
+/// Pairs of targets that may be exchanged: all pairs of few targets, otherwise those with the most votes of single rows.
 fn pairs(fitter: &Fitter<'_>, all: &Dataset) -> Vec<(usize, usize)> {
     let count = all.targets.len();
     if count * count.saturating_sub(1) / 2 <= PAIRS {

@@ -1,4 +1,4 @@
-//! Several targets under one name: rows of one configuration at several places that keep their distances.
+//! Several targets under one name: rows of one configuration at several positions that keep their distances.
 
 use nalgebra::Vector3;
 
@@ -12,14 +12,14 @@ use poecal_numerics::distributions::median;
 /// repeatability.
 const CONTRADICTION_SHARE: f64 = 5e-3;
 const CONTRADICTION_RAD: f64 = 0.035;
-/// Fewest configurations with the same places.
+/// Fewest configurations with the same positions.
 const FEWEST: usize = 3;
-/// Their least share of the configurations with several places.
+/// Least share of these among the configurations with several positions.
 const SHARE: f64 = 2.0 / 3.0;
 /// Largest deviation of a distance from the usual one, as a share of it.
 const TOLERANCE: f64 = 0.1;
 
-/// Places of one configuration, in the order of their first rows.
+/// Positions of one configuration, in the order of their first rows.
 struct Places {
     rows: Vec<u32>,
     first: Vec<Vector3<f64>>,
@@ -78,7 +78,7 @@ pub(crate) fn diagnose<'a>(
     })
 }
 
-/// Places of the rows of a configuration: rows that do not contradict a place's first row belong to it.
+/// Positions of the rows of a configuration: rows that do not contradict a position's first row belong to it.
 fn places(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Places {
     let mut first: Vec<&Measurement> = Vec::new();
     for seen in rows.iter().filter_map(|&row| data.observations.get(row as usize)) {
@@ -96,10 +96,10 @@ fn places(fitter: &Fitter<'_>, data: &Dataset, rows: &[u32]) -> Places {
     Places { rows: rows.to_vec(), first, distances }
 }
 
-/// Number of different places.
+/// Largest number of different positions.
 const MOST: usize = 12;
 
-/// Whether the second place is the first, shifted by the same vector everywhere and measured later: then the device was moved.
+/// True if the second position is the first one, shifted by the same vector everywhere and measured later: then the device was moved.
 fn is_shift(alike: &[&Places]) -> bool {
     let shift = |places: &&Places| match places.first.as_slice() {
         [first, second, ..] => second - first,
@@ -115,7 +115,7 @@ fn is_shift(alike: &[&Places]) -> bool {
     is_same && !alike.iter().all(in_one_go)
 }
 
-/// The most frequent number, of equally frequent ones the larger.
+/// The most frequent number; the larger one of equally frequent numbers.
 fn usual(mut numbers: Vec<usize>) -> Option<usize> {
     numbers.sort_unstable();
     numbers.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?.first().copied()

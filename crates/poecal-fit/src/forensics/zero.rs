@@ -1,4 +1,4 @@
-//! The zero of a joint elsewhere: a fit of its offset from several starts.
+//! A gross offset of one joint: a fit of its offset from several starts.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -17,11 +17,11 @@ const LEAST_SHARE: f64 = 0.01;
 const FITTED_STARTS: usize = 3;
 const FITTED_ITERATIONS: usize = 30;
 
-/// The best offset of each joint, if it is gross.
+/// Best offset of each joint, if it is gross.
 pub(crate) fn joint_zeros(fitter: &Fitter<'_>, columns: &ReadingColumns, data: &Dataset) -> Vec<Hypothesis> {
     let robot = fitter.robot;
     let own = |column: &usize| columns.only_joint(robot, *column).is_some();
-    // An unknown device frame takes in the zero of a joint that is before all others.
+    // An unknown device frame absorbs the offset of a joint that is before all others.
     let is_taken_in = |column: &usize| {
         let before_all = |row: &Observation| {
             let first = fitter.start.tree.route(Sight::from(row)).first();

@@ -1,4 +1,4 @@
-//! Bounds of a frame: distance and angle within which the true one is with 95 % probability.
+//! Bounds of a frame: distance and angle within which the true frame is with 95 % probability.
 
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 
@@ -10,7 +10,7 @@ use poecal_numerics::distributions::f_quantile;
 /// Probability outside the bounds.
 const OUTSIDE: f64 = 0.05;
 
-/// A frame with what is known of it.
+/// A frame with its uncertainty.
 ///
 /// ```
 /// # use poecal_fit::hand_eye::Placed;
@@ -20,15 +20,15 @@ const OUTSIDE: f64 = 0.05;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Its pose in its parent.
+    /// Pose in its parent.
     pub pose: Pose,
     /// Distance of its origin from the true one that 95 % of such results do not exceed, metres.
     pub bound95_m: f64,
-    /// The same of the angle between its axes and the true ones, radians.
+    /// Angle between its axes and the true ones that 95 % of such results do not exceed, radians.
     pub bound95_rad: f64,
-    /// Standard deviations of its place along the parent's axes, metres.
+    /// Standard deviations of its position along the parent's axes, metres.
     pub sigma_m: Vector3<f64>,
-    /// Standard deviations of its turn about the parent's axes, radians.
+    /// Standard deviations of its orientation about the parent's axes, radians.
     pub sigma_rad: Vector3<f64>,
 }
 
@@ -39,19 +39,19 @@ impl Default for Placed {
     }
 }
 
-/// Which of the two frames, as one that is placed in its parent.
+/// One of the two frames, in its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// The outer frame, inverted: the camera in what carries it.
+    /// The outer frame, inverted: the camera in its parent.
     Camera,
-    /// The inner frame: the target in what carries it.
+    /// The inner frame: the target in its parent.
     Target,
 }
 
 type Map = SMatrix<f64, 6, 12>;
 
-/// The frame of a side, and how shift and turn of it in its parent follow from a step of the unknowns; `point` of the target has the
-/// frames.
+/// The frame of a side, and the linear map from a step of the unknowns to its shift and turn in its parent. The frames are those of
+/// `point` of the target.
 pub(crate) fn placed(frames: &Frames, point: &Vector3<f64>, side: Side) -> (Pose, Map) {
     let mut map = Map::zeros();
     match side {
@@ -95,8 +95,8 @@ pub(crate) fn mapped(map: &Map, covariance: &[f64]) -> SMatrix<f64, 6, 6> {
     map * covariance * map.transpose()
 }
 
-/// Length that 95 % of vectors of this covariance do not exceed, whose variances are known with the degrees of freedom of their parts:
-/// the sum of squares is taken as one of fewer squares with the same mean and variance (satterthwaite1946).
+/// Length that 95 % of vectors of this covariance do not exceed, whose variances are known with the degrees of freedom of their parts.
+/// The sum of squares is approximated by one of fewer squares with the same mean and variance (satterthwaite1946).
 pub(crate) fn length_within(covariance: &Matrix3<f64>, parts: &[(f64, f64)]) -> f64 {
     let trace = covariance.trace();
     if trace <= 0.0 || !trace.is_finite() {
@@ -108,8 +108,8 @@ pub(crate) fn length_within(covariance: &Matrix3<f64>, parts: &[(f64, f64)]) -> 
     (trace * f_quantile(OUTSIDE, squares, freedom)).sqrt()
 }
 
-/// Whether frames of two fits differ by more than noise: the ratio of their squared distance, in units of its own standard deviation, to
-/// that which chance exceeds with a probability; above 1 they differ. Of one side alone.
+/// Ratio by which frames of two fits differ; above 1 they differ by more than noise. It is their squared distance, in units of its own
+/// standard deviation, over the value that chance exceeds with a probability. One side alone is compared.
 pub(crate) fn difference(
     one: (&Frames, &Vector3<f64>, &Spread, &Noise),
     other: (&Frames, &Vector3<f64>, &Spread, &Noise),

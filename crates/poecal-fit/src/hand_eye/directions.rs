@@ -1,8 +1,8 @@
-//! Which way round the two lists of poses are, and whether the camera is where it is said to be.
+//! Directions of the two lists of poses, and plausibility of the stated camera mounting.
 //!
-//! A camera in the hand whose arm's poses are inverted has the equations of a camera beside the robot, with camera and target exchanged. So the
-//! fit shows only whether an odd number of these three is other than stated: the camera's end, the arm's list, the target's list. Which one it is
-//! follows from where camera and target would then be.
+//! A camera in the hand whose arm's poses are inverted has the equations of a camera beside the robot, with camera and target exchanged. The fit
+//! therefore determines only whether an odd number of three statements is wrong: the camera's mounting, the arm's list, the target's list. The
+//! wrong one follows from the positions that camera and target would have.
 
 use super::CameraPlace;
 use super::equations::{Frames, Pair};
@@ -13,7 +13,7 @@ use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::median;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// The pairs of two lists, read in these directions.
+/// Pairs of two lists, read in these directions.
 pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &Directions) -> Vec<Pair> {
     let inverts = by.flange_inverted != (camera == CameraPlace::InHand);
     let turned = |pose: &Pose, inverts: bool| if inverts { pose.inverse() } else { *pose };
@@ -25,32 +25,32 @@ pub(crate) fn pairs(flange: &[Pose], target: &[Pose], camera: CameraPlace, by: &
 /// Errors below which nothing is compared, metres and radians.
 const EXACT: f64 = 1e-6;
 
-/// How well poses fit: the sum of the logarithms of the median errors, with the frames and these errors, metres and radians.
+/// Score of a fit: the sum of the logarithms of the median errors, with the frames and these errors, metres and radians.
 pub(crate) fn score(pairs: &[Pair]) -> Option<(f64, Frames, (f64, f64))> {
     let frames = start(pairs, STARTS)?;
     let (shift, turn) = medians(pairs, &frames);
     Some((shift.max(EXACT).ln() + turn.max(EXACT).ln(), frames, (shift, turn)))
 }
 
-/// How much smaller the product of the median errors must be for a direction to be the better one.
+/// Factor by which the product of the median errors must be smaller for a direction to be the better one.
 const BETTER: f64 = 2.0;
 /// Median angle, radians, above which poses fit in no direction.
 const NO_FIT: f64 = 0.1;
-/// Largest distance from the flange of what is on it, as a share of the median distance of the flange from the base: a reach is 1.3 to 1.6 of
-/// these distances, so this is about a third of the reach.
+/// Largest distance from the flange of an object on it, as a share of the median distance of the flange from the base. A reach is 1.3 to 1.6
+/// of these distances, so this is about a third of the reach.
 const FARTHEST: f64 = 0.5;
-/// How many times farther from the base what stays is, at least, than what is on the flange is from the flange: nearer, it would be inside the
-/// robot.
+/// Least ratio of the static object's distance from the base to the mounted object's distance from the flange: a nearer object would be inside
+/// the robot.
 const FARTHER: f64 = 2.0;
 
-/// Where camera and target would be.
+/// Distances of camera and target.
 #[derive(Clone, Copy)]
 struct Distances {
-    /// Of what is on the flange from it, metres.
+    /// Distance of the mounted object from the flange, metres.
     on_flange: f64,
-    /// Of what stays from the base, metres.
+    /// Distance of the static object from the base, metres.
     in_base: f64,
-    /// Median distance of the flange from the base, metres: the same of inverted poses.
+    /// Median distance of the flange from the base, metres; it is the same for inverted poses.
     of_flange: f64,
 }
 
@@ -65,17 +65,17 @@ impl Distances {
         Distances { on_flange, in_base, of_flange }
     }
 
-    /// With what is on the flange and what stays exchanged.
+    /// The same distances with the mounted and the static object exchanged.
     fn exchanged(self) -> Self {
         Distances { on_flange: self.in_base, in_base: self.on_flange, ..self }
     }
 
-    /// Whether a robot can be so: what is on the flange is near it, and what stays is outside the base.
+    /// True if a robot can have these distances: the mounted object is near the flange, and the static one is outside the base.
     fn is_plausible(self) -> bool {
         self.on_flange <= FARTHEST * self.of_flange && self.in_base >= FARTHER * self.on_flange
     }
 
-    /// Where both are, in words.
+    /// Positions of both, in words.
     fn words(self, camera: CameraPlace) -> String {
         let mm = |metres: f64| 1e3 * metres;
         format!(
@@ -88,21 +88,20 @@ impl Distances {
     }
 }
 
-/// Which directions of the target's list its poses allow: a camera sees what is in front of it.
+/// Directions of the target's list that its poses allow: a camera sees objects in front of it.
 fn seen(target: &[Pose]) -> (bool, bool) {
     let is_before = |it: &Pose| it.translation.z > 0.0 && it.translation.xy().norm() < it.translation.z;
     let as_read = target.iter().all(is_before);
     let turned = target.iter().all(|it| is_before(&it.inverse()));
-    // Neither: the axes of its camera are others than OpenCV's, and nothing follows.
+    // If neither direction is allowed, the camera's axes are not those of OpenCV, and nothing follows.
     (as_read || !turned, turned || !as_read)
 }
 
-/// The directions in which the lists fit, and a sentence if they are not the usual ones; with whether camera and target lie as if they were
-/// exchanged.
+/// Directions in which the lists fit, with a finding if they are unusual, or if camera and target lie as if they were exchanged.
 ///
 /// # Errors
-/// [`ErrorKind::Problem`] if the poses fit in no direction, if the camera is at the other end, or if it cannot be said which of both is
-/// other than stated.
+/// [`ErrorKind::Problem`] if the poses fit in no direction, or if the camera is at the other end. It is also the error if the data do
+/// not determine which of both is other than stated.
 pub(crate) fn found(
     flange: &[Pose],
     target: &[Pose],
@@ -133,7 +132,8 @@ pub(crate) fn found(
         let is_open = !stated && (arm_is_open || target_is_open);
         return Ok((usual, (is_open && is_exchanged).then(|| exchanged(distances, camera))));
     };
-    // Of the arm's list inverted; of the target's list inverted, and of the other end, camera and target are exchanged.
+    // These are the distances for the arm's list inverted. For the target's list inverted, and for the other end, camera and target are
+    // exchanged.
     let distances = Distances::from_frames(&frames_inverted, flange, camera);
     let target_as_stated = options.target_inverted.is_some() || may_be_as_read;
     if arm_is_open && target_as_stated && distances.is_plausible() {
@@ -154,7 +154,7 @@ fn other(camera: CameraPlace) -> CameraPlace {
     }
 }
 
-/// The error of a camera at the other end; with which lists may be inverted instead: the arm's, the target's.
+/// Error of a camera at the other end. `arm` and `target` are true for lists that may be inverted instead.
 fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool, bool)) -> Error {
     let other = other(camera);
     let mut instead = Vec::new();
@@ -178,7 +178,7 @@ fn at_other_end(distances: Distances, camera: CameraPlace, (arm, target): (bool,
     ))
 }
 
-/// The finding of poses that fit as they are stated, but with camera and target where the other one is likelier.
+/// Finding of poses that fit as they are stated, but with camera and target at positions where the other one is more likely.
 fn exchanged(distances: Distances, camera: CameraPlace) -> Finding {
     let other = other(camera);
     let statement = format!(
@@ -199,7 +199,7 @@ fn place(camera: CameraPlace) -> &'static str {
     }
 }
 
-/// The finding of a list that is inverted.
+/// Finding of a list that is inverted.
 fn said(directions: &Directions, camera: CameraPlace) -> Finding {
     let what = match directions.flange_inverted {
         true => "the poses of the arm are inverted (flange from base)",

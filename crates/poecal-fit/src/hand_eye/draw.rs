@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same in every run.
+//! Pseudo-random numbers that are the same in every run.
 
 use nalgebra::Vector3;
 
@@ -15,12 +15,12 @@ impl Draw {
         self.0 >> 11
     }
 
-    /// Between 0 and 1.
+    /// A uniform number between 0 and 1.
     pub(crate) fn uniform(&mut self) -> f64 {
         (self.next() as f64 + 0.5) / (1u64 << 53) as f64
     }
 
-    /// Of the normal distribution (Box and Muller).
+    /// A number of the standard normal distribution (Box-Muller transform).
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * self.uniform().ln()).sqrt();
         radius * (std::f64::consts::TAU * self.uniform()).cos()
@@ -45,7 +45,7 @@ impl Draw {
     }
 }
 
-/// Errors of a pose, of these standard deviations, about axes.
+/// Errors of a pose, with these standard deviations, about axes.
 pub(crate) fn drawn(draw: &mut Draw, sigmas: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
     let numbers = sigmas.map(|sigma| sigma * draw.normal());
     (Vector3::new(numbers[0], numbers[1], numbers[2]), Vector3::new(numbers[3], numbers[4], numbers[5]))

@@ -15,8 +15,8 @@ struct Session {
     target: Vec<Pose>,
 }
 
-/// An arm of 0.3 to 3 m with what it holds up to 0.5 m off its flange, which is at most 0.3 of its reach; what stays is where a robot has it: a board
-/// within reach, a camera up to twice as far. Every second board has its z axis towards the camera.
+/// An arm of 0.3 to 3 m. The mounted object is up to 0.5 m from the flange, at most 0.3 of the reach. The static object is at a usual position: a
+/// board within reach, a camera up to twice as far. Every second board has its z axis towards the camera.
 fn session(seed: u64) -> Session {
     let mut draw = Draw::new(seed + 71);
     let camera = [CameraPlace::InHand, CameraPlace::Beside][seed as usize % 2];
@@ -34,7 +34,7 @@ fn session(seed: u64) -> Session {
     let mut found = Session { camera, on_flange, flange: Vec::new(), target: Vec::new() };
     let in_base = match camera {
         CameraPlace::InHand => Pose::new(rotation::exp(&draw.vector(0.3)) * rotation::about(0, side), stays),
-        // It looks at the middle of where the arm is.
+        // The camera looks at the middle of the arm's range.
         CameraPlace::Beside => {
             let middle = Vector3::new(0.5 * reach * around.cos(), 0.5 * reach * around.sin(), 0.5 * reach);
             Pose::new(rotation::shortest_arc(&Vector3::z(), &(middle - stays).normalize()), stays)
@@ -75,14 +75,14 @@ fn session(seed: u64) -> Session {
     found
 }
 
-/// How a session ends.
+/// Outcome of a session.
 #[derive(Clone, Copy, PartialEq)]
 enum End {
-    /// Refused, or not to be used.
+    /// Refused, or level "do not use".
     Refused,
-    /// With the camera where it is.
+    /// The camera at its true position.
     Right,
-    /// With the camera elsewhere.
+    /// The camera at another position.
     Wrong,
 }
 
@@ -123,7 +123,7 @@ impl Session {
     }
 }
 
-/// What is known of two lists of poses; of poses and corners; of joint readings and poses; of joint readings and corners.
+/// Known directions of two lists of poses; of poses and corners; of joint readings and poses; of joint readings and corners.
 const KNOWN: [(Option<bool>, Option<bool>); 4] =
     [(None, None), (None, Some(false)), (Some(false), None), (Some(false), Some(false))];
 
@@ -158,13 +158,13 @@ fn inverted_poses_are_inverted_back_or_refused() {
                 (End::Refused, said) => {
                     assert!(said.contains("--flange flange-from-base"), "{seed}: {said}");
                     refused += 1;
-                    // As it says.
+                    // The statement is followed.
                     let (end, said) = session.ended(session.camera, true, (Some(true), known.1));
                     assert!(end == End::Right, "{seed}: {said}");
                 }
                 (End::Wrong, said) => panic!("{seed} {:?}, {known:?}: {said}", session.camera),
             }
-            // Two things are other than stated, and poses fit: where both frames are shows it.
+            // Two statements are wrong, and the poses fit: the positions of both frames reveal it.
             let (end, said) = session.ended(session.other(), true, known);
             assert!(end == End::Refused, "{seed} {:?}: {said}", session.camera);
             assert!(
@@ -173,7 +173,7 @@ fn inverted_poses_are_inverted_back_or_refused() {
             );
         }
         println!("{known:?}, inverted: {right} inverted back, {refused} refused");
-        // What is farther from the flange than half of the way to the base is one in thirty.
+        // Objects farther from the flange than half of the distance to the base are one in thirty.
         assert!(5 * right >= 4 * sessions.len(), "{right}");
     }
 }

@@ -12,13 +12,13 @@ use poecal_numerics::linalg::{cholesky, cholesky_solve, inverse};
 
 /// Number of unknowns: two frames.
 pub(crate) const UNKNOWNS: usize = 12;
-/// Numbers of a pose: across, across and along the line of sight, then turns about the same axes.
+/// Numbers of a pose: across, across and along the line of sight, then rotations about the same axes.
 pub(crate) const NUMBERS: usize = 6;
 
-/// One pose of the arm, and what the camera saw there.
+/// One pose of the arm, and the target pose that the camera measured there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
-    /// The motion that the arm states.
+    /// Motion that the arm states.
     pub(crate) moved: Pose,
     /// `camera_from_target`.
     pub(crate) seen: Pose,
@@ -32,13 +32,13 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// What the camera should see.
+    /// Predicted measurement of the camera.
     pub(crate) fn predicted(&self, moved: &Pose) -> Pose {
         self.outer * *moved * self.inner
     }
 
-    /// The frames after a step: shift and turn of the outer one in the camera's axes, of the inner one in its own parent's shift and its own
-    /// turn.
+    /// Frames after a step. For the outer frame, shift and turn are in the camera's axes. For the inner one, the shift is in its parent's
+    /// axes, and the turn in its own.
     pub(crate) fn stepped(&self, step: &[f64]) -> Frames {
         let at = |k: usize| Vector3::from_fn(|row, _| step.get(k + row).copied().unwrap_or(0.0));
         let outer = Pose::new(rotation::exp(&at(3)) * self.outer.rotation, self.outer.translation + at(0));
@@ -54,7 +54,7 @@ pub(crate) fn sight_axes(seen: &Pose) -> Matrix3<f64> {
     Matrix3::from_rows(&[across.transpose(), along.cross(&across).transpose(), along.transpose()])
 }
 
-/// Seen minus predicted: metres across, across and along the line of sight, then radians about the same axes.
+/// Measured minus predicted: metres across, across and along the line of sight, then radians about the same axes.
 pub(crate) fn errors(pair: &Pair, frames: &Frames) -> [f64; NUMBERS] {
     let predicted = frames.predicted(&pair.moved);
     let axes = sight_axes(&pair.seen);
@@ -120,17 +120,17 @@ pub(crate) fn normal<'a>(rows: impl Iterator<Item = (&'a Pair, [f64; NUMBERS])>,
     normal
 }
 
-/// Most steps of a fit.
+/// Largest number of steps of a fit.
 const STEPS: usize = 30;
 /// Size of a step, metres and radians, at which a fit ends.
 const SMALL: f64 = 1e-13;
 
-/// The frames that fit rows best by the weights of their numbers. `None` where they do not determine them.
+/// Frames that fit rows best by the weights of their numbers (Gauss-Newton). `None` if the rows do not determine them.
 pub(crate) fn minimised(pairs: &[Pair], start: Frames, weights: &[f64; NUMBERS]) -> Option<Frames> {
     let mut frames = start;
     for _ in 0..STEPS {
         let normal = normal(pairs.iter().map(|pair| (pair, *weights)), &frames);
-        // Directions that nothing determines stay where they are.
+        // Undetermined directions stay at their start.
         let damping = 1e-12 * (0..UNKNOWNS).map(|k| normal.gram[k * (UNKNOWNS + 1)]).fold(0.0, f64::max);
         let step = cholesky_solve(&cholesky(&normal.gram, UNKNOWNS, damping)?, &normal.gradient);
         frames = frames.stepped(&step);
@@ -152,15 +152,15 @@ fn twice_sine(r: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(r[(2, 1)] - r[(1, 2)], r[(0, 2)] - r[(2, 0)], r[(1, 0)] - r[(0, 1)])
 }
 
-/// Frames in closed form: the turns from relative rotations (park1994handeye), the places from a linear system. `None` where the places are
-/// not determined at all.
+/// Frames in closed form: the orientations from relative rotations (park1994handeye), the positions from a linear system. `None` if the
+/// positions are not determined at all.
 pub(crate) fn in_closed_form(pairs: &[&Pair]) -> Option<Frames> {
     let mut correlation = Matrix3::zeros();
     for (k, one) in pairs.iter().enumerate() {
-        // All pairs of few poses, and of many those at some distances.
+        // All pairs if there are few poses, otherwise those at some distances.
         let steps = if pairs.len() <= 40 { (1..pairs.len()).collect() } else { vec![1, 2, 5, 11, 23, 37] };
         for other in steps.iter().filter_map(|step| pairs.get(k + step)) {
-            // Axis times sine: that of half a turn has no side.
+            // Axis times sine: that of half a turn has no sign.
             let from = twice_sine(&(one.moved.rotation * other.moved.rotation.transpose()));
             let to = twice_sine(&(one.seen.rotation * other.seen.rotation.transpose()));
             correlation += from * to.transpose();
@@ -170,7 +170,7 @@ pub(crate) fn in_closed_form(pairs: &[&Pair]) -> Option<Frames> {
     let inner = mean_rotation(
         pairs.iter().map(|it| it.moved.rotation.transpose() * outer.transpose() * it.seen.rotation),
     );
-    // seen = outer (R t_inner + t_moved) + t_outer, linear in both places.
+    // seen = outer (R t_inner + t_moved) + t_outer, linear in both positions.
     let (mut gram, mut right) = ([0.0; 36], [0.0; 6]);
     for pair in pairs {
         let turned = outer * pair.moved.rotation;

@@ -1,6 +1,6 @@
-//! What was found in the poses beside the frames: a sentence each.
+//! Findings about the poses: a sentence each.
 
-/// What a finding is about.
+/// Subject of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FindingKind {
     /// A list is inverted, and was inverted back.
@@ -9,17 +9,17 @@ pub enum FindingKind {
     Exchanged,
     /// Rows that repeat earlier ones, and count once.
     Repeated,
-    /// Pictures whose corners fit several poses, and another one than the best fits the other pictures.
+    /// Pictures whose corners fit several poses, and another pose than the best agrees with the other pictures.
     OtherPose,
-    /// Something moved during the session; the longer part was taken.
+    /// Camera or target moved during the session; the longer part was taken.
     Moved,
     /// Poses of a flat board from the other of its two sides.
     Flipped,
     /// Rows that contradict all others.
     Outliers,
-    /// The camera's lengths are of another scale than the arm's.
+    /// The scale of the camera's lengths differs from that of the arm's.
     Scale,
-    /// The pictures do not determine the lens well, or another one than the arm's poses do.
+    /// The pictures hardly determine the lens, or a different lens than the arm's poses do.
     Lens,
     /// Further poses would help.
     MissingMoves,
@@ -28,7 +28,7 @@ pub enum FindingKind {
 }
 
 impl FindingKind {
-    /// The word in files.
+    /// Word in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -47,14 +47,14 @@ impl FindingKind {
     }
 }
 
-/// Something found, with what to do.
+/// A finding, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// What it is about.
+    /// Subject.
     pub kind: FindingKind,
     /// A sentence.
     pub statement: String,
-    /// The rows, from 0; empty for all.
+    /// Rows, from 0; empty for all.
     pub rows: Vec<usize>,
 }
 
@@ -64,7 +64,7 @@ impl Finding {
     }
 }
 
-/// Numbers of rows as people count them, the first of many.
+/// Row numbers as in messages, the first of many.
 pub(crate) fn listed(rows: &[usize], names: &dyn Fn(usize) -> String) -> String {
     const MOST: usize = 8;
     let words: Vec<String> = rows.iter().take(MOST).map(|row| names(*row)).collect();

@@ -1,4 +1,5 @@
-//! The fit: a start that bears gross errors, noise by its parts, rows without outliers, and the point of the target that is seen best.
+//! The fit: a start that is robust against gross errors, noise by its parts, rows without outliers, and the point of the target that is
+//! measured best.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,19 +12,19 @@ use poecal_arm::lie::{Pose, hat};
 use poecal_numerics::distributions::{chi_square_median, f_quantile, median};
 use poecal_numerics::linalg::{cholesky, cholesky_solve};
 
-/// Starts from a few poses each.
+/// Number of starts from a few poses each.
 pub(crate) const STARTS: usize = 80;
-/// The same where many sessions are compared.
+/// The same number where many sessions are compared.
 pub(crate) const FEW_STARTS: usize = 12;
 /// Poses of such a start.
 const POSES_OF_START: usize = 4;
 /// Probability with which a session without outliers loses a row.
 const LOST: f64 = 0.01;
-/// Factor of the bound of outliers at first: of gross ones.
+/// Initial factor of the bound of outliers, for gross ones.
 const SLACK: f64 = 4.0;
 /// Rounds of fit, noise and outliers.
 const ROUNDS: usize = 30;
-/// Probability by chance at which a point of the target counts as seen better than its origin.
+/// Probability by chance at which a point of the target counts as measured better than its origin.
 const OTHER_POINT: f64 = 0.05;
 /// Fewest rows with which such a point is sought.
 const ROWS_OF_POINT: usize = 6;
@@ -33,28 +34,28 @@ const ROWS_OF_POINT: usize = 6;
 pub(crate) struct Fit {
     pub(crate) frames: Frames,
     pub(crate) noise: Noise,
-    /// Which rows count.
+    /// For each row, true if it counts.
     pub(crate) kept: Vec<bool>,
-    /// The point of the target, in its frame, whose place and orientation are seen independently of each other.
+    /// Point of the target, in its frame, whose position and orientation are measured independently of each other.
     pub(crate) point: Vector3<f64>,
     /// Factor of the bound beyond which a row is an outlier: above 1 until the parts of the noise are known.
     slack: f64,
 }
 
 impl Fit {
-    /// Fits all rows. `None` where they do not determine the frames.
+    /// Fit of all rows. `None` if they do not determine the frames.
     pub(crate) fn from_pairs(pairs: &[Pair]) -> Option<Self> {
         Fit::from_start(pairs, start(pairs, STARTS)?)
     }
 
-    /// The same from a start.
+    /// The same fit from a start.
     pub(crate) fn from_start(pairs: &[Pair], frames: Frames) -> Option<Self> {
         let noise = rough_noise(pairs, &frames);
         let mut fit =
             Fit { frames, noise, kept: vec![true; pairs.len()], point: Vector3::zeros(), slack: SLACK };
         fit.choose(pairs);
         fit.settle(pairs, false)?;
-        // Twice, since the first point is found with the noise of the origin.
+        // Two rounds, since the first point is found with the noise of the origin.
         for _ in 0..2 {
             let about = fit.seen_about(pairs);
             let Some(further) = fit.better_point(&fit.rows(&about)) else { break };
@@ -66,14 +67,14 @@ impl Fit {
         Some(fit)
     }
 
-    /// The same model on other rows, which all count, from these frames, with this noise.
+    /// The same model fitted to other rows, which all count, from these frames and with this noise.
     pub(crate) fn again(&self, pairs: &[Pair]) -> Option<Frames> {
         let about = self.seen_about(pairs);
         let weights = self.noise.weights();
         minimised(&about, self.frames, &weights)
     }
 
-    /// What is seen of the point, in place of the target's origin.
+    /// Measured poses of the point, in place of the target's origin.
     pub(crate) fn seen_about(&self, pairs: &[Pair]) -> Vec<Pair> {
         let to = Pose::from_translation(self.point);
         pairs.iter().map(|it| Pair { seen: it.seen * to, ..*it }).collect()
@@ -125,12 +126,12 @@ impl Fit {
         Some(())
     }
 
-    /// Chooses the rows that count; whether another choice came out.
+    /// Chooses the rows that count. True if the choice changed.
     fn choose(&mut self, about: &[Pair]) -> bool {
         let cut = self.cut(about.len());
         let distances = self.distances(about);
         let mut kept: Vec<bool> = distances.iter().map(|distance| *distance <= cut).collect();
-        // Never so few that nothing is tested.
+        // Enough rows stay that a test is possible.
         let fewest = (about.len() / 2 + 1).min(about.len()).max(3);
         if kept.iter().filter(|it| **it).count() < fewest {
             let mut order: Vec<usize> = (0..about.len()).collect();
@@ -149,7 +150,7 @@ impl Fit {
         self.slack * f_quantile(LOST / rows as f64, NUMBERS as f64, freedom)
     }
 
-    /// Mean square of the errors of each row in units of what they scatter by: less of a row that was fitted.
+    /// Mean square of the errors of each row in units of their expected scatter, which is smaller for a fitted row.
     pub(crate) fn distances(&self, about: &[Pair]) -> Vec<f64> {
         let leverages = self.leverages(about);
         let rows = about.iter().zip(&self.kept).zip(leverages);
@@ -174,8 +175,8 @@ impl Fit {
         about.iter().map(of).collect()
     }
 
-    /// A point of the target, from the present one, at which errors of place are independent of those of orientation; `None` where it is no
-    /// better than the present one by more than chance.
+    /// A point of the target, relative to the present one, at which errors of position are independent of those of orientation. `None` if
+    /// it is no better than the present one by more than chance.
     fn better_point(&self, rows: &[Pair]) -> Option<Vector3<f64>> {
         if rows.len() < ROWS_OF_POINT {
             return None;
@@ -187,7 +188,7 @@ impl Fit {
             let found = errors(pair, &self.frames);
             let axes = sight_axes(&pair.seen);
             let turn = axes.transpose() * Vector3::new(found[3], found[4], found[5]);
-            // The place of the point errs by shift + turn × (R point).
+            // The position of the point has the error shift + turn × (R point).
             let by_point: Matrix3<f64> = axes * hat(&turn) * pair.seen.rotation;
             for i in 0..3 {
                 before += weights[i] * found[i] * found[i];
@@ -212,7 +213,7 @@ impl Fit {
             .sum();
         let freedom = 3.0 * rows.len() as f64 - 0.5 * UNKNOWNS as f64 - 3.0;
         let gained = (before - after) / 3.0 / (after / freedom);
-        // No target is larger than the distance from which it is seen.
+        // No target is larger than its distance from the camera.
         let far = median(rows.iter().map(|it| it.seen.translation.norm())).unwrap_or_default();
         (gained > f_quantile(OTHER_POINT, 3.0, freedom) && point.norm() < far).then_some(point)
     }
@@ -237,7 +238,7 @@ pub(crate) fn medians(pairs: &[Pair], frames: &Frames) -> (f64, f64) {
     (of(all.iter().map(|it| it.0).collect()), of(all.iter().map(|it| it.1).collect()))
 }
 
-/// The best start: of all poses, or of a few of them, by the median errors of all.
+/// The best start by the median errors of all poses: from all of them, or from a few.
 pub(crate) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
     let all: Vec<&Pair> = pairs.iter().collect();
     let mut best: Option<(f64, Frames)> = None;
@@ -263,7 +264,7 @@ pub(crate) fn start(pairs: &[Pair], starts: usize) -> Option<Frames> {
 fn rough_noise(pairs: &[Pair], frames: &Frames) -> Noise {
     let (shift, turn) = medians(pairs, frames);
     let scale = 1.0 / chi_square_median(3).sqrt();
-    // Four poses fit themselves.
+    // Four poses have no redundancy.
     let few = (1.0 + 4.0 / pairs.len() as f64).min(2.0);
     Noise::from_standard_deviations(few * scale * shift, few * scale * turn)
 }

@@ -1,8 +1,9 @@
-//! An unknown lens with the frames: by the corners of the pictures, whose poses are free, and by the arm, which says how far the camera moved.
+//! An unknown lens, estimated together with the frames: from the corners of the pictures, whose poses are free, and from the arm, which
+//! measures the camera's motion.
 //!
-//! The pictures by themselves determine focal lengths from how boards shrink with distance, which is little where the boards are tilted little. What the
-//! arm adds is in the same equations: the poses `seen` follow the lens (`LensState::follow`), so a lens is better if the poses fit the frames
-//! better. The covariance of both is joint: that of the frames at a known lens, and what they follow the lens by.
+//! The pictures by themselves determine focal lengths from the perspective of tilted boards, which is weak for small tilts. The arm adds to the same
+//! equations. The poses `seen` follow the lens (`LensState::follow`), so a lens is better if the poses fit the frames better. The covariance of both
+//! is joint: that of the frames at a known lens, and that of the lens by which they follow.
 
 use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX};
 
@@ -16,31 +17,31 @@ use poecal_model::camera::{LensSearch, LensState, PictureNumber, Pictures};
 use poecal_numerics::distributions::f_quantile;
 use poecal_numerics::linalg;
 
-/// Most rounds of lens and frames.
+/// Largest number of rounds of lens and frames.
 const ROUNDS: usize = 12;
-/// Squared standard deviations by which a round must be worth it.
+/// Least gain of a round, squared standard deviations.
 const LEAST: f64 = 1e-6;
 /// Probability by chance at which pictures and arm count as of different lenses.
 const CHANCE: f64 = 1e-3;
-/// Information of the arm in units of that of the pictures, below which it says nothing of a direction.
+/// Information of the arm in units of that of the pictures, below which it does not determine a direction.
 const SAYS: f64 = 1e-3;
 
-/// How far the frames follow the lens, and what that adds to their covariance.
+/// A lens that is estimated with the frames, and its part in their covariance.
 pub(crate) struct Joint {
     pub(crate) found: FoundLens,
     /// Covariance of the frames by that of the lens, and its degrees of freedom.
     pub(crate) covariance: Vec<f64>,
     pub(crate) freedom: f64,
-    /// By how much the variance of the poses is larger than it was estimated, since the lens was fitted to them.
+    /// Factor by which the variance of the poses exceeds its estimate, since the lens was fitted to them.
     pub(crate) larger: f64,
 }
 
 impl PoseList {
-    /// The poses of the board in pictures of one camera and one board, with all others that their corners allow; a lens that is a first guess is
-    /// found from the corners.
+    /// Poses of the board in pictures of one camera and one board, with all others that their corners allow. A lens that is a first guess is
+    /// estimated from the corners.
     ///
     /// # Errors
-    /// In words, if the pictures do not determine an unknown lens.
+    /// A message, if the pictures do not determine an unknown lens.
     pub fn of_pictures(pictures: &Pictures) -> Result<Self, String> {
         let is_guessed = |at: usize| pictures.cameras.get(at).is_some_and(|it| it.is_guessed);
         if pictures.all.iter().any(|it| is_guessed(it.camera)) {
@@ -68,7 +69,7 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
     };
     let (search, start) = LensSearch::from_pictures(pictures).ok_or_else(refuse)?;
     let mut state = search.alone(&start).ok_or_else(refuse)?;
-    // Of a flat board that has two poses the better one may be the other one with another lens.
+    // A flat board has two poses; with another lens the other one may be better.
     for _ in 0..2 {
         for at in 0..state.pictures.all.len() {
             let pictures = &state.pictures;
@@ -90,7 +91,7 @@ fn of_unknown_lens(pictures: &Pictures) -> Result<PoseList, String> {
     Ok(PoseList { lens: Some(UnknownLens { search, state }), lens_doubt: None, ..list })
 }
 
-/// A fit with its lens: the poses seen through it, and the joint uncertainty.
+/// A fit with its lens: the poses measured through it, and the joint uncertainty.
 pub(crate) struct WithLens {
     pub(crate) target: Vec<Pose>,
     pub(crate) fit: Fit,
@@ -98,13 +99,13 @@ pub(crate) struct WithLens {
 }
 
 impl WithLens {
-    /// Of poses whose lens is known.
+    /// A fit of poses whose lens is known.
     pub(crate) fn known(target: Vec<Pose>, fit: Fit) -> Self {
         WithLens { target, fit, joint: None }
     }
 }
 
-/// A fit of the frames, with the rows that count as it sees them and their numbers in the list.
+/// A fit of the frames, with the rows that count (as measured about its point) and their numbers in the list.
 pub(crate) type Fitted = (Fit, Vec<(usize, Pair)>);
 /// Fits the frames to poses of the target, from an earlier fit if there is one.
 pub(crate) type Fitting<'a> = dyn Fn(&[Pose], Option<&Fit>) -> Option<Fitted> + 'a;
@@ -165,15 +166,15 @@ pub(crate) fn together(lens: &UnknownLens, target: &[Pose], fitted: &Fitting<'_>
     Some(WithLens { target: along(&state), fit, joint: Some(Joint { found, covariance, freedom, larger }) })
 }
 
-/// What pictures and arm say of the lens at the best frames.
+/// Normal equations of the lens, by pictures and arm, at the best frames.
 struct Normal {
-    /// Information of the lens, of pictures and arm.
+    /// Information of pictures and arm on the lens.
     information: DMatrix<f64>,
-    /// The part of the arm, and its pull.
+    /// Part of the arm in the information, and its gradient.
     of_arm: DMatrix<f64>,
     arm_pull: DVector<f64>,
     pull: DVector<f64>,
-    /// How the frames follow the lens, a row an unknown.
+    /// Derivatives of the frames by the lens, one row for each unknown.
     follow: DMatrix<f64>,
 }
 
@@ -205,18 +206,18 @@ impl Normal {
         Some(Normal { information, of_arm, arm_pull, pull, follow })
     }
 
-    /// The best step of the lens, with the squared standard deviations that it is worth.
+    /// Best step of the lens, with its gain in squared standard deviations.
     fn step(&self) -> Option<(DVector<f64>, f64)> {
         let by = linalg::solved(self.information.clone(), &self.pull)?;
         let gain = by.dot(&self.pull);
         Some((by, gain))
     }
 
-    /// How many times farther than by noise the lens of the arm is from that of the pictures, at the latter; 1 where noise explains it: the arm's pull in the directions of which it says something is of
-    /// variance `K + K G⁻¹ K`, with its own information K and that of the pictures G.
+    /// Difference of the arm's lens from that of the pictures, at the latter, in units of its noise; 1 if noise explains it. The arm's gradient has
+    /// the variance `K + K G⁻¹ K`, with its own information K and that of the pictures G. Only directions that the arm determines count.
     fn apart(&self, state: &LensState, fit: &Fit) -> Option<f64> {
         let count = state.step.len();
-        // In units in which the pictures' information is 1: G = L Lᵀ.
+        // The units are those in which the pictures' information is 1: G = L Lᵀ.
         let whitened = linalg::whitened(state.information.clone(), &self.of_arm)?;
         let twice = linalg::whitened(state.information.clone(), &whitened.transpose())?;
         let pull = DMatrix::from_column_slice(count, 1, self.arm_pull.as_slice());
@@ -234,7 +235,8 @@ impl Normal {
     }
 }
 
-/// How the six numbers of a row follow the lens: shift of the point that is seen, and turn, in the axes of the sight; `follow` is of the board's origin.
+/// Derivatives of the six numbers of a row by the lens: shift of the measured point, and turn, in the axes of the line of sight. `follow`
+/// is that of the board's origin.
 fn in_sight(pair: &Pair, board: &Pose, follow: &Matrix6xX<f64>) -> Matrix6xX<f64> {
     let axes = sight_axes(&pair.seen);
     let arm = pair.seen.translation - board.translation;

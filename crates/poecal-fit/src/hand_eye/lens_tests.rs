@@ -20,13 +20,13 @@ struct Session {
     pictures: Pictures,
 }
 
-/// How the boards are seen.
+/// Spread of the views of the boards.
 #[derive(Clone, Copy)]
 struct Views {
     count: usize,
     /// Largest tilt of a board, radians.
     tilt: f64,
-    /// How much the distances differ, a share.
+    /// Relative spread of the distances.
     deep: f64,
 }
 
@@ -94,7 +94,7 @@ fn session(seed: u64, views: Views) -> Session {
             CameraPlace::InHand => in_base * seen.inverse() * on_flange.inverse(),
             CameraPlace::Beside => in_base * seen * on_flange.inverse(),
         };
-        // What the arm states is off about what it holds, as the pictures are of where it is.
+        // The arm's error is about the mounted object, the pictures' error about the camera.
         let error = Pose::new(rotation::exp(&draw.vector(arm.1)), draw.vector(arm.0));
         found.flange.push(base_from_flange * on_flange * error * on_flange.inverse());
         found
@@ -109,7 +109,7 @@ fn session(seed: u64, views: Views) -> Session {
 }
 
 impl Session {
-    /// With a lens that is known, or a first guess of an unknown one.
+    /// The session with a lens that is known, or a first guess of an unknown one.
     fn with_lens(&mut self, known: Option<Lens>) {
         let pictures = &mut self.pictures;
         let points = &pictures.boards[0].points;
@@ -183,7 +183,7 @@ fn bounds_hold_with_an_unknown_lens_as_often_as_promised() {
     for inside in [inside_m, inside_rad] {
         assert!((0.90 - more..=0.985 + more).contains(&share(inside)), "{inside} of {}", trials.count);
     }
-    // Of a number its standard deviation is said, which few pictures do not know to better than 10 %.
+    // Few pictures determine the standard deviation of a number to no better than 10 %.
     assert!(share(focal) >= 0.87 - more && share(alone) >= 0.90 - more, "{focal} {alone}");
     assert!(share(apart) <= 0.02 + more, "{apart}");
 }

@@ -1,11 +1,13 @@
-//! Where a camera is on a robot's flange, or beside the robot, from poses of the flange and of what the camera saw, without joint readings.
+//! Pose of a camera on a robot's flange, or beside the robot, from poses of the flange and measured poses of the target, without joint
+//! readings.
 //!
-//! The arm is taken as it is, so that the problem has twelve unknowns, two frames between known motions (`equations`). Beside the general
-//! fit of `calibrate`, it knows more of a camera: that it errs otherwise along its line of sight than across it
-//! (`noise`), that a board is seen best in its middle (`fit`), and which mistakes people make with two lists of poses (`directions`,
-//! `readings`, `moved`). An unknown lens of pictures is found with the frames (`lens`).
+//! The arm is taken as exact, so that the problem has twelve unknowns: two frames between known motions (`equations`). Beside the general
+//! fit of `calibrate`, it models more of a camera. Errors along the line of sight differ from those across it (`noise`), and a board is
+//! measured best in its middle (`fit`). Frequent mistakes with two lists of poses are recognised (`directions`, `readings`, `moved`). An
+//! unknown lens of pictures is estimated with the frames (`lens`).
 //!
-//! `result.rs` has the steps in order, `tip.rs` and `touches.rs` those of a tool's tip. No robots and no files here: it gets lists of poses.
+//! `result.rs` has the steps in order, `tip.rs` and `touches.rs` those of a tool's tip. The input is lists of poses; this module knows no
+//! robots and no files.
 
 mod bounds;
 mod directions;
@@ -47,7 +49,7 @@ pub use touches::Touches;
 pub use types::{Directions, HandEye, HandEyeOptions, HeldOut, Level, Outlier, RowError, Turns};
 pub use unknown_lens::{FoundLens, UnknownLens};
 
-/// Where the camera is.
+/// Mounting of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraPlace {
     /// On the flange; the target stays.
@@ -57,7 +59,7 @@ pub enum CameraPlace {
 }
 
 impl CameraPlace {
-    /// The word in files and on the command line.
+    /// Word in files and on the command line.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -75,7 +77,7 @@ impl CameraPlace {
         }
     }
 
-    /// Name of the frame that stays.
+    /// Name of the static frame.
     #[must_use]
     pub fn in_base(self) -> &'static str {
         match self {

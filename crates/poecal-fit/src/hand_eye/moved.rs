@@ -1,4 +1,4 @@
-//! Whether the camera or the target moved during the session: frames of the rows before and after differ by more than noise.
+//! Motion of the camera or the target during the session: frames of the rows before and after differ by more than noise.
 
 use super::CameraPlace;
 use super::bounds::{Side, difference, placed};
@@ -9,9 +9,9 @@ use poecal_arm::lie::Pose;
 
 /// Fewest rows of a part.
 const PART: usize = 5;
-/// Most places between rows that are tried.
+/// Largest number of split points that are tried.
 const PLACES: usize = 40;
-/// Probability by chance, over all places.
+/// Probability by chance, over all split points.
 const CHANCE: f64 = 1e-3;
 
 /// A move between two rows.
@@ -19,16 +19,16 @@ const CHANCE: f64 = 1e-3;
 pub(crate) struct Move {
     /// First row after it.
     pub(crate) from: usize,
-    /// What moved.
+    /// The frame that moved.
     pub(crate) side: Side,
     pub(crate) shift_m: f64,
     pub(crate) turn_rad: f64,
 }
 
-/// The move that the rows show, if they show one.
+/// The move in the rows, if there is one.
 pub(crate) fn found(pairs: &[Pair]) -> Option<Move> {
     let count = pairs.len();
-    // The ends of a long session are no parts of it.
+    // The ends of a long session are too short to be parts.
     let part = PART.max(count / 8);
     if count < 2 * part {
         return None;
@@ -56,7 +56,7 @@ pub(crate) fn found(pairs: &[Pair]) -> Option<Move> {
     Some(Move { from: at, side, shift_m, turn_rad })
 }
 
-/// How well rows fit by themselves: counted times the logarithms of their mean errors.
+/// Score of rows by themselves: their number times the logarithms of their mean errors.
 fn scored(pairs: &[Pair]) -> Option<f64> {
     let frames = start(pairs, FEW_STARTS)?;
     let count = pairs.len() as f64;
@@ -67,7 +67,7 @@ fn scored(pairs: &[Pair]) -> Option<f64> {
     Some(count * ((sums.0 / count).max(1e-9).ln() + (sums.1 / count).max(1e-9).ln()))
 }
 
-/// What moved, in words.
+/// The moved object, in words.
 pub(crate) fn words(side: Side, camera: CameraPlace) -> &'static str {
     match (side, camera) {
         (Side::Camera, CameraPlace::InHand) => "the camera on the flange",

@@ -1,4 +1,4 @@
-//! Noise of the camera's poses by its parts, from the residuals: across and along the line of sight, of tilts and of the turn about it.
+//! Noise of the camera's poses by its parts, from the residuals: across and along the line of sight, of tilts and of the rotation about it.
 
 use super::equations::{Frames, NUMBERS, Normal, Pair, UNKNOWNS, derivatives, errors};
 use poecal_numerics::distributions::f_quantile;
@@ -11,47 +11,48 @@ const ROUNDS: usize = 50;
 /// Probability by chance at which two parts of a noise count as different.
 const DIFFERENT: f64 = 0.01;
 
-/// Standard deviations of the six numbers of a pose. Parts that do not differ evidently are one.
+/// Standard deviations of the six numbers of a pose. Parts without a significant difference are one.
 #[derive(Clone, Debug)]
 pub(crate) struct Noise {
-    /// The part to which each number belongs.
+    /// Part to which each number belongs.
     pub(crate) part_of: [usize; NUMBERS],
     /// Variance of each part.
     pub(crate) variance: Vec<f64>,
-    /// Degrees of freedom with which it is known.
+    /// Degrees of freedom of each variance.
     pub(crate) freedom: Vec<f64>,
-    /// Degrees of freedom of places that the point of the target has spent.
+    /// Degrees of freedom of positions that the point of the target has used.
     pub(crate) spent: f64,
 }
 
-/// Places and turns, each alike in all directions.
+/// Positions and orientations, each isotropic.
 const ALIKE: [usize; NUMBERS] = [0, 0, 0, 1, 1, 1];
 
 impl Noise {
-    /// Of stated standard deviations.
+    /// Noise of stated standard deviations.
     pub(crate) fn from_standard_deviations(sigma_m: f64, sigma_rad: f64) -> Self {
         let variance = [sigma_m, sigma_rad].map(|it| it.max(LEAST).powi(2)).to_vec();
         Noise { part_of: ALIKE, variance, freedom: vec![f64::INFINITY; 2], spent: 0.0 }
     }
 
-    /// The weights of the six numbers.
+    /// Weights of the six numbers.
     pub(crate) fn weights(&self) -> [f64; NUMBERS] {
         self.part_of.map(|part| self.variance.get(part).map_or(0.0, |it| 1.0 / it))
     }
 
-    /// The standard deviation of a number.
+    /// Standard deviation of a number.
     pub(crate) fn sigma(&self, number: usize) -> f64 {
         let part = self.part_of.get(number).copied().unwrap_or_default();
         self.variance.get(part).copied().unwrap_or_default().sqrt()
     }
 
-    /// The sum of squares of errors in units of the noise.
+    /// Sum of squares of errors in units of the noise.
     pub(crate) fn squares(&self, errors: &[f64; NUMBERS]) -> f64 {
         errors.iter().zip(self.weights()).map(|(error, weight)| error * error * weight).sum()
     }
 
-    /// The same parts from the residuals of rows about their fit: each the mean square over its degrees of freedom, that is what remains
-    /// after its share of the unknowns. `None` where the rows do not determine the unknowns, or a part has no freedom.
+    /// The same parts from the residuals of rows about their fit (forstner1979): each the mean square over its degrees of freedom, which
+    /// are its numbers less its share of the unknowns. `None` if the rows do not determine the unknowns, or a part has no degrees of
+    /// freedom.
     pub(crate) fn estimated(&self, pairs: &[Pair], frames: &Frames) -> Option<Noise> {
         let parts = Parts::from_pairs(self.part_of, self.variance.len(), pairs, frames);
         let mut noise = self.clone();
@@ -77,7 +78,7 @@ impl Noise {
         Some(noise)
     }
 
-    /// The same with places, and turns, apart by direction where they differ by more than chance.
+    /// The same noise with parts of their own for directions along the line of sight, where they differ by more than chance.
     pub(crate) fn apart_where_they_differ(&self, pairs: &[Pair], frames: &Frames) -> Noise {
         let mut noise = self.clone();
         for (numbers, single) in [([0, 1, 2], 2), ([3, 4, 5], 5)] {
@@ -104,7 +105,7 @@ impl Noise {
     }
 }
 
-/// What the residuals of each part say.
+/// Normal equations, sum of squares and number of residuals of each part.
 struct Parts {
     normals: Vec<Normal>,
     squares: Vec<f64>,
@@ -139,7 +140,7 @@ impl Parts {
     }
 }
 
-/// `tr(A B)` of two symmetric matrices, all of both written.
+/// `tr(A B)` of two symmetric matrices, both stored in full.
 fn product_trace(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -151,7 +152,7 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Of rows about their fit.
+    /// Covariance by rows about their fit.
     pub(crate) fn from_pairs(noise: &Noise, pairs: &[Pair], frames: &Frames) -> Option<Self> {
         let parts = Parts::from_pairs(noise.part_of, noise.variance.len(), pairs, frames);
         let mut covariance = parts.covariance(&noise.variance)?;
@@ -166,14 +167,14 @@ impl Spread {
         Some(Spread { covariance, by_part })
     }
 
-    /// The same of noise whose variance is larger by a factor.
+    /// The same covariance for noise whose variance is larger by a factor.
     pub(crate) fn larger(mut self, factor: f64) -> Self {
         let parts = self.by_part.iter_mut().map(|(part, _)| part);
         parts.chain([&mut self.covariance]).flatten().for_each(|it| *it *= factor);
         self
     }
 
-    /// The same with a further part, which is known with these degrees of freedom.
+    /// The same covariance with a further part, which is known with these degrees of freedom.
     pub(crate) fn with(mut self, part: Vec<f64>, freedom: f64) -> Self {
         self.covariance.iter_mut().zip(&part).for_each(|(sum, it)| *sum += it);
         self.by_part.push((part, freedom));
@@ -181,11 +182,11 @@ impl Spread {
     }
 }
 
-/// Fewest rows in which errors that follow each other are sought.
+/// Fewest rows in which serial correlation of errors is tested.
 const ROWS_IN_ORDER: usize = 20;
 
-/// By how much variances grow because errors of consecutive rows are alike, as those of an arm along its way are: 1 where they are not by
-/// more than chance.
+/// Factor by which variances grow because errors of consecutive rows are correlated, as those of an arm along its path are. It is 1 if
+/// they are not correlated by more than chance.
 fn follows(noise: &Noise, pairs: &[Pair], frames: &Frames) -> f64 {
     if pairs.len() < ROWS_IN_ORDER {
         return 1.0;

@@ -1,17 +1,17 @@
-//! Corners of single pictures that another lens than the stated one explains much better.
+//! Corners of single pictures that a lens other than the stated one explains much better.
 
 use nalgebra::DMatrix;
 
 use poecal_model::camera::{LensSearch, LensState, OTHER_LENS, Pictures, changed_numbers};
 use poecal_numerics::linalg;
 
-/// Fewest pictures, and corners in them, that say something of a lens.
+/// Fewest pictures, and corners in them, that determine a lens.
 const FEWEST: usize = 5;
 const FEWEST_CORNERS: usize = 100;
-/// Standard deviations beyond which a number is another than stated.
+/// Number of standard deviations beyond which a number differs from the stated one.
 const FAR: f64 = 5.0;
 
-/// That the pictures by themselves contradict their lens, with what to do; none where they do not, or are too few to say it.
+/// Doubt about the stated lens, with a remedy, if the pictures by themselves contradict it. `None` if they do not, or if they are too few.
 pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
     let corners: usize = pictures.all.iter().map(|it| it.corners.len()).sum();
     if pictures.all.len() < FEWEST || corners < FEWEST_CORNERS {
@@ -39,7 +39,7 @@ pub(crate) fn other_lens(pictures: &Pictures) -> Option<String> {
     ))
 }
 
-/// Root mean square by which coordinates of corners are off the best pose of each picture, pixels.
+/// Root mean square residual of corner coordinates about the best pose of each picture, pixels.
 fn off_px(pictures: &Pictures, state: &LensState) -> Option<f64> {
     let (mut squares, mut freedom) = (0.0, 0.0);
     for (picture, pose) in pictures.all.iter().zip(&state.poses) {

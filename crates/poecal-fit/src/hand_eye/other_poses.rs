@@ -1,4 +1,4 @@
-//! Which of several poses that the corners of a picture fit the other pictures agree with.
+//! Choice among several poses that fit the corners of a picture: the one that agrees with the other pictures.
 
 use super::CameraPlace;
 use super::directions::pairs;
@@ -7,10 +7,10 @@ use super::readings::PoseList;
 use super::types::{Directions, HandEyeOptions};
 use poecal_arm::lie::{Pose, rotation};
 
-/// Most rounds in which pictures take another of their poses.
+/// Largest number of rounds in which pictures take another of their poses.
 const ROUNDS: usize = 6;
 
-/// The target's poses, of each row the one that the other rows agree with, and the rows in which that is not the first.
+/// The target's poses, for each row the one that agrees with the other rows, and the rows in which that is not the first.
 pub(crate) fn settled(
     flange: &[Pose],
     target: &PoseList,
@@ -19,7 +19,7 @@ pub(crate) fn settled(
     if target.other_poses.is_empty() {
         return (target.poses.clone(), Vec::new());
     }
-    // Both, whatever is stated: the camera may be at the other end.
+    // Both directions are tried, whatever is stated: the camera may be at the other end.
     let tried = [false, true].into_iter().filter_map(|flange_inverted| {
         let directions = Directions { flange_inverted, target_inverted: false, stated: false };
         by_rounds(flange, target, options.camera, &directions)
@@ -31,7 +31,7 @@ pub(crate) fn settled(
     (poses, changed)
 }
 
-/// The poses in one direction of the arm's, with the median angle by which they are off.
+/// Poses in one direction of the arm's, with the median angle of their errors.
 fn by_rounds(
     flange: &[Pose],
     target: &PoseList,

@@ -1,4 +1,4 @@
-//! Lists of poses, how else they could be read, and which of these readings fits where the stated one does not.
+//! Lists of poses, their other possible readings, and the reading that fits if the stated one does not.
 
 use super::CameraPlace;
 use super::directions::{pairs, score};
@@ -9,32 +9,33 @@ use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// Poses of one list, and how else its columns could be read.
+/// Poses of one list, and other readings of its columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PoseList {
-    /// The poses as they were read.
+    /// Poses as they were read.
     pub poses: Vec<Pose>,
-    /// Other readings of the same numbers, to be named where they fit and this one does not.
+    /// Other readings of the same numbers, to be named if they fit and this one does not.
     pub others: Vec<Reading>,
-    /// Of each row other poses that what was seen fits nearly as well, as the second one of a flat board; empty if there are none at all.
+    /// For each row, other poses that fit the picture nearly as well, such as the second one of a flat board; empty if there are none at
+    /// all.
     pub other_poses: Vec<Vec<Pose>>,
-    /// The unknown lens with which the poses were found from pictures, one a row; none where the lens is known, or there are no pictures.
+    /// Unknown lens with which the poses were estimated from pictures, one a row; `None` if the lens is known, or there are no pictures.
     pub lens: Option<UnknownLens>,
-    /// That the pictures by themselves contradict the lens with which the poses were found, a sentence.
+    /// Statement that the pictures by themselves contradict the lens with which the poses were estimated.
     pub lens_doubt: Option<String>,
 }
 
 /// Another reading of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// What was found and what to do, as the end of a sentence.
+    /// Finding and remedy, as the end of a sentence.
     pub advice: String,
-    /// The poses as they would be.
+    /// Poses by this reading.
     pub poses: Vec<Pose>,
 }
 
 impl PoseList {
-    /// The list of some rows, in this order; with the lens as it is.
+    /// The list of some rows, in this order, with the same lens.
     #[must_use]
     pub fn of_rows(&self, rows: &[usize]) -> Self {
         let of = |poses: &[Pose]| rows.iter().filter_map(|&row| poses.get(row)).copied().collect();
@@ -59,15 +60,15 @@ impl From<Vec<Pose>> for PoseList {
     }
 }
 
-/// How much smaller the product of the median errors must be for another reading to be the right one.
+/// Factor by which the product of the median errors must be smaller for another reading to be the right one.
 const EVIDENT: f64 = 8.0;
-/// Median errors, metres and radians, above which nothing fits.
+/// Median errors, metres and radians, above which no reading fits.
 const GOOD: (f64, f64) = (0.03, 0.1);
 /// Median distance from the base, metres, beyond which no arm reaches.
 const FARTHEST: f64 = 25.0;
-/// Median distances, metres, below which an arm does not move.
+/// Median distance, metres, below which an arm does not move.
 const NEAREST: f64 = 0.02;
-/// The same of a camera.
+/// The same distance for a camera.
 const NEAREST_SEEN: f64 = 2e-3;
 
 /// Refuses lengths that only another unit explains.
@@ -76,7 +77,7 @@ pub(crate) fn refuse_other_lengths(flange: &[Pose], target: &[Pose]) -> Result<(
     refuse_lengths("target", target, NEAREST_SEEN)
 }
 
-/// The same of an arm alone.
+/// The same check for an arm alone.
 pub(crate) fn refuse_arm_lengths(flange: &[Pose]) -> Result<()> {
     refuse_lengths("arm", flange, NEAREST)
 }
@@ -102,7 +103,7 @@ fn refuse_lengths(list: &str, poses: &[Pose], nearest: f64) -> Result<()> {
     Ok(())
 }
 
-/// The error that names another reading which fits evidently better than the stated one, in whatever direction; none if there is none.
+/// Error that names another reading which fits evidently better than the stated one, in any direction; `None` if there is no such reading.
 pub(crate) fn mistaken(
     flange: &PoseList,
     target: &PoseList,
@@ -151,7 +152,7 @@ pub(crate) fn mistaken(
     })
 }
 
-/// The error that names another reading of the arm's orientations, if poses that turn about one axis turn about several by it, and then fit.
+/// Error that names another reading of the arm's orientations. By that reading, poses that turn about one axis turn about several, and fit.
 pub(crate) fn misread_angles(
     flange: &PoseList,
     target: &PoseList,
@@ -171,7 +172,7 @@ pub(crate) fn misread_angles(
     )))
 }
 
-/// The best score over the directions that are allowed, and its median errors.
+/// Best score over the directions that are allowed, and its median errors.
 pub(crate) fn least_score(
     flange: &[Pose],
     target: &[Pose],
@@ -189,7 +190,7 @@ pub(crate) fn least_score(
     [of(false), of(true)].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Other orders of the second list: rows of both, and what to do.
+/// Other orders of the second list: rows of both, and the remedy.
 fn orders(count: usize) -> Vec<(Vec<usize>, Vec<usize>, String)> {
     let all = || (0..count).collect::<Vec<_>>();
     let mut orders = Vec::new();
@@ -223,7 +224,7 @@ fn orders(count: usize) -> Vec<(Vec<usize>, Vec<usize>, String)> {
     orders
 }
 
-/// The poses with one axis mirrored: all of a frame, or places alone.
+/// Poses with one axis mirrored: all of a frame, or positions alone.
 fn mirrored(poses: &[Pose]) -> Vec<(Vec<Pose>, &'static str)> {
     let mirror = |axis: usize| {
         let mut signs = Vector3::repeat(1.0);

@@ -19,10 +19,10 @@ use poecal_numerics::error::{ErrorKind, Result};
 
 /// Fewest poses.
 const FEWEST: usize = 4;
-/// Difference below which numbers of two rows are the same, m and rad.
+/// Difference below which numbers of two rows are equal, m and rad.
 const SAME: f64 = 1e-9;
 
-/// Where a camera is, from poses of the flange and of a target that were taken together. `name` says of a row what messages call it.
+/// Pose of a camera, from poses of the flange and of a target that were taken together. `name` returns the name of a row in messages.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] if the poses are too few, turn about one axis only, or do not fit together for a reason that can be named: their
@@ -54,7 +54,7 @@ pub fn hand_eye(
         ));
     }
     refuse_other_lengths(&flange.poses, &target.poses)?;
-    // What corners show is the board as the camera sees it.
+    // Corners determine the board as the camera sees it.
     let target_inverted = options.target_inverted.or(target.lens.as_ref().map(|_| false));
     let options = &HandEyeOptions { target_inverted, ..*options };
     let mut findings = Vec::new();
@@ -62,7 +62,7 @@ pub fn hand_eye(
     let mut counted = once_each(flange, target, name, &mut findings);
     refuse_few(flange, &counted)?;
     let turns = turns(&flange.poses, &counted);
-    // Angles in another unit turn hardly at all.
+    // Angles in another unit have hardly any rotation.
     refuse_one_axis(&turns).map_err(|error| misread_angles(flange, target, options).unwrap_or(error))?;
     if let Some(error) = mistake(flange, target, options) {
         return Err(error);
@@ -96,7 +96,7 @@ pub fn hand_eye(
     Ok(found.with_lens_doubt(target.lens_doubt.as_ref()))
 }
 
-/// The target's list with those of several poses that the rows agree with.
+/// The target's list, with those of several poses that agree with the other rows.
 fn with_settled_poses(
     flange: &PoseList,
     target: &PoseList,
@@ -114,7 +114,7 @@ fn with_settled_poses(
     PoseList { poses, ..target.clone() }
 }
 
-/// The fit of some rows, from an earlier one if there is one, with the rows that count as it sees them.
+/// Fit of some rows, from an earlier one if there is one, with the rows that count (as measured about its point).
 fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option<Fitted> {
     let rows: Vec<Pair> = counted.iter().map(|&row| all[row]).collect();
     let fit = match before {
@@ -127,7 +127,7 @@ fn fitted_again(all: &[Pair], counted: &[usize], before: Option<&Fit>) -> Option
     Some((fit, kept))
 }
 
-/// Leaves the poses before or after a move out; gives those that stay.
+/// Leaves out the poses before or after a move, and returns those that stay.
 fn leave_moved_out(
     step: &moved::Move,
     counted: &[usize],
@@ -149,7 +149,7 @@ fn leave_moved_out(
     (longer.to_vec(), Finding::new(FindingKind::Moved, statement, left_out.to_vec()))
 }
 
-/// All that is said of a fit.
+/// Result of a fit, with its findings and verdict.
 fn finished(
     all: &[Pair],
     counted: &[usize],
@@ -185,7 +185,7 @@ fn finished(
     let distance = poecal_numerics::distributions::median(kept.iter().map(|it| it.seen.translation.norm()));
     let distance = distance.unwrap_or_default();
     let scale = scale::length_scale((&rows, &kept), fit, verdict::inconsistent(&noise, distance).is_none());
-    // Where camera and target are follows from lengths that are none.
+    // Positions of camera and target follow from lengths that are wrong.
     findings.retain(|it| it.kind != FindingKind::Exchanged || !scale.is_some_and(scale::is_gross));
     let mut result = HandEye {
         camera,
@@ -228,7 +228,7 @@ fn with_bounds(
     (both(&spread.with(covariance, freedom)), Some(FoundLens { known_bound95_m, ..found }))
 }
 
-/// The rows that were left out of a fit of some.
+/// Rows that were left out of a fit of some.
 fn find_outliers((all, counted): (&[Pair], &[usize]), errors: &[RowError], fit: &Fit) -> Vec<Outlier> {
     counted
         .iter()
@@ -280,7 +280,7 @@ fn once_each(
     counted
 }
 
-/// Refuses fewer different poses than determine anything that can be tested.
+/// Refuses if the number of different poses is too small for any test.
 fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
     let mut different: Vec<&Pose> = Vec::new();
     for &row in counted {
@@ -307,7 +307,7 @@ fn refuse_few(flange: &PoseList, counted: &[usize]) -> Result<()> {
 /// Median errors, metres and radians, above which other readings are tried.
 const SUSPICIOUS: (f64, f64) = (3e-3, 5e-3);
 
-/// The mistake of which the poses look, if they fit badly as they are.
+/// The most likely mistake in the poses, if they fit badly as they are.
 fn mistake(
     flange: &PoseList,
     target: &PoseList,
@@ -317,7 +317,7 @@ fn mistake(
     (shift > SUSPICIOUS.0 || turn > SUSPICIOUS.1).then(|| mistaken(flange, target, options, score)).flatten()
 }
 
-/// Whether a row is right once its board is turned to the other of the two sides that look alike from afar.
+/// True if a row is right once its board is turned to the other of the two poses that look alike from afar.
 fn is_flipped(pair: &Pair, fit: &Fit) -> bool {
     let predicted = fit.own_frames().predicted(&pair.moved);
     let normal = pair.seen.rotation.column(2).into_owned();

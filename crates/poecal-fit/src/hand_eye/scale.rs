@@ -1,31 +1,31 @@
-//! Lengths of the camera beside those of the arm: a board whose size is stated wrongly, or another focal length.
+//! Lengths of the camera compared with those of the arm: a board whose size is stated wrongly, or another focal length.
 
 use super::equations::{NUMBERS, Pair, UNKNOWNS, derivatives, errors, normal, sight_axes};
 use super::fit::{Fit, variance_along};
 use poecal_arm::lie::Pose;
 use poecal_numerics::distributions::f_quantile;
 
-/// Noise of orientations, radians, that no camera has.
+/// Noise of orientations, radians, that exceeds that of any camera.
 pub(crate) const NO_CAMERA: f64 = 0.1;
-/// Smallest difference of scales that is said.
+/// Smallest difference of scales that is reported.
 const OTHER_SCALE: f64 = 3e-3;
 /// Probability by chance at which scales differ.
 const CHANCE: f64 = 1e-4;
-/// Scales that are looked for where poses do not fit.
+/// Largest scale that is searched if poses do not fit.
 const FARTHEST: f64 = 20.0;
-/// Rounds in which a gross scale is found, and the change at which it is.
+/// Largest number of rounds in which a gross scale is estimated, and the change at which it has converged.
 const ROUNDS: usize = 8;
 const FOUND: f64 = 1e-3;
-/// How much less the places of poses are off with a gross scale that explains them.
+/// Factor by which the errors of positions are smaller with a gross scale that explains them.
 const EXPLAINS: f64 = 0.2;
 
-/// By which share of what is seen the lengths that are seen are too long, with the information of it; `None` where nothing is known of it.
+/// Relative excess of the camera's lengths, with its information; `None` if it is not determined.
 fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
     let weights = fit.noise.weights();
     let known = normal(rows.iter().map(|it| (it, weights)), &fit.frames).covariance()?;
     let (mut size, mut along, mut mixed) = (0.0, 0.0, [0.0; UNKNOWNS]);
     for pair in rows {
-        // Without the point's share, which is of the same scale.
+        // The point's part, which is of the same scale, is left out.
         let seen = sight_axes(&pair.seen) * pair.seen.translation;
         let numbers = [seen.x, seen.y, seen.z];
         let derivatives = derivatives(pair, &fit.frames);
@@ -39,12 +39,13 @@ fn share(rows: &[Pair], fit: &Fit) -> Option<(f64, f64)> {
     (left > 1e-9 * size).then_some((along / left, left))
 }
 
-/// How many times as long as the arm's lengths the camera's are, if it is said: of all rows, those that count, and whether they fit together.
+/// Ratio of the camera's lengths to the arm's, if it is significant: from all rows, from those that count, and from whether they fit
+/// together.
 pub(crate) fn length_scale((rows, kept): (&[Pair], &[Pair]), fit: &Fit, fits: bool) -> Option<f64> {
     if fits { found(kept, fit) } else { explaining(rows, fit) }
 }
 
-/// The same where it is more than chance; of the rows that count.
+/// The ratio if it differs from 1 by more than chance, from the rows that count.
 fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
     let (share, information) = share(kept, fit)?;
     let freedom = fit.noise.freedom.first().copied().unwrap_or(1.0).clamp(1.0, 1e6);
@@ -52,7 +53,7 @@ fn found(kept: &[Pair], fit: &Fit) -> Option<f64> {
     (is_evident && share.abs() > OTHER_SCALE && share < 1.0).then(|| 1.0 / (1.0 - share))
 }
 
-/// The same of poses that do not fit together, where it is why: lengths that are many times too long or too short.
+/// The ratio of poses that do not fit together, if it is the cause: lengths that are many times too long or too short.
 fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
     let mut times = 1.0;
     for _ in 0..ROUNDS {
@@ -73,7 +74,7 @@ fn explaining(rows: &[Pair], fit: &Fit) -> Option<f64> {
     None
 }
 
-/// Rows whose places were seen so many times too far.
+/// Rows whose positions are divided by a factor.
 fn shortened(rows: &[Pair], times: f64) -> Vec<Pair> {
     let of = |pair: &Pair| {
         let seen = Pose::new(pair.seen.rotation, pair.seen.translation / times);
@@ -82,12 +83,12 @@ fn shortened(rows: &[Pair], times: f64) -> Vec<Pair> {
     rows.iter().map(of).collect()
 }
 
-/// Whether lengths are so many times as long that no place that follows from them is one.
+/// True if the ratio of lengths is so far from 1 that all resulting positions are wrong.
 pub(crate) fn is_gross(times: f64) -> bool {
     !(2.0 / 3.0..=1.505).contains(&times)
 }
 
-/// What another scale is, and what to do.
+/// Description of another scale, with a remedy.
 pub(crate) fn words(times: f64) -> String {
     let size = if !is_gross(times) {
         let share = 100.0 * (times - 1.0);

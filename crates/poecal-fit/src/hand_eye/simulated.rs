@@ -1,4 +1,5 @@
-//! How much wider than by formula the bounds of few poses must be: sessions like this one are drawn from its fit, and fitted in the same way.
+//! Factors by which the bounds of few poses are wider than by formula (parametric bootstrap). Sessions are simulated from the fit of this
+//! one, and fitted by the same steps.
 //!
 //! The formula takes the parts of the noise, the point of the target and the rows without outliers as they were found. With few poses these
 //! are uncertain themselves.
@@ -10,14 +11,14 @@ use super::fit::Fit;
 use super::noise::Spread;
 use poecal_arm::lie::{Pose, rotation};
 
-/// Sessions that are drawn.
+/// Number of simulated sessions.
 const SESSIONS: usize = 99;
-/// Rows from which on the formula is as good.
+/// Number of rows from which on the formula is as good.
 const MANY: usize = 40;
 /// Largest factor.
 const MOST: f64 = 3.0;
 
-/// Factors of the bounds of place and orientation, of the camera and of the target.
+/// Factors of the bounds of position and orientation, of the camera and of the target.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Factors {
     camera: (f64, f64),
@@ -30,7 +31,7 @@ impl Factors {
     }
 }
 
-/// The factors for a fit of rows that all count.
+/// Factors for a fit of rows that all count.
 pub(crate) fn factors(rows: &[Pair], fit: &Fit) -> Factors {
     let none = Factors { camera: (1.0, 1.0), target: (1.0, 1.0) };
     if rows.len() >= MANY {
@@ -62,7 +63,7 @@ pub(crate) fn factors(rows: &[Pair], fit: &Fit) -> Factors {
     Factors { camera: (factor(a), factor(b)), target: (factor(c), factor(d)) }
 }
 
-/// Rows as the fit would have them, with its noise.
+/// Rows predicted by the fit, with its noise.
 fn like(rows: &[Pair], fit: &Fit, draw: &mut Draw) -> Vec<Pair> {
     let sigmas = std::array::from_fn(|number| fit.noise.sigma(number));
     let back = Pose::from_translation(-fit.point);

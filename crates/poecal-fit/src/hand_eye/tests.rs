@@ -16,7 +16,7 @@ pub(crate) struct Session {
     pub(crate) target: Vec<Pose>,
 }
 
-/// Poses that look at a board from all sides; noise of places (m) and of orientations (rad), three times as large along the view.
+/// Poses that look at a board from all sides. The noise of positions (m) and of orientations (rad) is three times as large along the view.
 pub(crate) fn session(camera: CameraPlace, count: usize, noise: (f64, f64), seed: u64) -> Session {
     let mut draw = Draw::new(seed + 5);
     let (on_flange, in_base) = match camera {
@@ -76,7 +76,7 @@ const BOTH: [CameraPlace; 2] = [CameraPlace::InHand, CameraPlace::Beside];
 #[test]
 fn frames_are_within_their_bounds_as_often_as_promised() {
     let (mut inside_m, mut inside_rad, mut all, mut lost) = (0, 0, 0, 0);
-    // Few, since `validation/hand_eye` runs 300: of 40 the share of 95 % is below 80 % once in 4,000.
+    // Few sessions, since `validation/hand_eye` runs 300: of 40 the share of 95 % is below 80 % once in 4,000.
     for seed in 0..40 {
         let count = [8, 12, 20, 40][seed % 4];
         let session = session(
@@ -134,7 +134,7 @@ fn lists_the_other_way_round_are_found() {
                 hand_eye(&session.flange.clone().into(), &turned, &stated, &|row| format!("row {row}"));
             match session.read(session.flange.clone().into(), turned) {
                 Ok(found) => assert!(found.directions.target_inverted, "{camera:?}"),
-                // A camera at the other end would see the same, and the board is before it in either direction.
+                // A camera at the other end would see the same, and the board is in front of it in either direction.
                 Err(error) => assert!(error.to_string().contains("--target target-from-camera"), "{error}"),
             }
             assert!(stated.unwrap().on_flange.pose.apart(&session.on_flange).0 < 5e-3);
@@ -234,7 +234,7 @@ fn outliers_flips_repeats_and_moves_are_named() {
             let mut session = session(camera, 20, (2e-4, 2e-3), seed + 10);
             let step = Pose::from_xyz_rpy([0.01, 0.004, -0.006], [0.02, 0.01, 0.0]);
             for row in 12..20 {
-                // What stays in the base is elsewhere.
+                // The static object is at another position.
                 session.target[row] = match camera {
                     CameraPlace::InHand => session.target[row] * step,
                     CameraPlace::Beside => step * session.target[row],

@@ -14,21 +14,21 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// A tip of the tool.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tip {
-    /// Its name, empty if no column names it.
+    /// Name; empty if no column names it.
     pub name: String,
-    /// Its place in the flange's frame, with its bounds; not turned.
+    /// Position in the flange's frame, with its bounds; not turned.
     pub placed: Placed,
 }
 
-/// The tool as its touches show it.
+/// The tool as determined by its touches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tool {
-    /// The tips, in the order of the rows.
+    /// Tips, in the order of the rows.
     pub tips: Vec<Tip>,
     /// With two tips or more: the direction from the second to the first, in the flange's frame, and the angle within which it is with 95 %
     /// probability, radians.
     pub axis: Option<(Vector3<f64>, f64)>,
-    /// The tool's frame: origin at the first tip; z along the axis, if it is known.
+    /// Frame of the tool: origin at the first tip; z along the axis, if it is known.
     pub frame: Pose,
     /// Root mean square distance of the tip from its point, metres.
     pub rms_m: f64,
@@ -38,28 +38,28 @@ pub struct Tool {
     pub rows: Vec<RowError>,
     /// Touches that contradict the others.
     pub outliers: Vec<usize>,
-    /// How far to use it.
+    /// Usability of the result.
     pub level: Level,
-    /// Why, a sentence each.
+    /// Reasons of the level, a sentence each.
     pub reasons: Vec<String>,
-    /// What was found beside.
+    /// Findings.
     pub findings: Vec<Finding>,
 }
 
 /// Share of the tilt, as root mean square change of a unit vector, below which the tip is not determined along it.
 const UNTILTED: f64 = 0.03;
-/// The same that is enough: tilts of 20 deg.
+/// Share of the tilt that is enough: tilts of 20 deg.
 const TILTED: f64 = 0.25;
-/// Bound of a tip, and root mean square distance of touches, metres, above which there is no use of them.
+/// Bound of a tip, and root mean square distance of touches, metres, above which the result is not usable.
 const USELESS: f64 = 0.02;
-/// Bound of a tip, metres, up to which it is good: an arm and a hand touch to 0.2 to 1 mm.
+/// Bound of a tip, metres, up to which it is good: an arm guided by hand touches to 0.2 to 1 mm.
 const WIDE: f64 = 3e-3;
 /// Distance of a tip from the flange, metres, below which the flange itself touched.
 const AT_FLANGE: f64 = 2e-3;
 /// Root mean square distance, metres, above which other readings are tried.
 const SUSPICIOUS: f64 = 5e-3;
 
-/// Finds the tip (or tips) of a tool from touches of fixed points of unknown place. `name` says of a row what messages call it.
+/// Estimates the tip (or tips) of a tool from touches of fixed points of unknown position. `name` returns the name of a row in messages.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`] if touches are too few, if the flange was not tilted, or if the poses are in other units or conventions.
@@ -115,7 +115,7 @@ fn untilted(weak: &Vector3<f64>, spread: f64) -> Error {
     ))
 }
 
-/// Another reading of the poses that fits evidently better, with as many touches, which show as much of the tip.
+/// Another reading of the poses that fits evidently better, with as many touches, which determine as much of the tip.
 fn other_reading(touches: &Touches, layout: &Layout, found: &TipFit) -> Option<Error> {
     let inverted: Vec<Pose> = touches.flange.poses.iter().map(Pose::inverse).collect();
     let inverted = (
@@ -147,7 +147,7 @@ fn turned(poses: &[Pose]) -> f64 {
     poses.iter().map(|it| rotation::log(&(first.transpose() * it.rotation)).norm()).fold(0.0, f64::max)
 }
 
-/// The tool of a fit, not judged yet.
+/// Tool of a fit, not judged yet.
 fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<f64>) -> Tool {
     let at = |tip: usize| {
         Vector3::new(fit.unknowns[3 * tip], fit.unknowns[3 * tip + 1], fit.unknowns[3 * tip + 2])
@@ -200,12 +200,12 @@ fn finished(poses: &[Pose], layout: &Layout, fit: &TipFit, covariance: &DMatrix<
 }
 
 impl Tip {
-    /// Whether it is no tool: the poses are those of the tip itself.
+    /// True if there is no tool: the poses are those of the tip itself.
     fn is_at_flange(&self) -> bool {
         self.placed.pose.translation.norm() < self.placed.bound95_m.clamp(AT_FLANGE, USELESS)
     }
 
-    /// Why it is known too little to be used, if it is.
+    /// Reason why the tip is too uncertain to be used, if it is.
     fn useless(&self) -> Option<String> {
         let Placed { bound95_m: bound, pose, .. } = self.placed;
         let length = pose.translation.norm();
@@ -221,7 +221,7 @@ impl Tip {
     }
 }
 
-/// Sets level and reasons; of the direction that tilted least with its tilt, and the largest turn.
+/// Sets level and reasons. The arguments are the direction that tilted least, its tilt, and the largest rotation.
 fn judge(tool: &mut Tool, (weak, spread): (Vector3<f64>, f64), turned: f64, name: &dyn Fn(usize) -> String) {
     let (fitted, outliers) = (tool.rows.len() - tool.outliers.len(), tool.outliers.len());
     let (mut against, mut reasons) = (Vec::new(), Vec::new());

@@ -1,9 +1,9 @@
-//! How far tips may be off: by the errors of touches, and by those of the arm, which follow its orientation.
+//! Uncertainty of tips: by the errors of touches, and by those of the arm, which follow its orientation.
 //!
-//! An arm errs alike in orientations that are alike, and what it errs by that follows the orientation linearly is a shift of the tip, which no
-//! touch shows. So errors are taken as a share that is independent from touch to touch, and a share that is correlated by the angle
-//! between orientations, or by the tilt of the direction about which the flange turned most; of several such shares each counts by its restricted
-//! likelihood, and each part of the arm has a shift that is not seen beside what is (theory.md §9, *The tip of a tool*).
+//! An arm has similar errors in similar orientations. An error that follows the orientation linearly is a shift of the tip, which no touch
+//! determines. So errors have a share that is independent from touch to touch, and a share that is correlated. The correlation is by the angle
+//! between orientations, or by the tilt of the direction about which the flange turned most. Several such shares are weighted by their restricted
+//! likelihood. Each adds a shift of the arm that is not observable (theory.md §9, *The tip of a tool*).
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -11,20 +11,20 @@ use super::touches::{Layout, TipFit};
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
 
-/// Angle over which errors of an arm are alike, radians.
+/// Angle over which errors of an arm are correlated, radians.
 const ALIKE: f64 = 1.0;
 /// Shares of the variance that follow the orientation.
 const SHARES: [f64; 2] = [0.5, 0.9];
-/// Variance of the shift of the flange that no touch shows, over that of the arm's share: of arms whose axes are off by 0.03° to 0.1° and 0.2 to 0.5 mm,
-/// with 4 to 12 touches, 93 % to 96 % of the tips are then inside their bounds.
+/// Variance of the shift of the flange that no touch determines, over that of the arm's share. The arms have errors of the axes of 0.03° to 0.1° and
+/// 0.2 to 0.5 mm. With 4 to 12 touches, 93 % to 96 % of the tips are then inside their bounds.
 const UNSEEN: f64 = 0.7;
-/// Most touches that are looked at; of more, as many in equal steps.
+/// Largest number of touches that are evaluated; of more, as many in equal steps.
 const MOST: usize = 300;
 
-/// What the tip's errors look like.
+/// Correlation of the tip's errors.
 #[derive(Clone, Copy)]
 enum Alike {
-    /// Each touch for itself.
+    /// Independent touches.
     Never,
     /// By the angle between two orientations.
     Turned(f64),
@@ -32,7 +32,7 @@ enum Alike {
     Tilted(f64),
 }
 
-/// Covariance of the unknowns (tips, then points), m²; `about` is the direction of the flange about which it turned most. `None` where touches do not
+/// Covariance of the unknowns (tips, then points), m²; `about` is the direction of the flange about which it turned most. `None` if touches do not
 /// determine them.
 pub(crate) fn covariance(
     poses: &[Pose],
@@ -77,7 +77,7 @@ struct Fitted {
 }
 
 impl Touched<'_> {
-    /// The touches by least squares with correlated errors.
+    /// Generalised least squares of the touches with correlated errors.
     fn fitted(&self, kind: Alike, about: &Vector3<f64>) -> Option<Fitted> {
         let (m, n) = (self.kept.len(), self.layout.unknowns());
         let alike = DMatrix::from_fn(m, m, |i, j| self.alike(kind, (i, j), about));
@@ -122,7 +122,7 @@ impl Touched<'_> {
         (is_finite && likelihood.is_finite()).then_some(Fitted { unknowns, covariance, likelihood })
     }
 
-    /// The derivatives of a touch by its tip and its point, each with its first unknown.
+    /// Derivatives of a touch by its tip and its point, each with its first unknown.
     fn columns(&self, at: usize) -> [(usize, Matrix3<f64>); 2] {
         let row = self.kept[at];
         let (tip, point) = self.layout.rows[row];
@@ -146,7 +146,7 @@ impl Touched<'_> {
 }
 
 impl Alike {
-    /// The share of the variance that follows the orientation.
+    /// Share of the variance that follows the orientation.
     fn share(self) -> f64 {
         match self {
             Alike::Never => 0.0,
@@ -155,7 +155,7 @@ impl Alike {
     }
 }
 
-/// Logarithm of the determinant of a symmetric matrix; `None` of one that is not positive definite.
+/// Logarithm of the determinant of a symmetric matrix; `None` if it is not positive definite.
 fn log_determinant(matrix: &DMatrix<f64>) -> Option<f64> {
     let (values, _) = linalg::symmetric_eigen(matrix.as_slice(), matrix.nrows());
     values.iter().all(|it| *it > 0.0).then(|| values.iter().map(|it| it.ln()).sum())

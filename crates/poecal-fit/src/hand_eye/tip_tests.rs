@@ -13,7 +13,7 @@ use poecal_testing::trials::trials;
 const TIP: [f64; 3] = [0.15, 0.012, -0.003];
 const PIN: [f64; 3] = [0.75, 0.1, 0.35];
 
-/// An arm whose joints stand in the one before by these standard deviations of angle and place off.
+/// An arm whose joints deviate from their nominal pose in the joint before, by these standard deviations of angle and position.
 fn off(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut Draw) -> Robot {
     let mut motion = Pose::identity();
     let mut screws = Vec::new();
@@ -31,7 +31,7 @@ fn off(nominal: &Robot, rotation_rad: f64, position_m: f64, draw: &mut Draw) -> 
     actual
 }
 
-/// The pose that a pendant shows in a configuration near which the actual arm's tip touches the pin, with noise of each component.
+/// Pose on the pendant in a configuration near which the actual arm's tip touches the pin, with noise of each component.
 fn shown(nominal: &Robot, actual: &Robot, readings: &[f64], noise: Vector3<f64>) -> Pose {
     let pose = nominal.forward_kinematics(readings);
     let error = actual.forward_kinematics(readings) * pose.inverse();
@@ -68,7 +68,7 @@ fn miss_m(found: &Tool) -> f64 {
     (found.tips[0].placed.pose.translation - Vector3::from(TIP)).norm()
 }
 
-/// Errors of the axes of 0.03° and 0.2 mm, touches to 0.1 mm. No tip is known to less than its length.
+/// Errors of the axes are 0.03° and 0.2 mm, those of touches 0.1 mm. The bound of each tip is below its length.
 #[test]
 fn tips_on_arms_with_errors_are_within_their_bounds_as_often_as_promised() {
     let sessions = trials(200).at_least(60);
@@ -107,7 +107,7 @@ fn tips_on_arms_with_errors_are_within_their_bounds_as_often_as_promised() {
     assert!((0.90 - more..=0.98 + more).contains(&share), "{share}");
 }
 
-/// Three touches that turn about one axis agree with any length, so that they outvote nobody.
+/// Three touches that turn about one axis agree with any length, so that they must not outvote the others.
 #[test]
 fn touches_that_alone_show_the_length_are_not_left_out() {
     let sessions = trials(120).at_least(40);
@@ -124,12 +124,12 @@ fn touches_that_alone_show_the_length_are_not_left_out() {
         worst = worst.max(miss_m(&found));
         inside += usize::from(miss_m(&found) <= found.tips[0].placed.bound95_m);
         let squares: f64 = found.rows.iter().map(|it| it.shift_m * it.shift_m).sum();
-        // Fifteen numbers of five touches for six unknowns.
+        // Five touches have fifteen numbers for six unknowns.
         assert!((squares / 9.0 - found.sigma_m * found.sigma_m).abs() < 1e-9 * squares);
     }
     let share = inside as f64 / sessions.count as f64;
     println!("{inside} of {} inside, off by {:.1} mm at most", sessions.count, 1e3 * worst);
-    // Two tilted touches of a component of 4 mm, to four standard deviations.
+    // Two tilted touches determine a component to 4 mm; the limit is four standard deviations.
     assert!(share >= 0.88 - sessions.more_of_a_share(0.95) && worst < 0.03, "{share} {worst}");
 }
 
@@ -148,7 +148,7 @@ fn a_wrong_touch_among_many_is_left_out_and_named() {
     println!("{:?} {:.3} mm", found.outliers, 1e3 * miss_m(&found));
     assert_eq!(found.outliers, [6]);
     assert!(found.findings.iter().any(|it| it.kind == FindingKind::Outliers));
-    // Eight touches to 0.1 mm.
+    // Eight touches have errors of 0.1 mm.
     assert!(miss_m(&found) < 4e-4);
 }
 

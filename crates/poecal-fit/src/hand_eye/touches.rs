@@ -1,4 +1,4 @@
-//! Touches of fixed points, and the least squares that gives tips and points.
+//! Touches of fixed points, and the least squares of tips and points.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -14,7 +14,8 @@ pub(crate) const FEWEST: usize = 3;
 const LOST: f64 = 0.01;
 /// Rounds of robust weights, and of outliers.
 const ROUNDS: usize = 40;
-/// Share of the least tilt of all touches that is left without outliers, at least, and without any one more of so many or fewer.
+/// Least share of the least tilt of all touches that remains without outliers; the same without any single further touch; and the largest
+/// number of touches for which the latter is tested.
 const STILL_TILTED: f64 = 0.5;
 const TILTED_WITHOUT_ONE: f64 = 0.25;
 const MANY: usize = 50;
@@ -22,15 +23,15 @@ const MANY: usize = 50;
 /// Poses in which a tip touched a point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Touches {
-    /// `base_from_flange` of each row.
+    /// Pose `base_from_flange` of each row.
     pub flange: PoseList,
-    /// Name of the point of each row; empty where there is one.
+    /// Name of the point of each row; empty if there is one.
     pub points: Vec<String>,
-    /// Name of the tip of each row; empty where there is one.
+    /// Name of the tip of each row; empty if there is one.
     pub tips: Vec<String>,
 }
 
-/// Names of tips and points, and which of them each row has.
+/// Names of tips and points, and those of each row.
 pub(crate) struct Layout {
     pub(crate) tips: Vec<String>,
     pub(crate) points: Vec<String>,
@@ -38,7 +39,7 @@ pub(crate) struct Layout {
     pub(crate) rows: Vec<(usize, usize)>,
 }
 
-/// A fit: all unknowns, tips first, and which rows count.
+/// A fit: all unknowns, tips first, and the rows that count.
 pub(crate) struct TipFit {
     pub(crate) unknowns: Vec<f64>,
     pub(crate) kept: Vec<bool>,
@@ -117,7 +118,7 @@ impl Layout {
         rows.map(|(pose, (tip, point))| pose.act(&at(3 * tip)) - at(3 * (self.tips.len() + point))).collect()
     }
 
-    /// The fit without outliers: by least distances first, then by least squares of the rows that agree.
+    /// The fit without outliers: first by least absolute distances, then by least squares of the rows that agree.
     pub(crate) fn robustly(&self, poses: &[Pose]) -> Option<TipFit> {
         let mut weights = vec![1.0; poses.len()];
         let (_, tilted) = self.least_tilted(poses, &vec![true; poses.len()]);
@@ -129,7 +130,7 @@ impl Layout {
             unknowns = self.solved(poses, &weights)?;
         }
         let lengths = self.misses(poses, &unknowns).iter().map(Vector3::norm).collect::<Vec<f64>>();
-        // A few touches fit themselves.
+        // A few touches have little redundancy.
         let few = poses.len() as f64 / (poses.len() as f64 - self.unknowns() as f64 / 3.0).max(0.5);
         let mut sigma_m = (few.sqrt() * median(lengths.iter().copied())? / 1.538).max(1e-9);
         let mut kept = vec![true; poses.len()];
@@ -157,8 +158,8 @@ impl Layout {
         Some(TipFit { unknowns, kept, sigma_m, freedom })
     }
 
-    /// Whether what is left determines all that all touches do, also without any one of them: rows that alone show a direction contradict nothing,
-    /// and are never left out.
+    /// True if the remaining rows determine all that all touches do, also without any one of them. Rows that alone determine a direction
+    /// contradict nothing, and are never left out.
     fn are_enough(&self, poses: &[Pose], kept: &[bool], tilted: f64) -> bool {
         let has = |of: &dyn Fn(&(usize, usize)) -> bool| {
             self.rows.iter().zip(kept).any(|(row, kept)| *kept && of(row))

@@ -1,4 +1,4 @@
-//! How far the flange turned, and about how many axes.
+//! Rotation of the flange, and its number of axes.
 
 use nalgebra::Vector3;
 
@@ -9,7 +9,7 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// Standard deviation of turns about the second axis, radians, below which there is one axis only.
 const ONE_AXIS: f64 = 8e-3;
 
-/// How far the flange turned about its own axes.
+/// Rotation of the flange about its own axes.
 pub(crate) fn turns(flange: &[Pose], counted: &[usize]) -> Turns {
     let middle = crate::start::mean_rotation(counted.iter().map(|&row| flange[row].rotation));
     let turned: Vec<Vector3<f64>> =

@@ -1,4 +1,4 @@
-//! What is asked, and what is found.
+//! Options and results.
 
 use nalgebra::Vector3;
 
@@ -10,11 +10,11 @@ use super::unknown_lens::FoundLens;
 /// Directions of the poses of two lists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Directions {
-    /// Whether the arm's poses are `flange_from_base`, and not `base_from_flange`.
+    /// True if the arm's poses are `flange_from_base`, and not `base_from_flange`.
     pub flange_inverted: bool,
-    /// Whether the camera's poses are `target_from_camera`, and not `camera_from_target`.
+    /// True if the camera's poses are `target_from_camera`, and not `camera_from_target`.
     pub target_inverted: bool,
-    /// Whether both were stated.
+    /// True if both were stated.
     pub stated: bool,
 }
 
@@ -28,19 +28,19 @@ impl Directions {
     }
 }
 
-/// How far a result may be used.
+/// Usability of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Not at all: the frames may be off by more than their bounds.
+    /// Not usable: the errors of the frames may exceed their bounds.
     DoNotUse,
-    /// Within its bounds, which further poses would make smaller.
+    /// Usable within its bounds, which further poses would make smaller.
     WithinBounds,
-    /// As it is.
+    /// Usable without reserve.
     Good,
 }
 
 impl Level {
-    /// The level, with what speaks against any use, else with what speaks against use without its bounds.
+    /// The level, with the reasons against any use, else with the reasons against use without its bounds.
     pub(crate) fn from_reasons(against: Vec<String>, weak: Vec<String>) -> (Self, Vec<String>) {
         match (against.is_empty(), weak.is_empty()) {
             (false, _) => (Level::DoNotUse, against),
@@ -49,7 +49,7 @@ impl Level {
         }
     }
 
-    /// Words for people.
+    /// Words in messages.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -59,7 +59,7 @@ impl Level {
         }
     }
 
-    /// The word in files.
+    /// Word in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -70,19 +70,19 @@ impl Level {
     }
 }
 
-/// What is asked, and what is known.
+/// Options of a hand-eye calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HandEyeOptions {
-    /// Where the camera is.
+    /// Mounting of the camera.
     pub camera: CameraPlace,
-    /// Whether the arm's poses are `flange_from_base`; found if it is not stated.
+    /// True if the arm's poses are `flange_from_base`; determined from the poses if not stated.
     pub flange_inverted: Option<bool>,
-    /// Whether the camera's poses are `target_from_camera`; found if it is not stated.
+    /// True if the camera's poses are `target_from_camera`; determined from the poses if not stated.
     pub target_inverted: Option<bool>,
 }
 
 impl HandEyeOptions {
-    /// With directions that are found.
+    /// Options with directions that are determined from the poses.
     #[must_use]
     pub fn new(camera: CameraPlace) -> Self {
         HandEyeOptions { camera, flange_inverted: None, target_inverted: None }
@@ -94,22 +94,22 @@ impl HandEyeOptions {
 pub struct Outlier {
     /// The row, from 0.
     pub row: usize,
-    /// How far the target is from where the others predict it, metres.
+    /// Distance of the target from its position predicted by the others, metres.
     pub shift_m: f64,
-    /// By which angle it is turned, radians.
+    /// Angle of its orientation from the predicted one, radians.
     pub turn_rad: f64,
-    /// Whether it is the pose of a flat board from the other of its two sides.
+    /// True if it is the pose of a flat board from the other of its two sides.
     pub is_flipped: bool,
 }
 
 /// Error of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowError {
-    /// How far the target is from where it is predicted, metres.
+    /// Distance of the target from its predicted position, metres.
     pub shift_m: f64,
-    /// By which angle it is turned, radians.
+    /// Angle of its orientation from the predicted one, radians.
     pub turn_rad: f64,
-    /// Whether the row counts in the fit.
+    /// True if the row counts in the fit.
     pub is_fitted: bool,
 }
 
@@ -124,8 +124,8 @@ pub struct HeldOut {
     pub rms_rad: f64,
 }
 
-/// How far the flange turned between its poses: standard deviations of its turns about the three directions of greatest, middle and least,
-/// and these directions in its own frame.
+/// Rotation of the flange between its poses: standard deviations of its rotations about the three directions of greatest, middle and
+/// least, and these directions in its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turns {
     /// Standard deviations, radians.
@@ -134,43 +134,43 @@ pub struct Turns {
     pub directions: [Vector3<f64>; 3],
 }
 
-/// Where camera and target are.
+/// Poses of camera and target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandEye {
-    /// Where the camera is.
+    /// Mounting of the camera.
     pub camera: CameraPlace,
-    /// What is on the flange: camera or target, in the flange's frame.
+    /// Pose of the mounted object (camera or target), in the flange's frame.
     pub on_flange: Placed,
-    /// What stays: target or camera, in the base frame.
+    /// Pose of the static object (target or camera), in the base frame.
     pub in_base: Placed,
-    /// Which way round the lists were.
+    /// Directions of the lists.
     pub directions: Directions,
-    /// How far to use it.
+    /// Usability of the result.
     pub level: Level,
-    /// Why, a sentence each.
+    /// Reasons of the level, a sentence each.
     pub reasons: Vec<String>,
     /// Standard deviations of the camera's poses: across and along the line of sight (metres), tilts and turn about it (radians).
     pub noise: [f64; 4],
-    /// The point of the target, in its frame, of which the noise of the place is.
+    /// Point of the target, in its frame, to which the noise of positions refers.
     pub noise_about: Vector3<f64>,
     /// Root mean square errors of the rows that count, metres and radians.
     pub residual: (f64, f64),
-    /// Errors of rows that were left out in turn; none with fewer than six.
+    /// Errors of rows that were predicted by the others; `None` with fewer than six.
     pub held_out: Option<HeldOut>,
     /// Errors of all rows.
     pub rows: Vec<RowError>,
     /// Rows that contradict the others.
     pub outliers: Vec<Outlier>,
-    /// How far the flange turned.
+    /// Rotation of the flange.
     pub turns: Turns,
-    /// What was found beside, a sentence each.
+    /// Findings, a sentence each.
     pub findings: Vec<Finding>,
-    /// The lens, if it was unknown.
+    /// Lens, if it was unknown.
     pub lens: Option<FoundLens>,
 }
 
 impl HandEye {
-    /// The frame of the camera: on the flange, or in the base.
+    /// Frame of the camera: on the flange, or in the base.
     #[must_use]
     pub fn camera_frame(&self) -> &Placed {
         match self.camera {
@@ -179,7 +179,7 @@ impl HandEye {
         }
     }
 
-    /// The same, no better than within its bounds if the pictures contradict the lens that they were seen through, as a sentence says.
+    /// The result, usable only within its bounds if the pictures contradict their lens; `doubt` states it.
     pub(crate) fn with_lens_doubt(mut self, doubt: Option<&String>) -> Self {
         if let Some(doubt) = doubt {
             self.findings.push(Finding::new(FindingKind::Lens, doubt.clone(), Vec::new()));
@@ -188,7 +188,7 @@ impl HandEye {
         self
     }
 
-    /// Adds a reason for which the result is no better than within its bounds.
+    /// Adds a reason for which the result is usable only within its bounds.
     pub fn weaken(&mut self, reason: String) {
         if self.level != Level::DoNotUse {
             self.level = Level::WithinBounds;

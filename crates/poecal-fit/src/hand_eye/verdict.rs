@@ -1,26 +1,26 @@
-//! How far to use the result: by what was promised of the frames, and not by what a tracker would do.
+//! Usability of the result, judged by the bounds of its frames and not by the accuracy of a tracker.
 
 use super::findings::{Finding, FindingKind};
 use super::scale::{self, NO_CAMERA};
 use super::types::{HandEye, Level};
 use poecal_model::camera::PictureNumber;
 
-/// Rows from which on a result is tested well.
+/// Number of rows from which on a result is tested well.
 const ENOUGH: usize = 10;
 /// Standard deviation of turns about the second axis, radians, that is enough: turns of 20 deg to both sides.
 const TURNED: f64 = 0.17;
 /// Share of outliers up to which a result is good, and up to which it is used.
 const FEW: f64 = 0.2;
 const MANY: f64 = 0.4;
-/// The same of places, as a share of the distance.
+/// Largest noise of positions that a camera has, as a share of the distance.
 const NO_CAMERA_M: f64 = 0.06;
-/// Bound of the camera's position, as a share of the distance at which it sees the target, up to which a result is good: then what it sees is off by
-/// no more than by a focal length that is off by 1 %.
+/// Bound of the camera's position, as a share of its distance from the target, up to which a result is good. Errors of its measurements are then no
+/// larger than by a focal length with an error of 1 %.
 const NEAR: f64 = 0.01;
-/// How many times wider an unknown lens makes that bound where it is said.
+/// Factor by which an unknown lens widens that bound, from which on it is reported.
 const WIDER: f64 = 2.0;
 
-/// Sets level and reasons, and says which moves are missing; `scale` is how many times as long as the arm's the camera's lengths are.
+/// Sets level and reasons, and adds findings of missing moves. `scale` is the ratio of the camera's lengths to the arm's.
 pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     let fitted = result.rows.iter().filter(|it| it.is_fitted).count();
     let outliers = result.outliers.len();
@@ -57,7 +57,7 @@ pub(crate) fn judge(result: &mut HandEye, scale: Option<f64>, distance_m: f64) {
     (result.level, result.reasons) = Level::from_reasons(against, weak);
 }
 
-/// Why poses with this noise (across, along, tilts, turn) do not fit together, if they do not.
+/// Reason why poses with this noise (across, along, tilts, turn) do not fit together, if they do not.
 pub(crate) fn inconsistent(of: &[f64; 4], distance_m: f64) -> Option<String> {
     let noise = of[2].max(of[3]);
     if noise > NO_CAMERA {
@@ -76,7 +76,7 @@ pub(crate) fn inconsistent(of: &[f64; 4], distance_m: f64) -> Option<String> {
     })
 }
 
-/// What keeps the camera's position from being accurate: an unknown lens, whose findings are added, and a wide bound.
+/// Causes of an inaccurate camera position: an unknown lens, whose findings are added, and a wide bound.
 fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
     let mut weak = of_lens(result);
     let bent = result.lens.as_ref().and_then(|lens| bent(&lens.numbers));
@@ -94,7 +94,7 @@ fn inaccurate(result: &mut HandEye, distance_m: f64) -> Vec<String> {
     weak
 }
 
-/// A board that is bent by more than its uncertainty, which was taken into account.
+/// A board that is bent by more than its uncertainty; the estimate contains the bend.
 fn bent(numbers: &[PictureNumber]) -> Option<String> {
     const EVIDENT: f64 = 4.0;
     let bends = || numbers.iter().filter(|it| it.unit == "mm");
@@ -107,7 +107,7 @@ fn bent(numbers: &[PictureNumber]) -> Option<String> {
     })
 }
 
-/// What an unknown lens costs, and whether pictures and arm agree on it.
+/// Costs of an unknown lens, and disagreement of pictures and arm on it.
 fn of_lens(result: &HandEye) -> Vec<String> {
     let Some(lens) = &result.lens else { return Vec::new() };
     let mut said = Vec::new();
@@ -135,7 +135,7 @@ fn of_lens(result: &HandEye) -> Vec<String> {
     said
 }
 
-/// The statement of a kind of finding, if there is one.
+/// Statement of a kind of finding, if there is one.
 fn said(result: &HandEye, kind: FindingKind) -> Option<String> {
     result.findings.iter().find(|it| it.kind == kind).map(|it| it.statement.clone())
 }
@@ -148,7 +148,7 @@ fn missing_moves(result: &HandEye) -> Vec<String> {
     }
     let [first, other, _] = result.turns.directions;
     let axis = |it: &nalgebra::Vector3<f64>| {
-        // Its largest part counts positive.
+        // Its largest component is positive.
         let sign = it[it.iamax()].signum();
         format!("({:.2} {:.2} {:.2})", sign * it.x + 0.0, sign * it.y + 0.0, sign * it.z + 0.0)
     };

@@ -5,15 +5,15 @@ use poecal_model::measurement::Dataset;
 use poecal_numerics::distributions::median;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// Share of the focal length by which corners of a board that is right are never off.
+/// Share of the focal length that the corners of a correct board never deviate by.
 const OFF: f64 = 5e-3;
-/// How many times better another order of the corners must be, to be named.
+/// Factor by which another order of the corners must be better, to be named.
 const BETTER: f64 = 5.0;
-/// Most pictures that are looked at.
+/// Largest number of pictures that are evaluated.
 const SOME: usize = 8;
 
-/// Refuses pictures whose corners are far from where any pose of the board would have them, and says whether columns and rows of the board are
-/// exchanged.
+/// Refuses pictures whose corners are far from their predicted positions for any pose of the board, and names exchanged columns and rows of
+/// the board.
 pub fn refuse_wrong_boards(data: &Dataset) -> Result<()> {
     let pictures = &data.pictures;
     for (at, board) in pictures.boards.iter().enumerate() {
@@ -45,7 +45,7 @@ pub fn refuse_wrong_boards(data: &Dataset) -> Result<()> {
     Ok(())
 }
 
-/// Median over some pictures of a board of the root mean square by which its corners are off in the best pose, with the focal length, pixels.
+/// Median over some pictures of a board of the root mean square residual of its corners in the best pose, with the focal length, pixels.
 fn off_px(pictures: &Pictures, board: usize) -> Option<(f64, f64)> {
     let own: Vec<_> = pictures.all.iter().filter(|picture| picture.board == board).collect();
     let some = own.iter().step_by(own.len().div_ceil(SOME).max(1));

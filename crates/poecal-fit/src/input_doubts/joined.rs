@@ -1,16 +1,16 @@
-//! Whether the nominal robot misses what was joined by so much that it may not belong together.
+//! Errors of the nominal robot on joined data that are so large that the data may not belong together.
 
 use crate::forensics::{DiagnosisKind, DiagnosisOptions, diagnose};
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 
-/// Share of the reach beyond which a diagnosis is asked, and beyond which nothing fits that it does not explain.
+/// Share of the reach beyond which a diagnosis is made, and beyond which unexplained data are refused.
 const ODD: f64 = 0.01;
 const DOUBTFUL: f64 = 0.05;
-/// Where to look where a diagnosis finds nothing.
+/// Remedy if a diagnosis finds nothing.
 const LOOK: &str = "look at the units, the signs and the order of joints and measurements";
 
-/// What a diagnosis of mistakes says of what was joined.
+/// Diagnosis of mistakes in joined data.
 #[must_use]
 pub fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
     let found = diagnose(robot, joined, &joined.all_rows(), &DiagnosisOptions::default());
@@ -19,22 +19,22 @@ pub fn diagnosis(robot: &Robot, joined: &Dataset) -> Option<String> {
     known.next().map(|it| it.statement.clone())
 }
 
-/// The same, or where to look.
+/// The diagnosis, or the general remedy.
 #[must_use]
 pub fn reason(robot: &Robot, joined: &Dataset) -> String {
     diagnosis(robot, joined).unwrap_or_else(|| LOOK.to_owned())
 }
 
-/// Whether a robot that misses places by so much fits them no more.
+/// True if the error of a robot is so large that it no longer fits the data.
 #[must_use]
 pub fn is_doubtful(robot: &Robot, missed_m: f64) -> bool {
     missed_m > DOUBTFUL * robot.reach_m()
 }
 
-/// The warning of what is missed by more than is usual, with what explains it.
+/// Warning of an unusual error, with its explanation.
 ///
 /// # Errors
-/// What refuses what is missed by more than any robot is off, and is not explained.
+/// An error that exceeds that of any robot and is not explained.
 pub fn warning(
     robot: &Robot,
     missed_m: f64,

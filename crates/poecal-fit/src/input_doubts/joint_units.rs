@@ -12,12 +12,12 @@ use poecal_numerics::unit::Unit;
 const LARGEST_UNLIMITED: f64 = 50.0;
 /// Without limits, largest reading in the supposed unit (two turns in radians, and metres).
 pub const LARGEST_OTHERWISE: f64 = 4.0 * std::f64::consts::PI;
-/// The largest of all readings where they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
+/// Largest of all readings if they are per cent of the joints' ranges, from -100 to 100 and a little beyond.
 const PER_CENT: std::ops::RangeInclusive<f64> = 92.0..=102.0;
-/// By how much readings differ at most that count a joint's turns from the middle of its range on or beyond, radians; and a margin.
+/// Largest spread of readings that count a joint's turns from the middle of its range or beyond, radians; and a margin.
 const MOST_TURNS: f64 = 2.0 * TAU;
 const MORE: f64 = 0.05;
-/// Counts in a turn of absolute encoders, as motors of low-cost arms state them.
+/// Counts in a turn of absolute encoders, as in motors of low-cost arms.
 const ENCODERS: [f64; 4] = [1024.0, 4096.0, 16_384.0, 65_536.0];
 /// Rounding allowed beyond a limit.
 const ROUNDING: f64 = 1e-6;
@@ -33,20 +33,20 @@ pub struct JointWatch<'a> {
 struct OneJoint<'a> {
     joint: &'a Joint,
     reading: usize,
-    /// Whether a whole turn of its reading is one of the joint, and of no other.
+    /// True if a whole turn of its reading is one of the joint, and of no other.
     is_periodic: bool,
-    /// The lowest and the highest reading before whole turns are taken off, and whether all are whole numbers from 0 on.
+    /// Lowest and highest reading before whole turns are subtracted, and whether all are whole numbers from 0 on.
     raw: [f64; 2],
     is_count: bool,
     turned: NamedLines,
     beyond: NamedLines,
-    /// The largest of these, and its place.
+    /// Largest of these, and its place in the file.
     extreme: f64,
     extreme_place: (usize, usize),
 }
 
 impl<'a> JointWatch<'a> {
-    /// Of a robot, before any row.
+    /// Watch of a robot, before any row.
     #[must_use]
     pub fn new(robot: &'a Robot) -> Self {
         let joints = robot.joints.iter().zip(robot.reading_indices());
@@ -66,8 +66,8 @@ impl<'a> JointWatch<'a> {
         JointWatch { joints: joints.collect(), rows: 0 }
     }
 
-    /// Takes whole turns off the readings of a row that are inside the limits without, as 0 to 360° of a joint from -180 to 180°, and adds them to
-    /// `turns`. `place` is that of a reading: its line and column.
+    /// Subtracts whole turns from readings of a row that are inside the limits without them, and adds them to `turns`. An example is 0 to 360° of
+    /// a joint from -180 to 180°. `place` is that of a reading: its line and column.
     pub fn unwind(
         &mut self,
         place: &dyn Fn(usize) -> (usize, usize),
@@ -104,7 +104,7 @@ impl<'a> JointWatch<'a> {
     /// A warning for each joint beyond its limits.
     ///
     /// # Errors
-    /// The doubt if only another unit explains the readings.
+    /// Doubt if only another unit explains the readings.
     pub fn finish(&self, columns: &[ReadColumn<'_>]) -> Result<Vec<String>, Doubt> {
         let turned = self.joints.iter().filter(|one| one.turned.count > 0);
         let mut warnings: Vec<String> = turned.map(OneJoint::turn_warning).collect();
@@ -134,7 +134,7 @@ impl<'a> JointWatch<'a> {
         Ok(warnings)
     }
 
-    /// Counts of an encoder in a turn, if all readings are whole numbers around the middle of such.
+    /// Counts of an encoder in a turn, if all readings are whole numbers around its middle.
     fn counts_a_turn(&self, column: &ReadColumn<'_>) -> Option<f64> {
         let all = || self.joints.iter().map(|one| one.raw);
         let [lowest, highest] =
@@ -144,7 +144,7 @@ impl<'a> JointWatch<'a> {
         (is_of_all && lowest < 0.5 * counts && highest > 0.5 * counts).then_some(counts)
     }
 
-    /// How far the slides without limits move in all (metres), by the ranges of the columns.
+    /// Total motion of prismatic joints without limits (metres), by the ranges of the columns.
     #[must_use]
     pub fn unlimited_slides_m(&self, columns: &[ReadColumn<'_>]) -> f64 {
         let slides = self
@@ -162,7 +162,7 @@ impl<'a> JointWatch<'a> {
 }
 
 impl OneJoint<'_> {
-    /// Whether a reading is inside the limits widened by `slack`; without limits, whether it is not too large.
+    /// True if a reading is inside the limits widened by `slack`; without limits, if it is not too large.
     fn allows(&self, reading: f64, slack: f64) -> bool {
         let value = self.joint.reading.value(reading);
         match self.joint.limits {
@@ -171,10 +171,10 @@ impl OneJoint<'_> {
         }
     }
 
-    /// Whole turns without which a reading is inside the limits, where it is beyond them with these.
+    /// Number of whole turns without which a reading is inside the limits, if it is beyond them with these.
     fn turns(&self, reading: f64) -> Option<f64> {
         let limits = self.joint.limits.filter(|_| self.is_periodic && !self.allows(reading, ROUNDING))?;
-        // More would rather be another unit.
+        // A larger reading would rather be in another unit.
         if reading.abs() > LARGEST_OTHERWISE {
             return None;
         }
@@ -194,14 +194,14 @@ impl OneJoint<'_> {
         )
     }
 
-    /// The unit that explains readings far outside.
+    /// Unit that explains readings far outside.
     fn other_unit(&self, input: &ReadColumn<'_>, extremes: [f64; 2], rows: usize) -> Option<NamedUnit> {
         let is_rare = (self.beyond.count as f64) < SHARE * rows as f64;
         let is_far = self.is_far_outside(input.unit.si_unit(), extremes, input.unit_from);
         if is_rare || !is_far { None } else { self.smaller_unit(input, extremes) }
     }
 
-    /// The same of readings of which whole turns were taken off, although they differ by more turns than any count of them.
+    /// The unit for readings from which whole turns were subtracted, if they differ by more turns than any count of them.
     fn other_unit_of_turns(&self, input: &ReadColumn<'_>, rows: usize) -> Option<NamedUnit> {
         let is_rare = ((self.turned.count + self.beyond.count) as f64) < SHARE * rows as f64;
         let span = self.joint.limits.map_or(0.0, |limits| limits.upper - limits.lower);
@@ -214,7 +214,7 @@ impl OneJoint<'_> {
         }
     }
 
-    /// The smaller unit in which readings are inside the limits.
+    /// Smaller unit in which readings are inside the limits.
     fn smaller_unit(&self, input: &ReadColumn<'_>, extremes: [f64; 2]) -> Option<NamedUnit> {
         let quantity = input.unit.si_unit();
         let candidates: &[&str] = match quantity {
@@ -237,7 +237,7 @@ impl OneJoint<'_> {
         })
     }
 
-    /// Whether a reading is so far outside that the joint cannot have been there.
+    /// True if a reading is so far outside that the joint cannot have been there.
     fn is_far_outside(&self, quantity: Unit, extremes: [f64; 2], unit_from: UnitSource) -> bool {
         match self.joint.limits {
             Some(limits) => {

@@ -1,4 +1,4 @@
-//! Positions and distances in a wrong unit, by how far the robot reaches.
+//! Positions and distances in a wrong unit, judged by the reach of the robot.
 
 use nalgebra::Vector3;
 
@@ -7,15 +7,15 @@ use poecal_model::measurement::Observation;
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::{median, median_point};
 
-/// Motion below which a coordinate did not move, as a share of the reach.
+/// Motion below which a coordinate counts as still, as a share of the reach.
 const STILL: f64 = 1e-2;
-/// A coordinate that moves by at most this many reaches is in the right unit where another one is in a wrong one.
+/// Largest motion, in reaches, of a coordinate in the right unit beside another one in a wrong unit.
 const RIGHT_REACHES: f64 = 4.0;
 /// Positions with a spread of more than this many reaches are in a wrong unit.
 pub const REACHES: f64 = 20.0;
 
-/// The doubt about distances that differ by more than the robot reaches, from which their unit must be smaller. `slides_m` is how far slides without
-/// limits move.
+/// Doubt about distances that differ by more than the robot reaches: their unit must be smaller. `slides_m` is the motion of prismatic joints
+/// without limits.
 #[must_use]
 pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<Doubt> {
     let ranged = || rows.iter().filter_map(|row| Some((row.measurement.range()?, row)));
@@ -36,7 +36,7 @@ pub fn of_ranges(robot: &Robot, slides_m: f64, rows: &[Observation]) -> Option<D
     Some(Doubt::new(DoubtPlace::Line(row.source.line as usize), message))
 }
 
-/// The doubt about positions whose spread shows that their unit must be smaller, of columns x, y, z.
+/// Doubt about positions of columns x, y, z whose spread reveals that their unit must be smaller.
 #[must_use]
 pub fn of_positions(
     robot: &Robot,
@@ -66,15 +66,15 @@ pub fn of_positions(
     Some(Doubt::new(DoubtPlace::Line(line as usize), message))
 }
 
-/// What is wrong of positions of which one is so far from their middle, by how far each coordinate is at most; nothing without a smaller unit.
+/// Message about positions far from their middle, by the largest distance in each coordinate; `None` without a smaller unit.
 fn positions_message(
     columns: [ReadColumn<'_>; 3],
     far: [f64; 3],
     apart: Vector3<f64>,
     reach: f64,
 ) -> Option<String> {
-    // The columns of which that is so: a header may state the unit of one of three wrongly.
-    // One in which nothing moved shows nothing.
+    // The columns in a wrong unit: a header may state the unit of one of three wrongly. A column without
+    // motion reveals nothing.
     let is_right = |axis: usize| (STILL * reach..=RIGHT_REACHES * reach).contains(&far[axis]);
     let own: Vec<usize> = (0..3).filter(|axis| !is_right(*axis)).collect();
     let own = if own.is_empty() { vec![0, 1, 2] } else { own };

@@ -1,7 +1,7 @@
-//! Doubts about rows as they were read, by the nominal robot: units, turns, boards, and what was joined (docs/file-formats.md, "Measurements").
+//! Doubts about rows as they were read, by the nominal robot: units, turns, boards, and joined data (docs/file-formats.md, "Measurements").
 //!
-//! Each rule gets numbers with what is known of their columns, and answers with a [`Doubt`]: one sentence with its evidence, and where it shows. Those
-//! who read files refuse it at its place.
+//! Each rule takes numbers with the known facts of their columns, and returns a [`Doubt`]: one sentence with its evidence, and its place in the file.
+//! The readers of files refuse it at that place.
 
 pub mod boards;
 pub mod joined;
@@ -22,44 +22,44 @@ pub const SHARE: f64 = 0.1;
 /// A column of numbers as it was read.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadColumn<'a> {
-    /// Its name in a header of ours.
+    /// Name in a header of poecal.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit.
     pub unit: NamedUnit,
-    /// What says the unit.
+    /// Source of the unit.
     pub unit_from: UnitSource,
     /// Smallest and largest number (m, rad).
     pub range: Option<(f64, f64)>,
 }
 
-/// What is most likely wrong with what was read.
+/// Most likely mistake in the rows that were read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Doubt {
-    /// Where it shows.
+    /// Place in the file.
     pub place: DoubtPlace,
-    /// What was found and is expected, with what to do.
+    /// Message: found, expected, and remedy.
     pub message: String,
 }
 
-/// Where a doubt shows.
+/// Place of a doubt in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DoubtPlace {
     /// Line and column (characters, from 1) of a cell.
     Cell(usize, usize),
     /// A line of the file.
     Line(usize),
-    /// The head of a column, by its number among those that were read.
+    /// Head of a column, by its number among those that were read.
     Head(usize),
 }
 
 impl Doubt {
-    /// A doubt at a place.
+    /// Doubt at a place.
     #[must_use]
     pub fn new(place: DoubtPlace, message: String) -> Self {
         Doubt { place, message }
     }
 
-    /// The error of a file; without the place of a column's head, which those know who read it.
+    /// Error of a file; without the place of a column's head, which only the reader of the file knows.
     #[must_use]
     pub fn error(self, kind: ErrorKind, path: &Path) -> Error {
         let error = kind.error(self.message);
@@ -71,7 +71,7 @@ impl Doubt {
     }
 }
 
-/// How to state a unit beside the header: where a column states none, by an option.
+/// Remedy that states a unit beside the header: by an option if a column states none.
 fn state_it(unit_from: UnitSource, symbol: &str) -> String {
     match unit_from {
         UnitSource::Si | UnitSource::Maker => format!("say --units {symbol}"),

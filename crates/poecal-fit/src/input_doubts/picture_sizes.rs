@@ -1,4 +1,4 @@
-//! Sizes of pictures that lenses state, beside the corners that were seen.
+//! Sizes of pictures that lenses state, compared with the measured corners.
 
 use super::{Doubt, DoubtPlace};
 use poecal_model::camera::{Camera, Corner};
@@ -6,7 +6,7 @@ use poecal_numerics::error::shown;
 
 /// Pixels beyond the edge of a picture at which a corner may be found: detectors refine corners that they find at the edge.
 const BEYOND: f64 = 2.0;
-/// Fewest corners of which the part of the picture that they fill is looked at.
+/// Fewest corners for which the filled part of the picture is evaluated.
 const FEWEST: usize = 100;
 /// Corners of pictures of a smaller size begin within this share of it, and reach this share.
 const BEGIN: f64 = 0.1;
@@ -16,7 +16,7 @@ const REACH: f64 = 0.9;
 /// their camera.
 ///
 /// # Errors
-/// The doubt about corners outside the pictures that the lenses state.
+/// Doubt about corners outside the pictures that the lenses state.
 pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Result<Vec<String>, Doubt> {
     let mut said = Vec::new();
     for (at, camera) in cameras.iter().enumerate() {
@@ -42,7 +42,7 @@ pub fn check_sizes(cameras: &[Camera], pictures: &[(usize, &[Corner])]) -> Resul
     Ok(said)
 }
 
-/// Whose corners or lens it is, of a camera that has a name.
+/// Owner of corners or a lens, for a camera that has a name.
 fn camera_phrase(camera: &Camera) -> String {
     if camera.name.is_empty() { String::new() } else { format!(" of the camera `{}`", shown(&camera.name)) }
 }
@@ -53,7 +53,7 @@ fn extent(corners: &[&Corner], axis: usize) -> (f64, f64) {
     pixels.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), it| (least.min(it), most.max(it)))
 }
 
-/// Whether corners fill pictures of a size.
+/// True if corners fill pictures of a size.
 fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
     corners.len() >= FEWEST
         && (0..2).all(|axis| {
@@ -62,7 +62,7 @@ fn fill(size: [f64; 2], corners: &[&Corner]) -> bool {
         })
 }
 
-/// The error of a corner that is outside, with how the sizes are related.
+/// Error of a corner that is outside, with the ratio of the sizes.
 fn outside(camera: &Camera, size: [f64; 2], corners: &[&Corner], (first, count): (&Corner, usize)) -> String {
     let most = [0, 1].map(|axis| extent(corners, axis).1);
     let times = [0, 1].map(|axis| most[axis] / size[axis]);

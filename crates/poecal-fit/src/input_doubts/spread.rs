@@ -11,7 +11,7 @@ use poecal_numerics::distributions::{median, median_point};
 use poecal_numerics::named_unit::{NamedUnit, units_of};
 use poecal_numerics::unit::Unit;
 
-/// Most rows of the comparison.
+/// Largest number of rows of the comparison.
 const ROWS: usize = 500;
 /// Fewest rows for a spread.
 const FEWEST_ROWS: usize = 4;
@@ -19,9 +19,10 @@ const FEWEST_ROWS: usize = 4;
 const SHARE_OF_REACH: f64 = 0.05;
 /// Longer tools than the model's change the spread by less than this factor.
 const FACTOR: f64 = 4.0;
-/// How many times too large or too small positions are at least that are clearly in another unit.
+/// Least factors by which positions in clearly another unit are too large or too small.
 const THOUSANDS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];
-/// Of a unit near the stated one the spread is closer than this factor, and the ways between rows differ by less than this share.
+/// For a unit near the stated one: the ratio of spreads is below this factor, and the relative difference of paths between rows is below
+/// this share.
 const NEAR: f64 = 1.5;
 const ALIKE: f64 = 0.3;
 /// Angles in degrees below this may be radians of a full turn.
@@ -29,7 +30,7 @@ const FULL_TURN_AS_DEGREES: f64 = 6.4;
 /// Factor by which angles misread as degrees reduce the model's spread at least.
 const SMALLER: f64 = 10.0;
 
-/// The doubt about positions or joint angles whose spread only another unit explains, of the rows from `first` on. Columns are those of the joint
+/// Doubt about positions or joint angles whose spread only another unit explains, of the rows from `first` on. Columns are those of the joint
 /// readings, then others; x of the position is the one with the number `x`.
 #[must_use]
 pub fn of_positions(
@@ -80,7 +81,7 @@ pub fn of_positions(
     (as_read > smallest).then(|| Doubt::new(DoubtPlace::Head(x), message()))
 }
 
-/// Instrument and target of a row, if the model says where they are.
+/// Instrument and target of a row, if the model states their poses.
 fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Mount>, Option<&'a Mount>) {
     let Some(observation) = data.observations.get(row) else { return (None, None) };
     let find = |mounts: &'a [Mount], names: &[Option<String>], index: usize| {
@@ -93,8 +94,8 @@ fn pair_of<'a>(robot: &'a Robot, data: &Dataset, row: usize) -> (Option<&'a Moun
     )
 }
 
-/// By how much positions in another unit would be too large or too small, of the units that are near the stated one: where the ways from row
-/// to row are then as long as the model's. A long tool, which changes the spread as much, does not make them so.
+/// Factor by which positions in another unit would be too large or too small, for units near the stated one. The paths from row to row must
+/// then be as long as the model's. A long tool changes the spread as much, but not these paths.
 fn near_unit(
     stated: NamedUnit,
     ratio: f64,
@@ -151,12 +152,12 @@ fn angle_message(input: &ReadColumn<'_>, measured: f64, modelled: f64) -> String
     )
 }
 
-/// A unit behind the word `in`.
+/// Name of a unit in a message.
 fn spoken(symbol: &str) -> &str {
     if symbol == "in" { "inches" } else { symbol }
 }
 
-/// `factor`: how many times the model's spread the measured one is, as a ratio of units.
+/// Message about positions; `factor` is the measured spread over that of the model, as a ratio of units.
 fn position_message(input: &ReadColumn<'_>, measured: f64, modelled: f64, factor: f64) -> String {
     let stated = input.unit;
     let model = format!(

@@ -51,7 +51,7 @@ impl TurnWatch {
         });
     }
 
-    /// The doubt where only degrees explain the angles.
+    /// Doubt if only degrees explain the angles.
     #[must_use]
     pub fn doubt(&self) -> Option<Doubt> {
         let first = self.first.as_ref()?;

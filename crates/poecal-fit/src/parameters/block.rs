@@ -8,33 +8,33 @@ use super::{Parameter, Subject};
 /// A block of unknowns, which a fit changes or holds as a whole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Block {
-    /// The axis (or direction) of a joint.
+    /// Axis (or direction) of a joint.
     Axis(usize),
-    /// A term of a joint's value.
+    /// Term of a joint's value.
     Term(usize, Term),
     /// A target.
     Target(usize),
-    /// The frame of an instrument.
+    /// Frame of an instrument.
     Frame(usize),
-    /// A term of what an instrument reads.
+    /// Term of an instrument's range.
     Range(usize, RangeTerm),
-    /// A term of an instrument's clock.
+    /// Term of an instrument's clock.
     Clock(usize, ClockTerm),
 }
 
-/// Names of joints, targets and instruments, from which blocks and unknowns have theirs.
+/// Names of joints, targets and instruments, from which blocks and unknowns derive theirs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
-    /// Of the joints.
+    /// Joints.
     pub joints: Vec<String>,
-    /// Of the targets; the only one may have none.
+    /// Targets; the only one may have no name.
     pub targets: Vec<Option<String>>,
-    /// Of the instruments; a single one may have none.
+    /// Instruments; a single one may have no name.
     pub stations: Vec<Option<String>>,
 }
 
 impl Names {
-    /// All blocks: of each joint the axis and its terms, then the targets, the frames, what instruments read, and their clocks.
+    /// All blocks: of each joint the axis and its terms, then the targets, the frames, the terms of ranges, and the clocks.
     #[must_use]
     pub fn blocks(&self) -> Vec<Block> {
         let joints = (0..self.joints.len()).flat_map(|joint| {
@@ -50,8 +50,8 @@ impl Names {
         joints.chain(targets).chain(frames).chain(ranges).chain(clocks).collect()
     }
 
-    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`, `lag.NAME`, `drift.NAME`; `target` of [`MEASURED`], `frame`,
-    /// `zero`, `scale`, `lag`, `drift` of a single instrument.
+    /// Name of a block: `JOINT.axis`, `JOINT.TERM`, `target.NAME`, `frame.NAME`, `zero.NAME`, `scale.NAME`, `lag.NAME`, `drift.NAME`. It is `target`
+    /// for [`MEASURED`], and `frame`, `zero`, `scale`, `lag`, `drift` for a single instrument.
     #[must_use]
     pub fn name_of_block(&self, block: Block) -> String {
         let joint = |joint: usize| self.joints.get(joint).map_or("", String::as_str);
@@ -83,7 +83,7 @@ impl Names {
 }
 
 impl Parameter {
-    /// Its block.
+    /// Block of the parameter.
     #[must_use]
     pub fn block(&self) -> Block {
         match (self.model().subject(), self.value_term()) {

@@ -8,13 +8,13 @@ use poecal_arm::lie::TargetTwist;
 use poecal_model::robot::JointKind;
 use poecal_numerics::unit::Unit;
 
-/// A term of an instrument's clock: column `Σ_j f q̇_j` times that of the value of joint j, with the joint's rate q̇ and `f = -1` of the lag, `-t` of
-/// the drift (theory.md §5 (26a)). It is zero in rows of another station, and in rows that were measured at rest.
+/// A term of an instrument's clock. Its column is `Σ_j f q̇_j` times that of the value of joint j, with the joint's rate q̇. The factor is `f = -1`
+/// for the lag, `-t` for the drift (theory.md §5 (26a)). It is zero in rows of another station, and in rows that were measured at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockUnknown {
     /// Index of the station.
     pub station: usize,
-    /// The term.
+    /// Term.
     pub term: ClockTerm,
 }
 

@@ -13,24 +13,24 @@ pub struct Column {
     pub name: &'static str,
     /// Unit of the step.
     pub unit: Unit,
-    /// Whether a step translates the target without rotating it.
+    /// True if a step translates the target without rotating it.
     pub shifts_only: bool,
 }
 
 impl Column {
-    /// A translation of the target, metres.
+    /// Column of a translation of the target, metres.
     #[must_use]
     pub const fn shift(name: &'static str) -> Column {
         Column { name, unit: Unit::Metre, shifts_only: true }
     }
 
-    /// A rotation of the target, radians.
+    /// Column of a rotation of the target, radians.
     #[must_use]
     pub const fn turn(name: &'static str) -> Column {
         Column { name, unit: Unit::Radian, shifts_only: false }
     }
 
-    /// A direction along which the target moves, radians.
+    /// Column of a direction along which the target moves, radians.
     #[must_use]
     pub const fn direction(name: &'static str) -> Column {
         Column { name, unit: Unit::Radian, shifts_only: true }
@@ -65,7 +65,7 @@ const OF_SETS: [[Column; 6]; Freedom::SETS] = {
     all
 };
 
-/// Columns of the motions of a frame that are seen.
+/// Columns of the observable motions of a frame.
 pub(crate) const fn of_freedom(freedom: Freedom) -> &'static [Column] {
     OF_SETS[freedom.index()].split_at(freedom.count()).0
 }
@@ -80,7 +80,7 @@ pub struct Wrench {
     pub torque: Vector3<f64>,
 }
 
-/// What a parameter is of.
+/// Subject of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// The instrument (station) of this index.
@@ -89,7 +89,7 @@ pub enum Subject {
     Joint(usize),
     /// The target of this index.
     Target(usize),
-    /// The readings of the instrument of this index.
+    /// Range of the instrument of this index.
     Range(usize),
     /// The clock of the instrument of this index.
     Clock(usize),
@@ -97,10 +97,10 @@ pub enum Subject {
 
 /// Interface of a parameter with at most six unknowns: columns of the Jacobian, second derivatives, retraction.
 pub trait Columns {
-    /// What its unknowns are of.
+    /// Subject of its unknowns.
     fn subject(&self) -> Subject;
 
-    /// The unknowns in order.
+    /// Unknowns in order.
     fn columns(&self) -> &'static [Column];
 
     /// Writes, for one row, the target twist per unit of each unknown: translation of the target's origin and rotation, both in the
@@ -112,7 +112,7 @@ pub trait Columns {
     /// the twists alone. `out` is all zero before.
     fn curvature(&self, _chain: &Chain, _wrench: &Wrench, _out: &mut [f64]) {}
 
-    /// Whether [`Columns::curvature`] is implemented. Without it the solver does not use the full Hessian.
+    /// True if [`Columns::curvature`] is implemented. Without it the solver does not use the full Hessian.
     fn has_curvature(&self) -> bool {
         true
     }

@@ -6,8 +6,8 @@ use super::columns::{Column, Columns, Subject, Wrench, of_freedom};
 use crate::state::{Chain, Estimate};
 use poecal_arm::lie::{Freedom, TargetTwist, rotation};
 
-/// The device frame, stepped about the point `about` of that frame (the middle of the data, so that rotation and translation are nearly
-/// uncorrelated): columns `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)), of the motions that the device shows (25a). They are
+/// The device frame, stepped about the point `about` of that frame: the middle of the data, so that rotation and translation are nearly
+/// uncorrelated. The columns are `(e_k; 0)` and `(e_k × (p - about); e_k)` (theory.md §5 (25)), of the observable motions (25a). They are
 /// zero in rows of another station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeviceFrame {
@@ -15,18 +15,18 @@ pub struct DeviceFrame {
     pub station: usize,
     /// Point about which the step rotates, metres, device frame.
     pub about: Vector3<f64>,
-    /// What the device shows of its frame, which is what is unknown.
+    /// Observable motions of the frame, which are the unknowns.
     pub freedom: Freedom,
 }
 
 impl DeviceFrame {
-    /// A device with axes, stepped about a point.
+    /// Frame of a device with axes, stepped about a point.
     #[must_use]
     pub fn new(station: usize, about: Vector3<f64>) -> Self {
         DeviceFrame { station, about, freedom: Freedom::FRAME }
     }
 
-    /// A device of which measurements show only these motions of its frame: the anchor of a wire, a plane that is touched.
+    /// Frame of a device whose measurements determine only these motions: the anchor of a wire, a plane that is touched.
     #[must_use]
     pub fn showing(station: usize, freedom: Freedom) -> Self {
         DeviceFrame { station, about: Vector3::zeros(), freedom }

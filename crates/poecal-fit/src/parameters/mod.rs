@@ -2,7 +2,7 @@
 //! unknowns, and depends on no measurement.
 //!
 //! A [`Parameter`] is a block with a name: the axis of a joint, a term of its value, a target, a frame (`block.rs` names blocks and their unknowns).
-//! The covariance in `calibration.json` is by these names. No measured functions, weights or solver here.
+//! The covariance in `calibration.json` is by these names. Measured functions, weights and solver are elsewhere.
 
 mod block;
 mod clock_unknown;
@@ -35,13 +35,13 @@ use poecal_model::robot::JointKind;
 pub enum Parameter {
     /// A joint's screw in the minimal basis: a revolute axis (4 unknowns), or a prismatic direction (2).
     ScrewAxis(ScrewAxis),
-    /// A joint's screw in a parameterisation that is given from outside.
+    /// A joint's screw in a parameterisation that the caller supplies.
     OtherScrew(OtherScrew),
     /// Coefficient of a term of a joint's value, such as its offset (1).
     ValueTerm(ValueTerm),
-    /// Place of a target point on the last link (3).
+    /// Position of a target point on the last link (3).
     TargetPlace(TargetPlace),
-    /// Place and orientation of a target frame on the last link (6).
+    /// Position and orientation of a target frame on the last link (6).
     TargetFrame(TargetFrame),
     /// Device frame: the base in the measuring device's frame (6).
     DeviceFrame(DeviceFrame),
@@ -60,7 +60,7 @@ pub fn screw_axes(kinds: &[JointKind]) -> Vec<Parameter> {
 }
 
 impl Parameter {
-    /// The columns of this parameter.
+    /// Columns of this parameter.
     #[must_use]
     pub fn model(&self) -> &dyn Columns {
         match self {
@@ -75,7 +75,7 @@ impl Parameter {
         }
     }
 
-    /// The term of a joint's value, if the parameter is one.
+    /// Term of a joint's value, if the parameter is one.
     pub fn value_term(&self) -> Option<&ValueTerm> {
         match self {
             Parameter::ValueTerm(term) => Some(term),
@@ -89,7 +89,7 @@ impl Parameter {
         }
     }
 
-    /// The screw axis, if the parameter is one.
+    /// Screw axis, if the parameter is one.
     pub fn screw_axis(&self) -> Option<&ScrewAxis> {
         match self {
             Parameter::ScrewAxis(axis) => Some(axis),
@@ -103,7 +103,7 @@ impl Parameter {
         }
     }
 
-    /// The target that a parameter moves, and by which motions in its own axes: 0 to 2 are shifts, 3 to 5 turns.
+    /// Target that a parameter moves, and its motions in the target's own axes: 0 to 2 are shifts, 3 to 5 turns.
     pub fn target_motions(&self) -> Option<(usize, &'static [usize])> {
         match self {
             Parameter::TargetPlace(place) => Some((place.target, &[0, 1, 2])),

@@ -1,4 +1,4 @@
-//! A joint's screw in another parameterisation than [`ScrewAxis`](super::ScrewAxis), which is given from outside.
+//! A joint's screw in another parameterisation than [`ScrewAxis`](super::ScrewAxis), which the caller supplies.
 
 use std::fmt::Debug;
 
@@ -11,10 +11,10 @@ use poecal_model::robot::JointKind;
 
 /// Parameterisation of the errors of a screw. Such a problem takes the row-by-row path, without the full Hessian.
 pub trait ScrewModel: Debug + Sync {
-    /// Its name; models of one name are equal.
+    /// Name; models of one name are equal.
     fn name(&self) -> &'static str;
 
-    /// The unknowns of a joint of this kind, at most six.
+    /// Unknowns of a joint of this kind, at most six.
     fn columns(&self, kind: JointKind) -> &'static [Column];
 
     /// Target twist per unit of each unknown, as in [`Columns::target_twists`].
@@ -32,9 +32,9 @@ pub trait ScrewModel: Debug + Sync {
 pub struct OtherScrew {
     /// Index of the joint.
     pub joint: usize,
-    /// Its kind.
+    /// Kind.
     pub kind: JointKind,
-    /// Its parameterisation.
+    /// Parameterisation.
     pub model: &'static dyn ScrewModel,
 }
 

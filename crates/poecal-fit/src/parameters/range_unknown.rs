@@ -7,13 +7,13 @@ use crate::state::{Chain, Estimate, Range, RangeTerm};
 use poecal_arm::lie::TargetTwist;
 use poecal_numerics::unit::Unit;
 
-/// A term of what an instrument reads: column `(p/|p|; 0)` of its zero, `(p; 0)` of its scale, motions of the place where the target is seen
-/// (theory.md §5 (25b)). It is zero in rows of another station.
+/// A term of an instrument's range: column `(p/|p|; 0)` of its zero, `(p; 0)` of its scale. These are motions of the measured position of
+/// the target (theory.md §5 (25b)). It is zero in rows of another station.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeUnknown {
     /// Index of the station.
     pub station: usize,
-    /// The term.
+    /// Term.
     pub term: RangeTerm,
 }
 

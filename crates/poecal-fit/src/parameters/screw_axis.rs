@@ -18,7 +18,7 @@ use poecal_model::robot::JointKind;
 pub struct ScrewAxis {
     /// Index of the joint.
     pub joint: usize,
-    /// Its kind.
+    /// Kind.
     pub kind: JointKind,
 }
 
@@ -73,7 +73,8 @@ impl Columns for ScrewAxis {
             ),
             JointKind::Prismatic => (joint.x, joint.y),
         };
-        // exp(ε) exp(ẑθ) exp(-ε): one twist before the joint's motion, its opposite after. As (linear velocity at the target, rotation).
+        // exp(ε) exp(ẑθ) exp(-ε): one twist before the joint's motion, its opposite after. They are stored as (linear velocity at the
+        // target, rotation).
         let zero = Vector3::zeros();
         let (before, after): (Vec<TargetTwist>, Vec<TargetTwist>) = match self.kind {
             JointKind::Revolute => (

@@ -1,4 +1,4 @@
-//! Place and orientation of a target frame on the last link.
+//! Position and orientation of a target frame on the last link.
 
 use nalgebra::Vector3;
 
@@ -7,17 +7,17 @@ use crate::state::{Chain, Estimate};
 use poecal_arm::lie::{Freedom, TargetTwist, rotation};
 
 /// The home pose of lou2009 (`M ← exp(Υ) M`), stepped at the target and in its own axes: columns `(R e_k; 0)` and `(0; R e_k)`
-/// (theory.md §5 (24)), of the motions that measurements show (25a): a frame has all six, a face that lies on planes three.
+/// (theory.md §5 (24)). They are those of the observable motions (25a): a frame has all six, a face that lies on planes three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetFrame {
     /// Index of the target.
     pub target: usize,
-    /// What is seen of it, which is what is unknown.
+    /// Observable motions, which are the unknowns.
     pub freedom: Freedom,
 }
 
 impl TargetFrame {
-    /// A target of which all is seen.
+    /// A target whose motions are all observable.
     #[must_use]
     pub fn new(target: usize) -> Self {
         TargetFrame { target, freedom: Freedom::FRAME }
@@ -43,7 +43,7 @@ impl Columns for TargetFrame {
             };
             *out = if motion < 3 { (own, zero) } else { (zero, own) };
             if chain.shared == Some(self.target) {
-                // The device's frame moves with it: the base in the device's axes by the inverse.
+                // The device's frame moves with the target: the base moves in the device's axes by the inverse.
                 let axis = Vector3::ith(motion % 3, 1.0);
                 if motion < 3 {
                     out.0 -= axis;

@@ -1,4 +1,4 @@
-//! Place of a target point on the last link.
+//! Position of a target point on the last link.
 
 use nalgebra::Vector3;
 
@@ -30,7 +30,7 @@ impl Columns for TargetPlace {
                 (Vector3::zeros(), Vector3::zeros())
             };
             if chain.shared == Some(self.target) {
-                // The device's origin moves with it.
+                // The device's origin moves with the target.
                 twist.0[k] -= 1.0;
             }
         }

@@ -8,16 +8,16 @@ use poecal_arm::lie::TargetTwist;
 use poecal_model::robot::{JointKind, Term};
 use poecal_numerics::unit::Unit;
 
-/// A term of joint `joint`, `θ ← θ + c b(θ)`: the column is b times that of the joint's value, `r = Ad_T ξ` of lou2009 (8d), at the target
-/// `(z × d; z) b`, or `(z; 0) b` of a prismatic joint (theory.md §5 (26)). An offset, b = 1, adds no rank beside free screws (lou2009
-/// Proposition 1, theory.md §3 (9)).
+/// A term of joint `joint`, `θ ← θ + c b(θ)`. The column is b times that of the joint's value, `r = Ad_T ξ` of lou2009 (8d). At the target
+/// it is `(z × d; z) b`, or `(z; 0) b` for a prismatic joint (theory.md §5 (26)). An offset, b = 1, adds no rank beside free screws
+/// (lou2009 Proposition 1, theory.md §3 (9)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueTerm {
     /// Index of the joint.
     pub joint: usize,
-    /// Its kind.
+    /// Kind.
     pub kind: JointKind,
-    /// The term.
+    /// Term.
     pub term: Term,
 }
 

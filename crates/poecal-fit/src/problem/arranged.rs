@@ -1,4 +1,4 @@
-//! Columns of a group of rows as the kernels have them, and their places in a step.
+//! Columns of a group of rows in the order of the kernels, and their places in a step.
 
 use super::form::Form;
 use crate::parameters::OtherScrew;
@@ -18,18 +18,18 @@ pub(crate) struct ColumnMap {
     pub(crate) given_places: Vec<Place>,
     /// Screws in another parameterisation, with the scale of each of their unknowns.
     pub(crate) screws: Vec<(OtherScrew, Vec<f64>)>,
-    /// Terms of the range that are unknown, the last of the given columns, with the scale of each.
+    /// Unknown terms of the range, the last of the supplied columns, with the scale of each.
     pub(crate) ranges: Vec<(RangeTerm, f64)>,
     /// Joint and factor of each of the plan's terms, and its column in a step over that of the kernels.
     pub(crate) terms: Vec<(Passed, ValueFactor, f64)>,
 }
 
-/// What the column of a joint's value is multiplied by in each row, for an unknown that moves it.
+/// Factor on the column of a joint's value in each row, for an unknown that moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ValueFactor {
-    /// The function of a term.
+    /// Function of a term.
     Term(Term),
-    /// The joint's rate by a clock.
+    /// Rate of the joint, by a clock.
     Clock(ClockTerm),
 }
 
@@ -41,10 +41,10 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Of a column that is no unknown.
+    /// Place of a column that is no unknown.
     pub(crate) const NONE: Place = Place { at: usize::MAX, sign: 1.0 };
 
-    /// Whether the column is an unknown.
+    /// True if the column is an unknown.
     pub(crate) fn is_unknown(self) -> bool {
         self.at != usize::MAX
     }

@@ -1,5 +1,5 @@
-//! All corners of all pictures at once: robot, cameras and boards by Gauss-Newton's method on pixels, with what the corners of a picture share
-//! eliminated picture by picture (theory.md §4, *Pictures* (17f)).
+//! Bundle adjustment of all corners of all pictures: robot, cameras and boards by Gauss-Newton's method on pixels, with the shared error of a
+//! picture's corners eliminated picture by picture (theory.md §4, *Pictures* (17f)).
 
 use nalgebra::{DVector, Matrix6, Vector6};
 
@@ -16,7 +16,7 @@ use poecal_numerics::threads;
 /// Pictures of one partial sum. Fixed, so that the result does not depend on the number of threads.
 const CHUNK: usize = 128;
 
-/// Standard deviations that a corner costs which the camera cannot see.
+/// Residual, in standard deviations, of a corner that the camera cannot see.
 const UNSEEN: f64 = 1e4;
 
 /// Cameras and boards of one pass, as the kernel needs them.
@@ -32,17 +32,17 @@ pub struct Bundle<'a> {
     pictures: Vec<usize>,
     pub(crate) layout: Layout,
     numbers: PictureUnknowns,
-    /// Of each point of each board.
+    /// Motions of each point of each board.
     by_points: Vec<Vec<PointMotions>>,
-    /// The unknown numbers of each lens: place among all, place among those of the lens, prior.
+    /// Unknown numbers of each lens: index among all, index among those of the lens, prior.
     of_lenses: Vec<Vec<(usize, usize, f64)>>,
     common: CommonError,
     pub(crate) level: SimdLevel,
 }
 
 impl<'a> Bundle<'a> {
-    /// Of the pictures among some rows, with the parameters of the robot that are free and the numbers of cameras and boards that are unknown.
-    /// `None` where a lens is none of Brown and Conrady's.
+    /// Bundle of the pictures among some rows, with the free parameters of the robot and the unknown numbers of cameras and boards. `None` if
+    /// a lens is none of Brown and Conrady's.
     #[must_use]
     pub fn new(
         session: Session<'a>,
@@ -64,7 +64,7 @@ impl<'a> Bundle<'a> {
         })
     }
 
-    /// The same with another error that the corners of a picture share.
+    /// The same bundle with another shared error of a picture's corners.
     #[must_use]
     pub fn with_common(self, common: CommonError) -> Self {
         Bundle { common, ..self }
@@ -172,7 +172,7 @@ impl Bundle<'_> {
         }
     }
 
-    /// Adds what depends on the motions of the board, without what the corners share:
+    /// Adds the parts that depend on the motions of the board, without the shared error of the corners:
     /// `[J|I]ᵀ (H - H S H) [J|I]` with `S = (H + Q⁻¹)⁻¹`, and likewise the products with the numbers.
     fn eliminate(&self, camera_from_board: &Pose, desk: &mut Desk, sums: &mut Normal) {
         let robot = self.layout.dim();
@@ -199,7 +199,7 @@ impl Bundle<'_> {
         );
     }
 
-    /// Takes from the products of a picture what an error that all its corners share explains of them.
+    /// Subtracts from the products of a picture the part that a shared error of all its corners explains.
     fn share(
         &self,
         (root, information): (&Matrix6<f64>, &Matrix6<f64>),

@@ -1,4 +1,4 @@
-//! Where the corners of one picture become sums of a bundle.
+//! Sums of a bundle over the corners of one picture.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -12,10 +12,10 @@ use poecal_numerics::solve::Normal;
 /// Motions, numbers of the lens, and the residual.
 pub(crate) const MOST_COLUMNS: usize = MOTIONS + LENS_NUMBERS + 1;
 
-/// How a point of a board moves with numbers of its board: of those that move it, place and direction.
+/// Motion of a point of a board by the numbers of its board: index and direction for each number that moves it.
 pub(crate) type PointMotions = Vec<(usize, Vector3<f64>)>;
 
-/// What one thread writes into.
+/// Buffers of one thread.
 pub(crate) struct Desk {
     pub(crate) chain: Chain,
     pub(crate) twists: Vec<(Vector3<f64>, Vector3<f64>)>,
@@ -23,14 +23,14 @@ pub(crate) struct Desk {
     pub(crate) products: CornerProducts,
     /// Motions of the board in the camera's frame by the robot's unknowns, six rows.
     pub(crate) motions: Vec<f64>,
-    /// The same weighed by the information of the corners, then the products of motions and numbers.
+    /// The same motions weighted by the information of the corners, then the products of motions and numbers.
     pub(crate) weighed: Vec<f64>,
-    /// Of each camera the products of all numbers with motions, its lens and the residual, summed over its pictures.
+    /// For each camera the products of all numbers with motions, its lens and the residual, summed over its pictures.
     pub(crate) points: Vec<Vec<[f64; MOST_COLUMNS]>>,
 }
 
 impl Desk {
-    /// Of so many unknowns of a robot, of all unknowns, and of cameras.
+    /// Buffers for numbers of unknowns of a robot, of all unknowns, and of cameras.
     pub(crate) fn new(robot: usize, all: usize, cameras: usize) -> Self {
         Desk {
             chain: Chain::default(),
@@ -43,7 +43,7 @@ impl Desk {
         }
     }
 
-    /// The corners of a picture side by side.
+    /// Packs the corners of a picture side by side.
     pub(crate) fn pack(&mut self, picture: &Picture, board: &Board, sigma_px: f64) {
         self.corners.resize(picture.corners.len().div_ceil(WIDTH), Corners::NONE);
         if let Some(last) = self.corners.last_mut() {
@@ -72,7 +72,7 @@ impl Desk {
         }
     }
 
-    /// Information of the corners of the board's motions, and their pull.
+    /// Information of the corners on the board's motions, and their gradient.
     pub(crate) fn of_motions(&self) -> (Matrix6<f64>, Vector6<f64>) {
         let products = &self.products;
         let last = products.columns() - 1;
@@ -80,7 +80,7 @@ impl Desk {
     }
 }
 
-/// `E` of `S = EᵀE = (H + Q⁻¹)⁻¹`, where Q is the covariance of what the corners share as motions of the board in the camera's frame.
+/// `E` of `S = EᵀE = (H + Q⁻¹)⁻¹`. Q is the covariance of the shared error of the corners, as motions of the board in the camera's frame.
 pub(crate) fn shared_root(
     common: CommonError,
     camera_from_board: &Pose,

@@ -1,4 +1,4 @@
-//! The optimum of a bundle.
+//! Optimum of a bundle.
 
 use nalgebra::DVector;
 
@@ -7,28 +7,28 @@ use crate::state::Estimate;
 use poecal_numerics::kernels as lanes;
 use poecal_numerics::solve::Normal;
 
-/// Most steps.
+/// Largest number of steps.
 const STEPS: usize = 30;
 /// Expected fall of the cost, as a share of it, below which a step is the last one.
 const SETTLED: f64 = 1e-9;
 /// First damping, as a share of the diagonal.
 const DAMPING: f64 = 1e-9;
 
-/// The optimum of a bundle.
+/// Optimum of a bundle.
 #[derive(Clone, Debug)]
 pub struct Bundled {
-    /// Robot, and places of cameras and boards.
+    /// Robot, and poses of cameras and boards.
     pub estimate: Estimate,
-    /// The unknown numbers of cameras and boards, in standard deviations of their prior.
+    /// Unknown numbers of cameras and boards, in standard deviations of their prior.
     pub numbers: DVector<f64>,
     /// Half the squares of the corners and of the numbers' prior, in standard deviations.
     pub cost: f64,
-    /// How often the corners were summed.
+    /// Number of passes over the corners.
     pub passes: usize,
 }
 
 impl Bundle<'_> {
-    /// The optimum from a start.
+    /// Optimum from a start.
     #[must_use]
     pub fn solve(&self, start: &Estimate, numbers: &DVector<f64>) -> Bundled {
         let (mut estimate, mut numbers) = (start.clone(), numbers.clone());
@@ -58,7 +58,7 @@ impl Bundle<'_> {
         Bundled { estimate, numbers, cost: sums.cost, passes }
     }
 
-    /// The step of Gauss and Newton with a damping of the diagonal; `None` where it has no such step.
+    /// Gauss-Newton step with a damping of the diagonal; `None` if the damped matrix is singular.
     fn step(&self, sums: &Normal, damping: f64) -> Option<Vec<f64>> {
         let n = sums.gradient.len();
         let mut gram = sums.gram.clone();

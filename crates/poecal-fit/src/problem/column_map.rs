@@ -10,7 +10,7 @@ use poecal_model::robot::JointKind;
 use poecal_numerics::kernels::{Along, DevicePlan, JointPlan, Plan, TILE, TermPlan};
 
 impl ColumnMap {
-    /// Of rows of one sight and form. Of two parameters of one frame, axis or target the first counts.
+    /// Columns for rows of one sight and form. If two parameters belong to one frame, axis or target, the first counts.
     pub(crate) fn new(problem: &Problem<'_>, state: &Estimate, sight: Sight, form: Form) -> Self {
         // An instrument's known zero is not in the kernels.
         let is_plain = form != Form::Along(Along::Distance) || state.range(sight.station).is_plain();
@@ -38,7 +38,7 @@ impl ColumnMap {
         made
     }
 
-    /// Of each tile of columns, whether none is an unknown; empty if all have one.
+    /// For each tile of columns, true if none is an unknown; empty if all tiles have one.
     fn idle_tiles(&self) -> Vec<bool> {
         if self.shift_places.iter().all(|place| place.is_unknown()) {
             return Vec::new();
@@ -47,7 +47,7 @@ impl ColumnMap {
         places.chunks(TILE).map(|tile| !tile.iter().any(|place| place.is_unknown())).collect()
     }
 
-    /// Places of the plan's columns in a step: translation columns, rotation columns, given ones.
+    /// Places of the plan's columns in a step: translation columns, rotation columns, supplied ones.
     pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
         self.shift_places.iter().chain(&self.turn_places).chain(&self.given_places).copied()
     }
@@ -62,7 +62,7 @@ impl ColumnMap {
         self.form.numbers()
     }
 
-    /// Places of the six motions of a frame of which some are unknowns.
+    /// Places of the six motions of a frame, some of which are unknowns.
     fn frame_places(freedom: Freedom, places: &[(usize, f64)]) -> [Option<(usize, f64)>; 6] {
         let mut all = [None; 6];
         freedom.motions().iter().zip(places).for_each(|(&motion, &place)| all[motion] = Some(place));
@@ -91,7 +91,7 @@ impl ColumnMap {
         self.plan.turns.extend(first..first + places.len());
     }
 
-    /// Columns of the device's frame, or of the target whose frame it is: a step of that moves the base the other way.
+    /// Columns of the device's frame, or of the target that carries it: a step of that target moves the base in the opposite direction.
     fn add_device(&mut self, layout: &Layout, shared: Option<usize>) {
         let subject = shared.map_or(Subject::Instrument(self.sight.station), Subject::Target);
         for (parameter, places) in layout.parameters() {
@@ -186,7 +186,7 @@ impl ColumnMap {
         let own = if turn.is_some() { self.plan.length_m } else { 1.0 };
         self.terms.extend(places.iter().map(|&(_, scale)| (passed, factor, own / scale)));
         if turn.is_some() {
-            // The direction of the rotation, which no unknown moves along.
+            // Direction of the rotation, along which no unknown moves.
             self.shift_places.push(Place::NONE);
             self.turn(places, shift, 1.0);
         } else {
@@ -194,7 +194,7 @@ impl ColumnMap {
         }
     }
 
-    /// Zero and scale of the instrument's distances, behind all other given columns.
+    /// Zero and scale of the instrument's distances, behind all other supplied columns.
     fn add_range(&mut self, layout: &Layout) {
         for (parameter, places) in layout.parameters() {
             let Parameter::RangeUnknown(range) = parameter else { continue };

@@ -1,4 +1,4 @@
-//! Deviations of axes and targets from their nominal places, and their derivatives (theory.md §6 (27a), (27c)).
+//! Deviations of axes and targets from nominal, and their derivatives (theory.md §6 (27a), (27c)).
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
@@ -18,7 +18,7 @@ pub(crate) struct Nominal {
     pub(crate) tolerance: Tolerance,
 }
 
-/// Nominal place of a target at home.
+/// Nominal position of a target at home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NominalTarget {
     /// Index of the target.
@@ -38,24 +38,24 @@ pub(crate) struct TargetDeviation {
 /// Derivatives of axes and targets by a motion of the base, a twist.
 type ByBase = (Vec<Matrix6<f64>>, Vec<Matrix3x6<f64>>);
 
-/// Deviations, after the best motion of the base where that is free.
+/// Deviations, after the best motion of the base if that is free.
 pub(crate) struct Deviations {
     pub(crate) axes: Vec<Deviation>,
     pub(crate) targets: Vec<TargetDeviation>,
-    /// Derivatives of both by a motion of the base; none where the base is held.
+    /// Derivatives of both by a motion of the base; `None` if the base is held.
     pub(crate) by_base: Option<ByBase>,
 }
 
-/// Deviation of an axis, tilts before shifts, each over its standard deviation; and what its derivatives follow from.
+/// Deviation of an axis, tilts before shifts, each over its standard deviation, with the quantities of its derivatives.
 pub(crate) struct Deviation {
     pub(crate) value: Vector6<f64>,
     x: Vector3<f64>,
     y: Vector3<f64>,
     d: Vector3<f64>,
-    /// From the axis frame's origin along the axis to the point nearest to the nominal origin.
+    /// Distance from the axis frame's origin along the axis to the point nearest to the nominal origin.
     along: f64,
     nearest: Vector3<f64>,
-    /// From there to the nominal origin.
+    /// Vector from that point to the nominal origin.
     missing: Vector3<f64>,
     tilt: f64,
     shift: f64,
@@ -68,7 +68,7 @@ pub(crate) struct OwnMotions {
 }
 
 impl OwnMotions {
-    /// All as columns.
+    /// All motions as columns.
     pub(crate) fn columns(&self) -> [Vector6<f64>; 4] {
         let whole = |shift: Vector3<f64>| Vector6::new(0.0, 0.0, 0.0, shift.x, shift.y, shift.z);
         let ([a, b], [c, d]) = (self.shifts, self.turns);
@@ -100,7 +100,7 @@ impl OwnMotions {
 }
 
 impl Deviation {
-    /// Of an axis with this `base_from_axis`.
+    /// Deviation of an axis with this `base_from_axis`.
     pub(crate) fn new(nominal: &Nominal, frame: &Pose) -> Self {
         let [x, y, d] = [0, 1, 2].map(|k| frame.rotation.column(k).into_owned());
         let (tilt, shift) = (1.0 / nominal.tolerance.angle_rad, 1.0 / nominal.tolerance.length_m);
@@ -162,7 +162,7 @@ impl NominalTarget {
         }
     }
 
-    /// Its derivative by a motion of the base, a twist.
+    /// Derivative of the deviation by a motion of the base, a twist.
     pub(crate) fn by_base(&self, frame: &Pose) -> Matrix3x6<f64> {
         let mut base = Matrix3x6::zeros();
         base.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);
@@ -183,7 +183,7 @@ impl Deviations {
     }
 
     /// Gradient by a motion of the base, and the factor of its information, `BᵀB` with `B = (0 T; A S)` for an axis: a shift tilts no axis.
-    /// `None` where the base is held, and no factor where the information is singular.
+    /// `None` if the base is held; no factor if the information is singular.
     pub(crate) fn of_base(&self) -> Option<(Vector6<f64>, Factor6)> {
         let (of_axes, of_targets) = self.by_base.as_ref()?;
         let (mut shifts, mut mixed, mut turns) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());

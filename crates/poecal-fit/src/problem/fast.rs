@@ -17,11 +17,12 @@ use poecal_numerics::solve::Normal;
 use poecal_numerics::threads;
 use std::cell::RefCell;
 
-/// Most rows of one partial sum.
+/// Largest number of rows of one partial sum.
 const CHUNK: usize = 1024;
 /// Partial sums held at a time, so that memory beside the data stays bounded.
 const TOGETHER: usize = 64;
-/// Most rows that stay packed. Larger problems are repacked in every pass: 10 % of its time, cheaper than page faults on new memory.
+/// Largest number of rows that stay packed. Larger problems are repacked in every pass: 10 % of its time, cheaper than page faults on new
+/// memory.
 const KEPT: usize = 2048;
 
 thread_local! {
@@ -35,7 +36,7 @@ impl Fast {
         Fast::from_groups(problem, state, level, RowGroup::of_problem(problem), None)
     }
 
-    /// The same for the second derivative of the residuals along a step, which takes the place of the residuals.
+    /// The same groups for the second derivative of the residuals along a step, which replaces the residuals.
     pub(crate) fn shaped(problem: &Problem<'_>, state: &Estimate, second: SecondDifference) -> Self {
         let mut groups = RowGroup::of_problem(problem);
         groups.iter_mut().for_each(|group| {
@@ -78,7 +79,7 @@ impl Fast {
         }
     }
 
-    /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` where only the gradient is wanted.
+    /// Normal information of all rows, theory.md §6 (28); without `JᵀJ` if only the gradient is needed.
     pub(crate) fn normal(&self, problem: &Problem<'_>, state: &Estimate, sums: Accumulate) -> Normal {
         let linkage = Linkage::new(state);
         let mut normal = match sums {
@@ -148,7 +149,7 @@ impl Group {
                 }
             }
         }
-        // There is more than one chunk.
+        // Here there is more than one chunk.
         total.unwrap_or_else(|| chunk(0))
     }
 
@@ -163,7 +164,7 @@ impl Group {
     }
 }
 
-/// Rows whose functions of their targets' poses, or whose unknowns, are their own.
+/// Rows with functions of their targets' poses, or unknowns, that the kernels do not have.
 pub(crate) struct RowShapes<'a> {
     pub(crate) problem: &'a Problem<'a>,
     pub(crate) linkage: &'a Linkage,
@@ -173,7 +174,7 @@ pub(crate) struct RowShapes<'a> {
 }
 
 impl RowShapes<'_> {
-    /// These, if the plan needs them.
+    /// These shapes, if the plan needs them.
     pub(crate) fn as_shape(&self) -> Option<&dyn Shape> {
         (self.arranged.plan.shaped > 0).then_some(self)
     }
@@ -213,15 +214,15 @@ impl Shape for RowShapes<'_> {
     }
 }
 
-/// The relative frames of a sight, and its target in the last one, or in the device frame if no joint is between the two.
+/// Relative frames of a sight, and its target in the last one, or in the device frame if no joint is between the two.
 pub(crate) fn fixed_motions(linkage: &Linkage, sight: Sight) -> (Vec<FixedMotion>, FixedMotion) {
     let (steps, end) = linkage.frames(sight);
     let end = linkage.still(sight).map_or(*end, |&device| device * *end);
     (steps.map(FixedMotion::from).collect(), FixedMotion::from(&end))
 }
 
-/// Rows of each partial sum: about equal parts, so that threads finish together, and independent of the number of threads, as is the
-/// result.
+/// Number of rows of each partial sum: about equal parts, so that threads finish together. It is independent of the number of
+/// threads, as is the result.
 fn chunk_size(rows: usize) -> usize {
     rows.div_ceil(rows.div_ceil(CHUNK).max(1)).next_multiple_of(WIDTH).max(WIDTH)
 }
@@ -240,7 +241,7 @@ pub(crate) fn pack(
     let noise = session.usual_noise(station, problem.noise);
     let usual = (noise, Whitening::new(noise));
     let route = linkage.tree().route(*sight);
-    // Looked up once for all rows.
+    // The places are looked up once for all rows.
     let place = |(passed, factor, _): &(Passed, ValueFactor, f64)| match factor {
         ValueFactor::Term(term) => session.packed.place_of(passed.joint, *term),
         ValueFactor::Clock(_) => None,

@@ -1,24 +1,25 @@
-//! What rows measured, in the form of the kernels.
+//! Measurements of rows, in the form of the kernels.
 
 use poecal_model::measurement::{Kernel, Measurement};
 use poecal_numerics::kernels::Along;
 
-/// What the rows of a group measured, for the kernels.
+/// Form of the measurements of a group of rows, for the kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// The position of a point.
     Point,
     /// A pose, by the residual of its type.
     Pose,
-    /// One number of a point's place.
+    /// One number of a point's position.
     Along(Along),
-    /// Another function of a target's pose: so many numbers, and whether they depend on its orientation.
+    /// Another function of a target's pose: the number of its values, and true if they depend on the orientation.
     Shaped(usize, bool),
 }
 
 impl Form {
-    /// Of a measurement; whether the kernels have the columns of all screws, the residual of poses, and the
-    /// readings of its instrument, whose zero and scale are then no unknowns.
+    /// Form of a measurement. The flags state whether the kernels have the columns of all screws and the
+    /// residual of poses. The last one states whether the instrument's range is plain, without unknown zero
+    /// and scale.
     pub(crate) fn from_measurement(
         measured: &Measurement,
         have_screws: bool,
@@ -36,17 +37,17 @@ impl Form {
         }
     }
 
-    /// Of any function of a target's pose.
+    /// Form of any function of a target's pose.
     pub(crate) fn shaped_of(measured: &Measurement) -> Self {
         Form::Shaped(measured.dim(), measured.sees_orientation())
     }
 
-    /// The same rows, as any function of the target's pose.
+    /// Form of the same rows, as any function of the target's pose.
     pub(crate) fn shaped(self) -> Self {
         Form::Shaped(self.numbers(), self.sees_orientation())
     }
 
-    /// Whether the rows depend on the target's orientation.
+    /// True if the rows depend on the target's orientation.
     pub(crate) fn sees_orientation(self) -> bool {
         match self {
             Form::Point | Form::Along(_) => false,
@@ -55,7 +56,7 @@ impl Form {
         }
     }
 
-    /// Numbers of each row.
+    /// Number of values of each row.
     pub(crate) fn numbers(self) -> usize {
         match self {
             Form::Point => 3,

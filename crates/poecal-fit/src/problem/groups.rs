@@ -1,4 +1,4 @@
-//! The rows of a problem by instrument, target and form, as they are packed for the kernels.
+//! Rows of a problem by instrument, target and form, as they are packed for the kernels.
 
 use super::arranged::ColumnMap;
 use super::scatter::GramScatter;
@@ -10,18 +10,18 @@ use poecal_numerics::kernels::{PackedRows, SimdLevel};
 pub(crate) enum Accumulate {
     /// Cost, gradient and `JᵀJ`.
     All,
-    /// The same; `JᵀJ` may lack the curvature of the logarithm, where that saves time.
+    /// The same sums; `JᵀJ` may lack the curvature of the logarithm, where that saves time.
     GaussNewton,
     /// Cost and gradient.
     Gradient,
 }
 
-/// The groups of rows of a problem.
+/// Groups of rows of a problem.
 #[derive(Clone, Debug)]
 pub(crate) struct Fast {
     pub(crate) groups: Vec<(Group, GramScatter)>,
     pub(crate) level: SimdLevel,
-    /// Of the state at which it was built: its joints are those of every other.
+    /// Linkage of the state at which it was built; its joints are those of every other state.
     pub(crate) linkage: Linkage,
     /// A step along which residuals are replaced by their second derivative.
     pub(crate) second: Option<SecondDifference>,
@@ -32,7 +32,7 @@ pub(crate) struct Fast {
 pub(crate) struct SecondDifference {
     pub(crate) ahead: Linkage,
     pub(crate) behind: Linkage,
-    /// Share of the step that they are away.
+    /// Distance of these frames, as a share of the step.
     pub(crate) fraction: f64,
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct SecondDifference {
 pub(crate) struct Group {
     pub(crate) arranged: ColumnMap,
     pub(crate) rows: Vec<u32>,
-    /// Whether its rows stay packed.
+    /// True if its rows stay packed.
     pub(crate) keeps: bool,
     /// Chunks of packed rows, if they stay packed.
     pub(crate) packed: Vec<PackedRows>,

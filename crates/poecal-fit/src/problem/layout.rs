@@ -5,8 +5,9 @@ use crate::state::{Chain, Estimate};
 use nalgebra::Vector3;
 use poecal_arm::lie::TargetTwist;
 
-/// The free parameters and the place of each of their unknowns in a step: first those that only translate a target, whose rotation
-/// rows are zero, then the others. A step is in metres: radians are multiplied by the length L (theory.md §6, *Physical scaling*).
+/// The free parameters and the place of each of their unknowns in a step. Unknowns that only translate a target come first (their
+/// rotation rows are zero), then the others. A step is in metres: radians are multiplied by the length L (theory.md §6, *Physical
+/// scaling*).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     parameters: Vec<Parameter>,
@@ -51,7 +52,7 @@ impl Layout {
         self.length_m
     }
 
-    /// The free parameters with the places of their unknowns in a step.
+    /// Free parameters with the places of their unknowns in a step.
     pub fn parameters(&self) -> impl Iterator<Item = (&Parameter, &[(usize, f64)])> {
         let mut rest = &self.places[..];
         self.parameters.iter().map(move |parameter| {
@@ -61,7 +62,7 @@ impl Layout {
         })
     }
 
-    /// Whether all screws are in the minimal basis of theory.md §5 (18), without redundant unknowns.
+    /// True if all screws are in the minimal basis of theory.md §5 (18), without redundant unknowns.
     #[must_use]
     pub fn is_minimal(&self) -> bool {
         self.parameters.iter().all(|parameter| match parameter {
@@ -74,25 +75,25 @@ impl Layout {
         })
     }
 
-    /// Whether a term of a joint's value or a clock is unknown, so that joint values depend on the state.
+    /// True if a term of a joint's value or a clock is unknown, so that joint values depend on the state.
     pub(crate) fn moves_values(&self) -> bool {
         let moves = |it: &Parameter| matches!(it, Parameter::ValueTerm(_) | Parameter::ClockUnknown(_));
         self.parameters.iter().any(moves)
     }
 
-    /// Whether zero or scale of an instrument's distances are unknown.
+    /// True if zero or scale of an instrument's distances are unknown.
     pub(crate) fn has_range(&self, station: usize) -> bool {
         let is_of =
             |parameter: &Parameter| matches!(parameter, Parameter::RangeUnknown(it) if it.station == station);
         self.parameters.iter().any(is_of)
     }
 
-    /// Whether the screws are unknown in another parameterisation than the minimal basis.
+    /// True if the screws are unknown in another parameterisation than the minimal basis.
     pub(crate) fn has_other_screws(&self) -> bool {
         self.parameters.iter().any(|parameter| matches!(parameter, Parameter::OtherScrew(_)))
     }
 
-    /// Whether every parameter provides its curvature.
+    /// True if every parameter provides its curvature.
     #[must_use]
     pub(crate) fn has_curvature(&self) -> bool {
         self.parameters.iter().all(|parameter| parameter.model().has_curvature())
@@ -124,14 +125,14 @@ impl Layout {
     }
 
     /// Adds `-wrench · ∂²(target's motion)` of every pair of unknowns to the upper triangle of a row-major matrix. With `a` before `b`
-    /// in the chain the second derivative is `ω_a × v_b` of the place and `½ ω_a × ω_b` of the rotation (theory.md §6 (31a)).
+    /// in the chain the second derivative is `ω_a × v_b` of the position and `½ ω_a × ω_b` of the rotation (theory.md §6 (31a)).
     pub(crate) fn add_curvature(&self, chain: &Chain, target: usize, wrench: &Wrench, out: &mut [f64]) {
         let n = self.dim();
         let mut add = |a: usize, b: usize, value: f64| out[a.min(b) * n + a.max(b)] -= value;
         let mut twists = vec![(Vector3::zeros(), Vector3::zeros()); n];
         self.target_twists(chain, target, &mut twists);
         let mut own = [0.0; 36];
-        // In the order of this chain; what is not in it does not move the target.
+        // The order is that of this chain; a parameter outside it does not move the target.
         let mut in_order: Vec<_> = self
             .parameters()
             .map(|(parameter, places)| {
@@ -165,7 +166,7 @@ impl Layout {
         }
     }
 
-    /// The estimate after a scaled step: the retraction `x ⊕ δ` of theory.md §6 (27).
+    /// Estimate after a scaled step: the retraction `x ⊕ δ` of theory.md §6 (27).
     #[must_use]
     pub fn retract(&self, estimate: &Estimate, step: &[f64]) -> Estimate {
         let mut moved = estimate.clone();

@@ -1,10 +1,10 @@
-//! Rows × columns: the only place where measurements and parameters meet. Assembly of the normal equations, no algorithms.
+//! Rows × columns: the only module where measurements and parameters meet. It assembles the normal equations, and has no algorithms.
 //!
-//! `row_group.rs` has rows of one instrument, target and form, `column_map.rs` the unknowns in the order of the kernels, both made once a problem;
-//! `fast.rs` sums all rows, eight side by side, and rows that are neither points nor poses by `Problem::shaped` within the kernel. `prior.rs` is the
-//! prior about nominal, `layout.rs` moves the state by a step, `curvature.rs` has second derivatives, `without_effect.rs` the motions that change
-//! nothing where things are held, `bundle.rs` all corners of pictures at once. The Jacobian is never stored: memory is the data and a few matrices of
-//! unknowns × unknowns.
+//! `row_group.rs` has rows of one instrument, target and form, `column_map.rs` the unknowns in the order of the kernels; both are made once a
+//! problem. `fast.rs` sums all rows, eight side by side, and rows that are neither points nor poses by `Problem::shaped` within the kernel.
+//! `prior.rs` is the prior about nominal, `layout.rs` moves the state by a step, `curvature.rs` has second derivatives. `without_effect.rs` has the
+//! motions without effect if blocks are held, `bundle.rs` all corners of pictures at once. The Jacobian is never stored: memory is the data and a few
+//! matrices of unknowns × unknowns.
 
 mod arranged;
 mod bundle;
@@ -42,10 +42,10 @@ use poecal_numerics::kernels::ShapedRow;
 use poecal_numerics::solve::{LeastSquares, Normal};
 use std::sync::OnceLock;
 
-/// Most unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about half a minute of
-/// one core.
+/// Largest number of unknowns of a fit: its time grows with the cube of their number, its memory with the square. 1,000 take about
+/// half a minute of one core.
 pub const MOST_UNKNOWNS: usize = 1000;
-/// Most rows among which the farthest measurement is sought.
+/// Largest number of rows among which the farthest measurement is sought.
 const SEEN: usize = 500;
 
 /// A calibration problem: rows of the data, free parameters, and the noise that whitens residuals (theory.md §6 (27) and (28)).
@@ -58,12 +58,12 @@ pub struct Problem<'a> {
     weights: Option<&'a [f64]>,
     /// Prior of the axes, and its weight.
     prior: Option<(&'a Prior, f64)>,
-    /// Measurements in place of the data's, one for each row of the data.
+    /// Measurements that replace the data's, one for each row of the data.
     measured: Option<Vec<Measurement>>,
     rounding_m: f64,
     /// Instruction set of the hot path.
     level: SimdLevel,
-    /// The groups of rows, once they are built.
+    /// Groups of rows, once they are built.
     fast: OnceLock<Fast>,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Problem<'a> {
     /// A problem over some rows of a session. `noise` holds where a row states none.
     #[must_use]
     pub fn new(session: Session<'a>, rows: Vec<u32>, free: Vec<Parameter>, noise: Noise) -> Self {
-        // A few roundings of about the largest number: the distance from the device.
+        // A few roundings of about the largest number, the distance from the device.
         let farthest =
             |&row: &u32| session.observation(row).measurement.position().map_or(0.0, |it| it.amax());
         let some = rows.iter().step_by(rows.len().div_ceil(SEEN).max(1));
@@ -149,7 +149,7 @@ impl<'a> Problem<'a> {
         &self.layout
     }
 
-    /// The rows of the problem.
+    /// Rows of the problem.
     #[must_use]
     pub fn rows(&self) -> &[u32] {
         &self.rows
@@ -249,12 +249,12 @@ impl Problem<'_> {
         }
     }
 
-    /// The groups of rows, in the form of the kernels.
+    /// Groups of rows, in the form of the kernels.
     fn fast(&self, state: &Estimate) -> &Fast {
         match self.fast.get() {
             Some(fast) => fast,
             None => {
-                // Built outside `get_or_init`: a rayon thread that waits may re-enter this function.
+                // The value is built outside `get_or_init`: a rayon thread that waits may re-enter this function.
                 let made = Fast::new(self, state, self.level);
                 self.fast.get_or_init(|| made)
             }

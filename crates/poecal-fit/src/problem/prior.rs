@@ -11,31 +11,31 @@ use poecal_model::robot::{JointTerm, Robot, Term, Tolerance};
 use poecal_numerics::linalg::Factor6;
 use poecal_numerics::solve::Normal;
 
-/// Most Gauss-Newton iterations for the motion of the base, which converge quadratically.
+/// Largest number of Gauss-Newton iterations for the motion of the base, which converge quadratically.
 const ITERATIONS: usize = 20;
 /// Converged step of the base (metres, radians): the gradient then moves no unknown by a picometre.
 const FOUND: f64 = 1e-8;
 
-/// Standard deviation of a target's place from its place in the model: a share of the robot's reach, and at least so many metres. A reflector
-/// on any gripper or pointer is within it; it only decides where the measurements do not.
+/// Standard deviation of a target's position from its position in the model: a share of the robot's reach, and a least value in metres. A
+/// reflector on any gripper or pointer is within it; the prior is decisive only if the measurements do not determine the position.
 const TARGET_SHARE: f64 = 0.25;
 const TARGET_LEAST_M: f64 = 0.3;
 
-/// A Gaussian prior: each axis is near its nominal place, with the standard deviations of a [`Tolerance`]. With the direction d of an
-/// axis, the nominal one d⁰, and the point q of the axis nearest to the nominal joint's origin o (base frame), the deviation is
-/// `u = ((d - d⁰) / σ_angle; (q - o) / σ_length)`, of a prismatic joint its first part alone. The cost is `½ Σ |u|²`. With an unknown
-/// device frame the base frame is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)). A target that moves with
-/// the robot has its place t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27c).
+/// A Gaussian prior: each axis is near its nominal pose, with the standard deviations of a [`Tolerance`]. The axis has the direction d
+/// (nominal d⁰), and q is its point nearest to the nominal joint's origin o (base frame). The deviation is `u = ((d - d⁰) / σ_angle; (q -
+/// o) / σ_length)`; for a prismatic joint it is the first part alone. The cost is `½ Σ |u|²`. With an unknown device frame the base frame
+/// is a choice, and the cost is minimal over motions of all axes (theory.md §6 (27a)). A target that moves with the robot has its position
+/// t in the model at home too, `u = (t - t⁰) / max(0.3 m, reach / 4)`, but no orientation (27c).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     axes: Vec<Nominal>,
     targets: Vec<NominalTarget>,
     base_free: bool,
-    /// Drifts of the clocks of stations by which readings were found.
+    /// Drifts of the clocks of stations with which readings were computed.
     drifts: Vec<f64>,
     terms: Vec<JointTerm>,
     term_priors: Vec<TermPrior>,
-    /// Whether terms have a prior, and drifts of clocks.
+    /// True if terms and drifts of clocks have a prior.
     terms_count: bool,
     clocks_count: bool,
 }
@@ -45,14 +45,14 @@ pub struct Prior {
 pub struct TermPrior {
     /// Index of the joint.
     pub joint: usize,
-    /// The term.
+    /// Term.
     pub term: Term,
     /// Standard deviation.
     pub deviation: f64,
 }
 
 impl Prior {
-    /// The prior of a session's fit: of the robot's axes, and of the targets that move with it and are not open
+    /// Prior of a session's fit: of the robot's axes, and of the targets that move with it and are not open
     /// ([`Unknowns::open_targets`](crate::state::Unknowns::open_targets)).
     #[must_use]
     pub fn from_session(session: &Session<'_>, common: Tolerance) -> Self {
@@ -77,14 +77,14 @@ impl Prior {
         Prior { targets, drifts, ..Prior::new(robot, common, session.base_free()) }
     }
 
-    /// The prior of a robot's axes alone; a joint's own tolerance comes before the common one. `base_free` if the device frame is unknown.
+    /// Prior of a robot's axes alone; a joint's own tolerance replaces the common one. `base_free` is true if the device frame is unknown.
     #[must_use]
     pub fn new(robot: &Robot, common: Tolerance, base_free: bool) -> Self {
         let axes = robot.joints.iter().map(|joint| Nominal {
             direction: joint.screw.direction(),
             origin: joint.frame.translation,
             turns: !joint.screw.is_prismatic(),
-            // A give has no axis of its own.
+            // A compliant joint has no axis of its own.
             tolerance: if joint.give_of.is_some() {
                 Tolerance::NONE
             } else {
@@ -103,14 +103,14 @@ impl Prior {
         }
     }
 
-    /// The same with these priors of terms; others have those of their types ([`poecal_model::robot::JointKind::deviation_of`]).
+    /// The same prior with these priors of terms; others have those of their types ([`poecal_model::robot::JointKind::deviation_of`]).
     #[must_use]
     pub fn with_terms(mut self, term_priors: Vec<TermPrior>) -> Self {
         self.term_priors = term_priors;
         self
     }
 
-    /// The same without a prior of terms.
+    /// The same prior without terms.
     #[must_use]
     pub fn without_terms(mut self) -> Self {
         self.terms_count = false;
@@ -124,7 +124,7 @@ impl Prior {
     }
 
     /// Mean of `|u|²` for each unknown of the screws, at least 1, which divides the prior's weight (theory.md §6, below (27a)). The prior of
-    /// a robot that is farther from nominal than its tolerances counts so much less.
+    /// a robot that is farther from nominal than its tolerances has a lower weight.
     #[must_use]
     pub fn looseness(&self, estimate: &Estimate) -> f64 {
         let counted = self.axes.iter().filter(|axis| axis.tolerance != Tolerance::NONE);
@@ -133,19 +133,19 @@ impl Prior {
         (2.0 * self.at_best_base(estimate).0.cost_of_axes() / free as f64).max(1.0)
     }
 
-    /// The same without a prior of targets.
+    /// The same prior without targets.
     #[must_use]
     pub fn without_targets(&self) -> Self {
         Prior { targets: Vec::new(), ..self.clone() }
     }
 
-    /// Largest standard deviation of the places of targets, metres; `None` without a prior of targets.
+    /// Largest standard deviation of the positions of targets, metres; `None` without a prior of targets.
     #[must_use]
     pub fn target_sigma_m(&self) -> Option<f64> {
         self.targets.iter().map(|target| target.sigma_m).reduce(f64::max)
     }
 
-    /// The same of the axes alone, and of the terms alone: parts that have a size each.
+    /// The prior of the axes alone, and of the terms alone: parts with a weight each.
     pub(crate) fn parts(&self) -> [Self; 2] {
         let without = Prior { targets: Vec::new(), clocks_count: false, ..self.clone() };
         let terms = Prior { axes: Vec::new(), base_free: false, ..without.clone() };
@@ -283,7 +283,7 @@ impl Prior {
     }
 }
 
-/// The same as [`add_columns`] for an axis: with the shifts and turns of a revolute joint, or the turns of a sliding one.
+/// The same as [`add_columns`] for an axis: with the shifts and turns of a revolute joint, or the turns of a prismatic one.
 fn add_axis(
     (places, own): (&[(usize, f64)], &OwnMotions),
     value: &Vector6<f64>,
@@ -306,8 +306,8 @@ fn add_axis(
     }
 }
 
-/// Adds `weight` times the products of a deviation's columns, each over the scale of its place in a step, with each other to the upper triangle
-/// of `JᵀJ` (unless that is empty) and with the deviation to the gradient.
+/// Adds `weight` times the products of a deviation's columns, each over the scale of its place in a step. Products with each other go to the
+/// upper triangle of `JᵀJ` (unless that is empty), those with the deviation to the gradient.
 fn add_columns<const N: usize>(
     (places, own): (&[(usize, f64)], &[SVector<f64, N>]),
     value: &SVector<f64, N>,
@@ -341,7 +341,7 @@ mod tests {
         let tolerance = Tolerance { length_m: 0.004, ..Tolerance::default() };
         let prior = Prior::new(&robot, tolerance, true);
         let mut estimate = Estimate::new(&robot, vec![robot.home], Pose::identity());
-        // Both axes 10 mm farther apart: 5 mm each, of 4 mm.
+        // Both axes are 10 mm farther apart: 5 mm each, with a standard deviation of 4 mm.
         estimate.base_from_axis[1].translation.x += 0.01;
         assert!((prior.cost(&estimate) - 2.0 * 0.5 * (0.005_f64 / 0.004).powi(2)).abs() < 1e-9);
     }

@@ -10,10 +10,10 @@ use poecal_numerics::kernels::{self as lanes, Arm, NUMBERS, WIDTH, Wide};
 /// Whitened Jacobian of the prediction and residuals of up to [`WIDTH`] rows, one a lane: three numbers of the position, three of the
 /// rotation. Numbers that a row does not have are zero.
 pub struct RowBlock {
-    /// Column after column.
+    /// Columns, one after the other.
     pub jacobian: Vec<[Wide; NUMBERS]>,
     pub residual: [Wide; NUMBERS],
-    /// Numbers that each row has.
+    /// Number of values of each row.
     pub numbers: [usize; WIDTH],
 }
 

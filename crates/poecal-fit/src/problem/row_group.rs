@@ -11,14 +11,14 @@ const CHUNK: usize = 8192;
 /// Relative difference of two ratios that differ by rounding only.
 const SAME_RATIO: f64 = 1e-14;
 
-/// Rows of one target, station and form, in the order given.
+/// Rows of one target, station and form, in their original order.
 pub(crate) struct RowGroup {
     pub(crate) sight: Sight,
-    /// What was measured.
+    /// Form of the measurements.
     pub(crate) form: Form,
     /// Position over rotation noise in m/rad, if it is the same in all rows.
     pub(crate) ratio: Option<f64>,
-    /// The rows, or another key of each.
+    /// Rows, or another key of each.
     pub(crate) rows: Vec<u32>,
 }
 
@@ -57,7 +57,7 @@ impl RowGroup {
         for (position, &row) in (0..).zip(rows) {
             let observation = problem.session.observation(row);
             let is_plain = || !problem.layout.has_range(observation.station);
-            // The kernels have noise that is the same in all directions.
+            // The kernels only have noise that is the same in all directions.
             let form = match observation.noise_shape {
                 Some(_) => Form::shaped_of(own(row)),
                 None => Form::from_measurement(own(row), !is_other, residual.is_none(), is_plain),
@@ -88,7 +88,7 @@ impl RowGroup {
     }
 }
 
-/// The one ratio that both are, but for rounding.
+/// The common ratio if both are equal but for rounding.
 fn same(known: Option<f64>, other: Option<f64>) -> Option<f64> {
     known.zip(other).and_then(|(known, other)| ((other - known).abs() <= SAME_RATIO * known).then_some(known))
 }

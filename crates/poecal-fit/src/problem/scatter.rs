@@ -8,7 +8,7 @@ use poecal_numerics::kernels::{TILE, Tiles, Totals};
 pub(crate) enum GramScatter {
     /// Each column is an unknown of its own.
     Plain(PlainScatter),
-    /// Some are none, or one unknown has several.
+    /// Some columns are no unknowns, or one unknown has several.
     Listed(ListedScatter),
 }
 
@@ -33,9 +33,9 @@ impl GramScatter {
 /// Places of columns that are an unknown each: a list of all products would take longer to make than a small fit takes to use it.
 #[derive(Clone, Debug)]
 pub(crate) struct PlainScatter {
-    /// Where the row of each position column begins in the matrix, and its place in a step.
+    /// Begin of each position column's row in the matrix, and its place in a step.
     at: Vec<(usize, usize)>,
-    /// The same of the rotation columns, where their products are among the sums, and where those of their translation columns are.
+    /// The same places of the rotation columns, with those of their products among the sums, and of their translation columns.
     turns_at: Vec<(usize, usize)>,
     turns: Tiles,
     of_shifts: Tiles,
@@ -44,7 +44,7 @@ pub(crate) struct PlainScatter {
 }
 
 impl PlainScatter {
-    /// `None` where a column is no unknown, or not the only one of its unknown.
+    /// Places of these columns. `None` if a column is no unknown, or not the only one of its unknown.
     fn new(arranged: &ColumnMap, n: usize) -> Option<Self> {
         let plan = &arranged.plan;
         let mut is_known = vec![false; n];
@@ -75,7 +75,7 @@ impl PlainScatter {
     }
 
     fn add(&self, totals: &Totals, gram: &mut [f64]) {
-        // Of the two places of a product in the matrix, the upper one is the earlier.
+        // A product has two places in the matrix; the upper one is the earlier.
         let place =
             |(row, at): (usize, usize), (other_row, other): (usize, usize)| (row + other).min(other_row + at);
         let mut tiles = totals.products.as_chunks::<{ TILE * TILE }>().0.iter();
@@ -133,7 +133,8 @@ pub(crate) struct ListedScatter {
     position: Vec<(usize, usize)>,
     /// Rotation columns: index of the product of their translation columns, of the rotation rows' sum, and in the Gram matrix.
     rotation: Vec<(usize, usize, usize)>,
-    /// Of both, those of a column with a negative sign, or of two columns of one unknown: the index in the Gram matrix, with a factor.
+    /// Products, of both kinds, of a column with a negative sign, or of two columns of one unknown: the index in the Gram matrix, with a
+    /// factor.
     position_scaled: Vec<(usize, usize, f64)>,
     rotation_scaled: Vec<(usize, usize, usize, f64)>,
     /// Factor `ρ²/L²` of theory.md §6 (28a), if it is the same for all rows.
@@ -144,7 +145,7 @@ impl ListedScatter {
     fn new(arranged: &ColumnMap, n: usize) -> Self {
         let plan = &arranged.plan;
         let upper = |a: usize, b: usize| a.min(b) * n + a.max(b);
-        // Of two columns of one unknown, the product counts twice on the diagonal.
+        // For two columns of one unknown, the product counts twice on the diagonal.
         let factor = |a: (usize, Place), b: (usize, Place)| {
             let twice = if a.0 != b.0 && a.1.at == b.1.at { 2.0 } else { 1.0 };
             twice * a.1.sign * b.1.sign

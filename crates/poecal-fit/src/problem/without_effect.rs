@@ -1,4 +1,4 @@
-//! Motions that change nothing, in a fit in which some things are held or joint offsets are unknown.
+//! Motions without effect, in a fit in which some blocks are held or joint offsets are unknown.
 
 use nalgebra::{DMatrix, Vector3, Vector6};
 
@@ -10,18 +10,18 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Body, JointKind, Term};
 use poecal_numerics::linalg;
 
-/// Share of the largest information about a motion below which held things do not see it: rounding.
+/// Share of the largest information about a motion below which held blocks do not constrain it: rounding.
 const UNSEEN: f64 = 1e-12;
 
-/// Directions of a step without effect on what some rows measure.
+/// Directions of a step without effect on the measurements of some rows.
 pub struct WithoutEffect {
-    /// Orthonormal.
+    /// Orthonormal directions.
     pub directions: Vec<Vec<f64>>,
-    /// How many of them are motions of the base alone.
+    /// Number of these that are motions of the base alone.
     pub(crate) of_base: usize,
 }
 
-/// A motion of all that stands on some bodies: everything (the base), or what is beyond a joint, against its offset.
+/// A motion of all objects on some bodies: on all of them (the base), or on those beyond a joint, against its offset.
 struct Motion {
     twist: Twist,
     beyond: Option<usize>,
@@ -30,8 +30,8 @@ struct Motion {
 }
 
 impl Layout {
-    /// Motions that leave all held things where they are and change nothing that these rows measure: of the base under everything
-    /// (theory.md §8 (37)), and of all that is beyond a joint with its offset turned back (§3 (9)).
+    /// Motions that leave all held blocks in place and change no measurement of these rows. They are those of the base under all
+    /// bodies (theory.md §8 (37)), and of the bodies beyond a joint with its offset turned back (§3 (9)).
     #[must_use]
     pub fn motions_without_effect(
         &self,
@@ -41,7 +41,7 @@ impl Layout {
     ) -> WithoutEffect {
         let data = session.data;
         let base = base_motions(self.length_m());
-        // Those of a formulation are what it is compared by.
+        // The terms of a formulation are compared as they are.
         let offsets =
             if session.unknowns.terms.is_empty() { Vec::new() } else { self.offset_motions(estimate) };
         let is_held = |station: usize| {
@@ -64,7 +64,7 @@ impl Layout {
         WithoutEffect { directions: self.unseen(estimate, data, rows, (&all, &|_| true)), of_base }
     }
 
-    /// Motions of the base that leave all held things where they are, but for the joints by which links bend: these stand where the links are.
+    /// Motions of the base that leave all held blocks in place, except the joints by which links bend: these move with the links.
     pub(crate) fn base_motions(
         &self,
         estimate: &Estimate,
@@ -75,8 +75,8 @@ impl Layout {
         self.unseen(estimate, session.data, rows, (&base_motions(self.length_m()), &|joint| !bends(joint)))
     }
 
-    /// Growth of all that these rows see about the first station, of which no row sees anything where none has a length: a step in which a
-    /// point 1 m from there moves by 1 m.
+    /// Growth about the first station of all quantities that these rows measure. It changes no measurement if none has a length. In this
+    /// step a point 1 m from the station moves by 1 m.
     pub(crate) fn growth(&self, estimate: &Estimate, data: &Dataset, rows: &[u32]) -> Vec<f64> {
         let centre = estimate.device(data.first_station(rows)).inverse().translation;
         let local = |frame: &Pose| frame.rotation.tr_mul(&(frame.translation - centre));
@@ -108,7 +108,7 @@ impl Layout {
         step
     }
 
-    /// The motions of unknown offsets.
+    /// Motions of unknown offsets.
     fn offset_motions(&self, estimate: &Estimate) -> Vec<Motion> {
         let screws = estimate.screws();
         let motion = |(parameter, places): (&Parameter, &[(usize, f64)])| {
@@ -121,7 +121,7 @@ impl Layout {
         self.parameters().filter_map(motion).collect()
     }
 
-    /// The combinations of motions that no held thing sees.
+    /// Combinations of motions that no held block constrains.
     fn unseen(
         &self,
         estimate: &Estimate,
@@ -131,7 +131,7 @@ impl Layout {
     ) -> Vec<Vec<f64>> {
         let count = motions.len();
         let mut moved = begin_steps(motions, self.dim());
-        // Information that the held things give about the motions.
+        // Information of the held blocks on the motions.
         let mut gram = DMatrix::zeros(count, count);
         let mut add = |subject: Subject, body: Option<Body>, effect: &dyn Fn(&Twist) -> Vec<f64>| {
             let is_of = |parameter: &&Parameter| {
@@ -148,7 +148,7 @@ impl Layout {
                 None => gram += DMatrix::from_fn(count, count, |i, j| linalg::dot(&effects[i], &effects[j])),
             }
         };
-        // Of a motion, in the axes of what stands at `frame`: places, then turns.
+        // A motion in the axes of the object at `frame`: positions, then rotations.
         let local = |frame: &Pose, twist: &Twist| frame.inverse().transform(twist).to_vector();
         let axes = estimate.base_from_axis.iter().zip(estimate.kinds()).enumerate();
         for (joint, (frame, kind)) in axes.filter(|(joint, _)| holds(*joint)) {
@@ -163,14 +163,14 @@ impl Layout {
         }
         for station in 0..=estimate.further_devices.len() {
             let body = body_of(estimate, station);
-            // What no row sees holds nothing.
+            // A station without rows holds nothing.
             let is_seen = data.station_count() == 1 || !data.seen_from(station, rows).is_empty();
             if estimate.tree.shared(station).is_none() && is_seen {
                 let device = estimate.device(station);
-                // What does not show is not held.
+                // An unobservable motion is not held.
                 let freedom = data.device_freedom(station, rows);
                 let at = Pose::from_translation(self.point_of(station).unwrap_or_default());
-                // `device_from_base G⁻¹`, stepped in the device's axes about a point. The base itself moves under those that stand on it.
+                // `device_from_base G⁻¹`, stepped in the device's axes about a point. The base itself moves under the objects on it.
                 add(Subject::Instrument(station), Some(body), &|twist| {
                     seen_of(freedom, &-at.inverse().transform(&device.transform(twist)).to_vector())
                 });
@@ -179,7 +179,7 @@ impl Layout {
         combine(&gram, &moved, self.dim())
     }
 
-    /// The freedom of a target whose frame is unknown.
+    /// Degrees of freedom of a target whose frame is unknown.
     fn freedom_of(&self, target: usize) -> Option<Freedom> {
         self.parameters().find_map(|(parameter, _)| match parameter {
             Parameter::TargetFrame(own) if own.target == target => Some(own.freedom),
@@ -194,7 +194,7 @@ impl Layout {
         })
     }
 
-    /// The point about which the frame of a device turns, if that is unknown.
+    /// Point about which the frame of a device turns, if that is unknown.
     fn point_of(&self, station: usize) -> Option<Vector3<f64>> {
         self.parameters().find_map(|(parameter, _)| {
             let Parameter::DeviceFrame(own) = parameter else { return None };
@@ -212,7 +212,7 @@ fn begin_steps(motions: &[Motion], dim: usize) -> Vec<Vec<f64>> {
     moved
 }
 
-/// The effect of each motion on a body; none on one that it does not move.
+/// Effect of each motion on a body; zero if the motion does not move it.
 fn effects_on(
     estimate: &Estimate,
     body: Option<Body>,
@@ -226,7 +226,7 @@ fn effects_on(
     motions.iter().map(of_motion).collect()
 }
 
-/// Orthonormal combinations of steps of which no held thing sees anything.
+/// Orthonormal combinations of steps that no held block constrains.
 fn combine(gram: &DMatrix<f64>, moved: &[Vec<f64>], dim: usize) -> Vec<Vec<f64>> {
     orthonormal(null_space(gram).into_iter().map(|shares| {
         let mut step = vec![0.0; dim];
@@ -237,7 +237,7 @@ fn combine(gram: &DMatrix<f64>, moved: &[Vec<f64>], dim: usize) -> Vec<Vec<f64>>
     }))
 }
 
-/// The body on which an instrument stands.
+/// Body that carries an instrument.
 fn body_of(estimate: &Estimate, station: usize) -> Body {
     match estimate.tree.instruments().get(station) {
         Some(Stand::On(body)) => *body,
@@ -245,7 +245,7 @@ fn body_of(estimate: &Estimate, station: usize) -> Body {
     }
 }
 
-/// The motions of an axis, along and about its own axes, that are unknowns.
+/// Motions of an axis, along and about its own axes, that are unknowns.
 fn of_axis(kind: JointKind, motion: &Vector6<f64>) -> Vec<f64> {
     match kind {
         JointKind::Revolute => vec![motion[0], motion[1], motion[3], motion[4]],
@@ -253,12 +253,12 @@ fn of_axis(kind: JointKind, motion: &Vector6<f64>) -> Vec<f64> {
     }
 }
 
-/// The motions of a frame that are seen.
+/// Observable motions of a frame.
 fn seen_of(freedom: Freedom, motion: &Vector6<f64>) -> Vec<f64> {
     freedom.motions().iter().filter_map(|&at| motion.get(at).copied()).collect()
 }
 
-/// The six motions of the base; rotations counted like lengths.
+/// The six motions of the base; rotations count like lengths.
 fn base_motions(length_m: f64) -> Vec<Motion> {
     let motion = |k: usize| {
         let mut twist = Vector6::zeros();
@@ -268,7 +268,7 @@ fn base_motions(length_m: f64) -> Vec<Motion> {
     (0..6).map(motion).collect()
 }
 
-/// Whether a body is moved by a joint.
+/// True if a joint moves a body.
 fn is_beyond(estimate: &Estimate, body: Option<Body>, joint: usize) -> bool {
     let first = body.and_then(Body::joint);
     std::iter::successors(first, |&at| estimate.tree.joint_before(at)).any(|at| at == joint)

@@ -38,7 +38,7 @@ pub(crate) fn rotation_maximising(s: &Matrix3<f64>) -> Matrix3<f64> {
     rotation::from_quaternion_xyzw(&Vector4::new(q[1], q[2], q[3], q[0]))
 }
 
-/// The rotation nearest to all of the given ones in the chordal sense.
+/// Rotation nearest to all of these rotations in the chordal sense.
 pub fn mean_rotation(rotations: impl Iterator<Item = Matrix3<f64>>) -> Matrix3<f64> {
     let sum: Matrix3<f64> = rotations.sum();
     rotation_maximising(&sum.transpose())

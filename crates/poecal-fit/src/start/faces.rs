@@ -1,4 +1,4 @@
-//! The axis of a target that is the normal of its face.
+//! Axis of a target that is the normal of its face.
 
 use std::borrow::Cow;
 
@@ -10,9 +10,9 @@ use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::robot::Robot;
 use poecal_numerics::linalg;
 
-/// Finds, for each plane and each target that lay flush on it, the axis of the target that is nearest to the plane's normal by the model as
-/// it is: the pair of directions n (base) and m (target) with the largest `Σ nᵀ R m` over their rows. The plane's z is then up, or along
-/// the largest component of n if it is level (theory.md §6 (33a)).
+/// Finds the axis of each target that was flush on a plane, by the current model: the axis nearest to the plane's normal. It is the pair of
+/// directions n (base) and m (target) with the largest `Σ nᵀ R m` over their rows. The plane's z is then up, or along the largest component
+/// of n if that is level (theory.md §6 (33a)).
 pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
     let Some(sums) = turns_of_faces(data, robot) else { return };
     let normals: Vec<Vector3<f64>> = sums.iter().map(face_normal).collect();
@@ -22,8 +22,7 @@ pub fn settle_faces(data: &mut Dataset, robot: &Robot) {
     }
 }
 
-/// The data with faces that lie on their planes as these are known, by the frames of their stations in the base: a plane's z may be either of
-/// its sides.
+/// The data with faces on planes whose poses are known, by the frames of their stations in the base: a plane's z may be either of its sides.
 #[must_use]
 pub fn faces_on_known_planes<'a>(
     data: &'a Dataset,
@@ -66,7 +65,7 @@ fn turns_of_faces(data: &Dataset, robot: &Robot) -> Option<Vec<Matrix3<f64>>> {
     Some(sums)
 }
 
-/// The axis, forward or backward, nearest to the m of the largest `nᵀ S m`, with n upward.
+/// Axis, forward or backward, nearest to the m of the largest `nᵀ S m`, with n upward.
 fn face_normal(sum: &Matrix3<f64>) -> Vector3<f64> {
     let gram = sum.transpose() * sum;
     let (_, vectors) = linalg::symmetric_eigen(gram.as_slice(), 3);

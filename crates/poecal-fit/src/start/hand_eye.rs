@@ -1,5 +1,5 @@
-//! Device rotation from relative rotations alone, `A_ij = R_D B_ij R_Dᵀ` (park1994handeye): no target orientation is needed:
-//! theory.md §6 (33).
+//! Device rotation from relative rotations alone, `A_ij = R_D B_ij R_Dᵀ` (park1994handeye): no target orientation is needed
+//! (theory.md §6 (33)).
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,8 +7,8 @@ use super::averaging::rotation_maximising;
 use poecal_arm::lie::rotation;
 use poecal_numerics::linalg;
 
-/// The device-from-base rotation that maps the arm's relative rotations to the measured ones, and how much the second and third
-/// directions of rotation are excited (0 to 1): near zero, the data have few orientations and the rotation is weakly determined.
+/// Device-from-base rotation that maps the arm's relative rotations to the measured ones, and the excitation of the second and
+/// third directions of rotation (0 to 1). Near zero, the data have few orientations and the rotation is weakly determined.
 pub(crate) fn device_rotation(arm: &[Matrix3<f64>], seen: &[Matrix3<f64>]) -> (Matrix3<f64>, f64) {
     let mut correlation = Matrix3::zeros();
     let mut directions: Vec<Vector3<f64>> = Vec::new();

@@ -1,4 +1,4 @@
-//! Markers on one body by the distances between them, which stay: names that were exchanged, and markers that lost theirs.
+//! Markers on one body, identified by the constant distances between them: exchanged names, and markers without a name.
 
 use std::collections::BTreeMap;
 
@@ -6,42 +6,42 @@ use nalgebra::Vector3;
 
 use poecal_numerics::distributions::median;
 
-/// Where each marker is in a frame, metres; none where it was not seen.
+/// Position of each marker in a frame, metres; `None` if it was not seen.
 pub type MarkerPlaces = Vec<Option<Vector3<f64>>>;
 
-/// Fewest markers whose distances show which is which.
+/// Fewest markers that their distances identify.
 pub const FEWEST_MARKERS: usize = 3;
-/// Most markers of a body, and most places in a frame: the search is among all orders of them.
+/// Largest number of markers of a body, and of positions in a frame: the search is among all orders of them.
 const MOST: usize = 12;
 const MOST_PLACES: usize = 24;
-/// Most frames of which distances are taken, and fewest in which two markers were seen together.
+/// Largest number of frames from which distances are taken, and fewest in which two markers were seen together.
 const SOME: usize = 600;
 const TOGETHER: usize = 10;
 /// Share of the frames in which a distance is the usual one.
 const SHARE: f64 = 0.6;
-/// How far a distance may be from the usual one: times its scatter, and at least and at most, metres.
+/// Largest deviation of a distance from the usual one: times its scatter, and at least and at most, metres.
 const TIMES: f64 = 5.0;
 const LEAST_M: f64 = 5e-4;
 const MOST_M: f64 = 5e-3;
 /// Median deviation of normal noise, in standard deviations.
 const MEDIAN_DEVIATION: f64 = 0.6745;
-/// Fewest markers by which one without a name is found: two distances.
+/// Fewest markers that identify one without a name: two distances.
 const WITNESSES: usize = 2;
 
 /// Markers of one body.
 #[derive(Clone, Debug)]
 struct Group {
     markers: Vec<usize>,
-    /// Of each two of them, the usual distance and how far it may be off.
+    /// For each pair, the usual distance and its largest deviation.
     usual: Vec<Vec<(f64, f64)>>,
 }
 
-/// What the distances between markers show, by frame.
+/// Markers identified by the distances between them, by frame.
 #[derive(Clone, Debug, Default)]
 pub struct RenamedMarkers {
-    /// Of a frame in which something is not as it is named, where each marker of the body is: at the place of which column, if at any.
+    /// For a frame with wrong names, the column at whose position each marker of the body is, if there is one.
     pub frames: BTreeMap<usize, BTreeMap<usize, Option<usize>>>,
-    /// The markers of the body.
+    /// Markers of the body.
     pub markers: Vec<usize>,
 }
 
@@ -89,13 +89,13 @@ impl Group {
         Some(Group { markers, usual })
     }
 
-    /// Whether two places may be those of two markers, by their numbers in the group.
+    /// True if two positions may be those of two markers, by their numbers in the group.
     fn fits(&self, (a, at): (usize, Vector3<f64>), (b, other): (usize, Vector3<f64>)) -> bool {
         let usual = self.usual.get(a).and_then(|it| it.get(b));
         usual.is_some_and(|(usual, off)| ((at - other).norm() - usual).abs() <= *off)
     }
 
-    /// Which marker is at which place, if the distances decide it; `None` where all are as they are named.
+    /// Column of each marker's position, if the distances decide it; `None` if all names are right.
     fn sorted(&self, frame: &MarkerPlaces, others: &[usize]) -> Option<Vec<Option<usize>>> {
         let place = |column: usize| *frame.get(column)?;
         let own: Vec<(usize, usize)> =
@@ -126,7 +126,7 @@ impl Group {
         search.next();
         let found = search.best.filter(|_| search.count >= FEWEST_MARKERS && !search.is_unclear);
         if is_right {
-            // Nothing is wrong where no marker is found.
+            // Without a found marker there is no wrong name.
             let named: Vec<Option<usize>> =
                 self.markers.iter().map(|it| place(*it).is_some().then_some(*it)).collect();
             return found.filter(|it| {
@@ -137,21 +137,21 @@ impl Group {
     }
 }
 
-/// A search for the places of markers.
+/// A search for the positions of markers.
 struct Search<'g> {
     group: &'g Group,
-    /// Columns and places.
+    /// Columns and positions.
     places: &'g [(usize, Vector3<f64>)],
-    /// The column and the place of each marker so far.
+    /// Column and position of each marker so far.
     taken: Vec<Option<(usize, Vector3<f64>)>>,
-    /// The columns of most markers, their number, and whether others are as good.
+    /// Columns of the largest number of markers, their number, and whether others are as good.
     best: Option<Vec<Option<usize>>>,
     count: usize,
     is_unclear: bool,
 }
 
 impl Search<'_> {
-    /// Assigns the next marker, to each place that it may be at, or to none.
+    /// Assigns the next marker to each possible position, or to none.
     fn next(&mut self) {
         let marker = self.taken.len();
         let count = self.taken.iter().flatten().count();
@@ -182,8 +182,8 @@ impl Search<'_> {
 }
 
 impl RenamedMarkers {
-    /// What the distances show of the markers in some columns, of which one body is made; the places of `others` may be theirs too. `None` if no
-    /// three of them keep their distances.
+    /// Markers in some columns of one body, identified by their distances; the positions of `others` may be theirs too. `None` if no three of
+    /// them keep their distances.
     #[must_use]
     pub fn from_frames(frames: &[MarkerPlaces], columns: &[usize], others: &[usize]) -> Option<Self> {
         let group = Group::from_columns(frames, columns)?;
@@ -196,7 +196,7 @@ impl RenamedMarkers {
         Some(found)
     }
 
-    /// The column at whose place a marker is in a frame.
+    /// Column at whose position a marker is in a frame.
     #[must_use]
     pub fn place_of(&self, frame: usize, column: usize) -> Option<usize> {
         self.frames.get(&frame).and_then(|it| it.get(&column)).copied().unwrap_or(Some(column))
@@ -244,7 +244,7 @@ mod tests {
             let markers: Vec<Vector3<f64>> = (0..4 + seed % 2).map(spread).collect();
             let count = markers.len();
             let mut frames = moving(&markers, 400, 2e-4, seed + 1);
-            // Two columns without a name: one where a marker is without its own, and one of something that stands.
+            // Two columns have no name: one with positions of a marker that lost its own, and one of a static object.
             for frame in &mut frames {
                 frame.extend([None, Some(Vector3::new(3.0, 2.0, 1.0))]);
             }
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(wrong, 0);
         // A ghost may be as far from three others as its marker, by chance.
         assert!(ghosts <= 4, "{ghosts}");
-        // The ghosts, and frames in which two orders fit within the noise.
+        // These are the ghosts, and frames in which two orders fit within the noise.
         assert!((196..300).contains(&left), "{left}");
     }
 
@@ -295,7 +295,7 @@ mod tests {
 
     #[test]
     fn what_is_alike_both_ways_is_not_decided() {
-        // An isosceles triangle: the exchange of its equal corners shows in no distance, and the ghost of its tip in both.
+        // The triangle is isosceles: no distance reveals the exchange of its equal vertices, and both reveal the ghost of its apex.
         let markers =
             [Vector3::new(-0.05, 0.0, 0.0), Vector3::new(0.05, 0.0, 0.0), Vector3::new(0.0, 0.12, 0.0)];
         let mut frames = moving(&markers, 200, 1e-4, 4);

@@ -1,19 +1,19 @@
-//! Pictures that were saved mirrored, and readings that belong to the picture before or after: both leave every picture with a pose, and no arm that
-//! has them all.
+//! Pictures that were saved mirrored, and readings that belong to the picture before or after. Both leave every picture with a pose, but no arm has
+//! all of these poses.
 
 use poecal_model::camera::{Corner, Lens, Picture};
 use poecal_model::measurement::Dataset;
 
-/// Distance of the corners from where the nominal robot sees them up to which nothing is wrong, pixels.
+/// Error of the corners predicted by the nominal robot up to which the pictures count as right, pixels.
 const LEAST_PX: f64 = 5.0;
-/// How many times nearer the corners must be if the pictures are read otherwise.
+/// Factor by which the error must be smaller if the pictures are read otherwise.
 const EVIDENT: f64 = 2.0;
-/// Most pictures that are read otherwise, and fewest that show anything.
+/// Largest number of pictures that are read otherwise, and fewest that are enough.
 const MOST: usize = 60;
 const FEWEST: usize = 6;
 
-/// Of pictures that the nominal robot misses by `px` (median, pixels): whether they are mirrored, or have the readings of another picture, as a
-/// sentence. `missed` finds how far a session like theirs is missed.
+/// Statement that pictures are mirrored, or have the readings of another picture. `px` is the median error of the nominal robot on them,
+/// pixels; `missed` computes that of another session.
 pub(crate) fn misread(data: &Dataset, px: f64, missed: impl Fn(&Dataset) -> f64) -> Option<String> {
     let count = data.pictures.all.len();
     // Further rows would be moved too.
@@ -48,7 +48,7 @@ pub(crate) fn misread(data: &Dataset, px: f64, missed: impl Fn(&Dataset) -> f64)
     None
 }
 
-/// The pictures with the readings of others, which have the number that `whose` finds, and with other corners; those without readings are left out.
+/// The pictures with the readings of others, whose number `whose` returns, and with other corners; those without readings are left out.
 fn read(
     data: &Dataset,
     whose: impl Fn(usize) -> Option<usize>,
@@ -65,7 +65,7 @@ fn read(
         let picture = Picture::new(picture.camera, picture.board, picture.image.clone(), corners);
         let observation = data.observations.get(data.pictures.all.get(at)?.row as usize)?;
         let readings = data.readings(other.row as usize).to_vec();
-        // A picture without a pose shows nothing.
+        // A picture without a pose is left out.
         let _ = found.push_picture(&readings, picture, (observation.set, observation.source)).ok()?;
     }
     (found.pictures.all.len() >= FEWEST).then_some(found)

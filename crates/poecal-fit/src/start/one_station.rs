@@ -21,7 +21,7 @@ const ROUNDS: usize = 4;
 /// Root mean square distance, as a share of the data's own spread, above which the closed forms are not trusted alone.
 const GOOD_MISFIT: f64 = 0.05;
 
-/// Fewest measured places that determine a frame alone.
+/// Fewest measured positions that determine a frame alone.
 const FEWEST_PLACES: usize = 3;
 
 /// Registers the data to an estimate's screws as if they were measured from one station. Returns the cost of theory.md §6 (27) with it.
@@ -34,7 +34,7 @@ pub(crate) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (E
     let mut best = seen.best_of(problem, start, &sample, seen.closed_forms(problem, start), ROUNDS);
     if problem.session.device_free && problem.targets_free && seen.misfit(&best.0) > GOOD_MISFIT {
         let turned = cube_rotations().map(|turn| seen.at_rotation(turn, start)).collect();
-        // Not alternated: all would converge to the same few device frames.
+        // There is no alternation: all would converge to the same few device frames.
         let other = seen.best_of(problem, start, &sample, turned, 1);
         // A later start must be clearly better, so that rounding does not choose between equal ones.
         if other.1 < best.1 * (1.0 - 1e-6) {
@@ -44,7 +44,7 @@ pub(crate) fn at_one_station(problem: &Registration<'_>, start: &Estimate) -> (E
     polish(problem, best.0, problem.rows.to_vec(), 50)
 }
 
-/// The best closed form and a few iterations.
+/// Best closed form and a few iterations.
 pub(crate) fn roughly_at_one_station(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let sample = sample_rows(problem.rows, SAMPLE);
     let seen = SampledRows::new(problem, start, &sample);
@@ -59,13 +59,13 @@ pub(crate) fn roughly_at_one_station(problem: &Registration<'_>, start: &Estimat
     polish(problem, best.map_or_else(|| start.clone(), |(_, best)| best), sample.clone(), 8).0
 }
 
-/// The sampled rows: the arm's motion from zero in the base frame, and the measurements.
+/// Sampled rows: the arm's motion from zero in the base frame, and the measurements.
 struct SampledRows {
     base_motion: Vec<Pose>,
     measured: Vec<Vector3<f64>>,
     turned: Vec<Option<Matrix3<f64>>>,
     target: Vec<usize>,
-    /// Rows that tell no place.
+    /// Rows that measure no position.
     others: Vec<Other>,
     /// Spread of the measured positions, metres.
     spread_m: f64,
@@ -86,7 +86,7 @@ impl SampledRows {
             spread_m: problem.session.data.spread_m(sample),
         };
         let of = |row: &u32| problem.session.observation(*row);
-        // Too few places are components among others.
+        // Too few positions are treated as components among others.
         let places = sample.iter().filter(|row| of(row).measurement.position().is_some()).count();
         let is_component = |row: &u32| of(row).measurement.is_part_of_position();
         let has_places = places >= FEWEST_PLACES || !sample.iter().any(is_component);
@@ -111,7 +111,7 @@ impl SampledRows {
         seen
     }
 
-    /// The lowest optimum from the best candidates, with its cost on the sample.
+    /// Lowest optimum from the best candidates, with its cost on the sample.
     fn best_of(
         &self,
         problem: &Registration<'_>,
@@ -145,7 +145,7 @@ impl SampledRows {
         best
     }
 
-    /// The lowest optimum of a device that shows no places; `None` of another one.
+    /// Lowest optimum of a device that measures no positions; `None` for another device.
     fn by_others(&self, problem: &Registration<'_>, start: &Estimate, sample: &[u32]) -> Option<Estimate> {
         if !self.measured.is_empty() || self.others.is_empty() || !problem.session.device_free {
             return None;
@@ -161,7 +161,7 @@ impl SampledRows {
         best.map(|(best, _)| best)
     }
 
-    /// Whether two device frames lead to the same optimum: at most a few degrees and a tenth of the data's spread apart.
+    /// True if two device frames lead to the same optimum: at most a few degrees and a tenth of the data's spread apart.
     fn is_near(&self, a: &Pose, b: &Pose) -> bool {
         let turn = rotation::log(&(a.rotation.transpose() * b.rotation)).norm();
         let count = self.base_motion.len().max(1) as f64;
@@ -183,7 +183,8 @@ impl SampledRows {
     }
 
     /// Candidates of the device frame: rigid motions of nominal targets and of targets on the last axis, theory.md §6 (32); the hand-eye
-    /// rotation, theory.md §6 (33); and the mean rotation by nominal target orientations. The given one if the device frame is known.
+    /// rotation, theory.md §6 (33); and the mean rotation by nominal target orientations. The known frame alone if the device frame is
+    /// known.
     fn closed_forms(&self, problem: &Registration<'_>, start: &Estimate) -> Vec<Pose> {
         if !problem.session.device_free {
             return vec![start.device_from_base];
@@ -232,7 +233,7 @@ impl SampledRows {
         rigid_motion(&from, &self.measured)
     }
 
-    /// The device frame with a given rotation, and the translation between the means of theory.md §6 (32), with nominal targets.
+    /// Device frame with a known rotation, and the translation between the means of theory.md §6 (32), with nominal targets.
     fn at_rotation(&self, turn: Matrix3<f64>, start: &Estimate) -> Pose {
         let count = self.measured.len().max(1) as f64;
         let shift: Vector3<f64> = (0..self.measured.len())
@@ -244,7 +245,7 @@ impl SampledRows {
         Pose::new(turn, shift / count)
     }
 
-    /// Alternates the targets given the device's frame with the device's frame given the targets; targets come first and last.
+    /// Alternates between the targets for a fixed device frame and the device frame for fixed targets; targets come first and last.
     fn alternate(
         &self,
         problem: &Registration<'_>,
@@ -265,7 +266,7 @@ impl SampledRows {
         estimate
     }
 
-    /// Each target's best place and orientation on the last link, given the device's frame: theory.md §6 (32).
+    /// Best position and orientation of each target on the last link, for a fixed device frame: theory.md §6 (32).
     fn place_targets(&self, estimate: &mut Estimate, unknowns: &Unknowns) {
         let base_from_device = estimate.device_from_base.inverse();
         for target in 0..estimate.base_from_target.len() {

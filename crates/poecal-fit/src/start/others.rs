@@ -1,4 +1,4 @@
-//! Closed forms of devices that show no places: anchors, sockets, planes, the direction of gravity.
+//! Closed forms of devices that measure no positions: anchors, sockets, planes, the direction of gravity.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,20 +10,20 @@ use poecal_numerics::linalg;
 
 /// Share of the information of distances about an anchor below which it is rounding.
 const ROUNDING: f64 = 1e-12;
-/// Steps of the search for the multiplier of a plane's normal: each halves the interval.
+/// Largest number of steps of the search for the multiplier of a plane's normal: each halves the interval.
 const HALVINGS: usize = 200;
-/// Alternations of a direction with the turn of the target that sees it.
+/// Alternations of a direction with the turn of the target that measures it.
 const ROUNDS: usize = 20;
 
-/// A row: the arm's motion from zero in the base frame, what was measured, and the target.
+/// A row: the arm's motion from zero in the base frame, the measurement, and the target.
 pub(crate) struct Other {
     pub(crate) motion: Pose,
     pub(crate) measurement: Measurement,
     pub(crate) target: usize,
 }
 
-/// Estimates with the device at the places that the rows of one station tell, given the targets of the start; with targets that are free
-/// also turned, where the rows tell a direction alone.
+/// Estimates with the device at the poses that the rows of one station determine, with the targets of the start. Free targets are also
+/// turned if the rows determine a direction alone.
 pub(crate) fn starts(rows: &[Other], start: &Estimate, targets_free: bool) -> Vec<Estimate> {
     let at = |device: Pose| {
         let mut estimate = start.clone();
@@ -49,7 +49,7 @@ pub(crate) fn starts(rows: &[Other], start: &Estimate, targets_free: bool) -> Ve
     found
 }
 
-/// Rows as seen with the targets of a start.
+/// Rows as measured with the targets of a start.
 struct Seen<'a> {
     rows: &'a [Other],
     start: &'a Estimate,
@@ -66,9 +66,9 @@ impl Seen<'_> {
         Pose::new(turn, -(turn * point))
     }
 
-    /// The device at the point a that has the measured distances d from the targets p, and the zero o of its readings: with `|a|² - o²` as an
-    /// unknown of its own, `|p|² - d² = 2 p·a - 2 d o - (|a|² - o²)` is linear. Readings that are all the same, as of a sphere, tell their zero
-    /// by that unknown. Its axes are those of the start.
+    /// Device at the point a that has the measured distances d from the targets p, and the zero o of its readings. With `|a|² - o²` as an
+    /// unknown of its own, `|p|² - d² = 2 p·a - 2 d o - (|a|² - o²)` is linear. Readings that are all equal, as of a sphere, determine their
+    /// zero by that unknown. The axes are those of the start.
     fn by_ranges(&self) -> Option<(Pose, f64)> {
         let ranges: Vec<(Vector3<f64>, f64)> =
             self.rows.iter().filter_map(|row| Some((self.place(row), row.measurement.range()?))).collect();
@@ -86,7 +86,7 @@ impl Seen<'_> {
         for (place, range) in &ranges {
             let arm = place - middle;
             let row = [2.0 * arm.x, 2.0 * arm.y, 2.0 * arm.z, -1.0, -2.0 * (range - mean)];
-            // Counted from the mean reading, so that its square does not drown the others.
+            // Distances count from the mean reading, so that its square does not drown the others.
             let known = if varies { arm.norm_squared() - (range - mean).powi(2) } else { arm.norm_squared() };
             let known = if has_zero { known } else { arm.norm_squared() - range * range };
             for (i, a) in row.iter().enumerate().take(unknowns) {
@@ -107,7 +107,7 @@ impl Seen<'_> {
         Some((self.at(&(middle + arm)), zero))
     }
 
-    /// The middle of the balls.
+    /// Middle of the balls.
     fn by_sockets(&self) -> Option<Pose> {
         let places = self.rows.iter().filter(|row| row.measurement.clue() == Clue::Middle);
         let (sum, count) =
@@ -115,7 +115,7 @@ impl Seen<'_> {
         (count > 0).then(|| self.at(&(sum / f64::from(count))))
     }
 
-    /// The plane from which the points have the measured heights.
+    /// Plane from which the points have the measured heights.
     fn by_heights(&self) -> Option<Pose> {
         let height = |row: &Other| {
             let Clue::Height { point, height, .. } = row.measurement.clue() else { return None };
@@ -135,7 +135,7 @@ impl Seen<'_> {
         Some(Pose::new(turn, Vector3::z() * mean - turn * middle))
     }
 
-    /// The frame in which the points have the measured components: each along a direction of its own, as heights along a normal; then the
+    /// Frame in which the points have the measured components: each along a direction of its own, as heights along a normal; then the
     /// nearest right-handed axes.
     fn by_components(&self) -> Option<Pose> {
         let mut axes = Matrix3::zeros();
@@ -156,7 +156,7 @@ impl Seen<'_> {
             *found = Some((middle, mean));
         }
         middles.iter().any(Option::is_some).then(|| {
-            // An axis that is not seen is zero, for which the nearest rotation has the cross product of the others.
+            // An axis that is not measured is zero; the nearest rotation has the cross product of the others for it.
             let turn = rotation_maximising(&axes.transpose());
             let along =
                 [0, 1, 2].map(|k| middles[k].map_or(0.0, |(middle, mean)| mean - (turn.row(k) * middle).x));
@@ -173,8 +173,8 @@ impl Seen<'_> {
         normals.reduce(|a, b| a + b)?.try_normalize(f64::MIN_POSITIVE)
     }
 
-    /// The device's z in the base from targets that see it, `u = Rᵀ e_z`: the mean of `R u` for the targets of the start; for free targets
-    /// also turned, from several turns and by turns.
+    /// The device's z in the base from targets that measure it, `u = Rᵀ e_z`: the mean of `R u` for the targets of the start. Free targets
+    /// are also turned, from several starts and in alternation.
     fn by_directions(&self, targets_free: bool) -> Vec<Estimate> {
         let up = |row: &'_ Other| if let Clue::Up(up) = row.measurement.clue() { Some(up) } else { None };
         let seen: Vec<(&Other, Vector3<f64>)> =
@@ -215,7 +215,7 @@ impl Seen<'_> {
 }
 
 /// The unit vector n that minimises `Σ (n·a - h)²` over arms a and heights h: `(A + λ 1) n = b` for the λ that makes its length one, found by
-/// halving. Without heights it is the direction of least spread, on the side of the direction that is given.
+/// bisection. Without heights it is the direction of least spread, on the side of the direction `up`.
 fn normal_of(arms: impl Iterator<Item = (Vector3<f64>, f64)>, up: &Vector3<f64>) -> Vector3<f64> {
     let (mut gram, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (arm, height) in arms {

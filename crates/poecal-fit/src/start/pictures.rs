@@ -1,4 +1,4 @@
-//! Which end of the robot a camera is on, and which of two poses a board has in a picture, with nominal screws.
+//! Mounting of a camera (robot or base), and choice of two poses of a board in a picture, with nominal screws.
 
 use super::misread::misread;
 use super::registration::Registration;
@@ -11,40 +11,40 @@ use poecal_model::robot::{Mount, Robot};
 use poecal_numerics::distributions::median;
 use poecal_numerics::error::first_few;
 
-/// Most rounds in which pictures take the other of their poses.
+/// Largest number of rounds in which pictures take the other of their poses.
 const ROUNDS: usize = 6;
-/// Noise of a registration, which the nominal robot misses by more than pictures do: m and rad.
+/// Noise of a registration, which covers the errors of the nominal robot: m and rad.
 const NOISE: Noise = Noise::new(2e-3, 5e-3);
-/// Times the usual error beyond which a picture does not count in a registration.
+/// Multiple of the usual error beyond which a picture does not count in a registration.
 const ODD: f64 = 4.0;
 /// Fewest pictures of a registration.
 const FEWEST: usize = 4;
-/// Turns from a prediction beyond which a board may be turned by half a turn, and up to which it is one that is turned back, rad.
+/// Angle from a prediction beyond which a board may be turned by half a turn, rad; up to the same angle it counts as turned back.
 const FAR_TURNED: f64 = 2.2;
 const NEAR: f64 = 0.7;
-/// How many times worse the other place of a camera must look, so that this one is evident.
+/// Factor by which the error of the other mounting must be larger, so that this one is evident.
 const EVIDENT: f64 = 1.5;
 
-/// What was found of pictures, a sentence each.
+/// Findings on pictures, a sentence each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SettledPictures {
-    /// Where the camera was taken to be, if that is evident.
+    /// Assumed mounting of the camera, if that is evident.
     pub notes: Vec<String>,
-    /// What may be wrong.
+    /// Possible mistakes.
     pub warnings: Vec<String>,
 }
 
 impl SettledPictures {
-    /// All of it.
+    /// All notes and warnings.
     #[must_use]
     pub fn all(self) -> Vec<String> {
         self.notes.into_iter().chain(self.warnings).collect()
     }
 }
 
-/// Finds for each picture that has two poses the one that the other pictures agree with, and for cameras and boards that are not placed on the
-/// robot by name whether the camera is beside it, with the board in its hand, or in its hand, with the board beside: the place from which the
-/// corners look more as they were seen, with the robot as it is (theory.md §6, *Start*).
+/// Chooses, for each picture that has two poses, the one that agrees with the other pictures. For cameras and boards that the model does not
+/// place by name it determines the mounting: the camera beside the robot and the board in its hand, or the reverse. The mounting with the
+/// smaller error of the corners is taken, with the current robot (theory.md §6, *Start*).
 pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SettledPictures {
     if data.pictures.is_empty() {
         return SettledPictures::default();
@@ -81,7 +81,7 @@ pub fn settle_pictures(data: &mut Dataset, robot: &Robot) -> SettledPictures {
     SettledPictures { notes: Vec::new(), warnings }
 }
 
-/// Which pictures had their corners taken the other way round.
+/// Pictures whose corners were taken in reverse order.
 fn turned_back(before: &Dataset, after: &Dataset) -> Vec<String> {
     let differs = |(old, new): &(&Picture, &Picture)| {
         old.corners.first().map(|it| it.point) != new.corners.first().map(|it| it.point)
@@ -102,12 +102,12 @@ fn turned_back(before: &Dataset, after: &Dataset) -> Vec<String> {
     )]
 }
 
-/// The same pictures with the camera as the target, and the board as what it is seen from.
+/// The same pictures with the camera as the target, and the board as the instrument.
 fn in_hand(data: &Dataset) -> Dataset {
     let mut found = data.clone();
     let rows: Vec<(usize, usize, usize)> =
         data.pictures.all.iter().map(|it| (it.row as usize, it.camera, it.board)).collect();
-    // Names of what no picture shows stay.
+    // Names of objects in no picture stay.
     let is_of_pictures = |row: usize| data.pictures.of_row(row as u32).is_some();
     let others = (0..data.len()).filter(|row| !is_of_pictures(*row));
     let others: Vec<(usize, usize, usize)> =
@@ -138,7 +138,7 @@ fn named_station(data: &mut Dataset, name: Option<&str>) -> usize {
     data.stations.len() - 1
 }
 
-/// The data with the pose of each picture that fits the others, and the median distance of corners from where they would be seen, pixels.
+/// The data with the pose of each picture that fits the others, and the median error of corners, pixels.
 fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     let mut found = data.clone();
     let rows: Vec<u32> = data.pictures.all.iter().map(|it| it.row).collect();
@@ -163,7 +163,7 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
             choose(&mut found, at, |picture| nearest(picture, predicted));
             has_changed |= before != found.pictures.all[at].poses.first().copied();
         }
-        // One whose board is tilted the other way pulls all others.
+        // A picture whose board is tilted in the wrong direction would bias all others.
         let kept =
             rows.iter().zip(&missed).filter(|(_, missed)| **missed <= ODD * usual).map(|(row, _)| *row);
         let kept: Vec<u32> = kept.collect();
@@ -175,7 +175,7 @@ fn settled(data: &Dataset, robot: &Robot) -> (Dataset, f64) {
     (result, best)
 }
 
-/// The registration of some pictures, all alike: by their own noise, a wrong pose that is known well would pull the others.
+/// Registration of some pictures with equal noise: by their own noise, a wrong pose of small variance would bias the others.
 fn registered(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32]) -> Estimate {
     let mut plain = data.clone();
     for &row in rows {
@@ -199,13 +199,13 @@ fn predicted(data: &Dataset, robot: &Robot, packed: &Packed, rows: &[u32], estim
     .collect()
 }
 
-/// The predicted pose of a row from what was measured and its error (theory.md §4 (16)).
+/// Predicted pose of a row from its measurement and its error (theory.md §4 (16)).
 pub fn predicted_pose(measured: &Pose, error: &RowError) -> Pose {
     let turn = rotation::exp(&-error.vector(Quantity::Rotation));
     Pose::new(turn * measured.rotation, measured.translation - error.position_m())
 }
 
-/// Root mean square distance of the corners of a picture from where they would be seen, pixels; one that would not be seen is far off.
+/// Root mean square distance of the corners of a picture from their predicted positions, pixels; an invisible one counts as far.
 fn missed_px(data: &Dataset, (picture, pose): (&Picture, &Pose)) -> f64 {
     const UNSEEN: f64 = 1e4;
     let errors = data.pictures.view(picture).map(|view| view.errors(pose)).unwrap_or_default();
@@ -231,7 +231,7 @@ fn choose(data: &mut Dataset, at: usize, pose: impl FnOnce(&Picture) -> Option<P
     }
 }
 
-/// Takes the corners of a picture the other way round, the first for the last, where its board is predicted turned by half a turn.
+/// Reverses the order of the corners of a picture, the first for the last, if its board is predicted turned by half a turn; true if so.
 fn turn_back(data: &mut Dataset, at: usize, predicted: &Pose) -> bool {
     let Some(picture) = data.pictures.all.get(at) else { return false };
     let board = data.pictures.boards.get(picture.board);
@@ -251,7 +251,7 @@ fn turn_back(data: &mut Dataset, at: usize, predicted: &Pose) -> bool {
     true
 }
 
-/// The pose of a picture that is turned least from a predicted one.
+/// Pose of a picture with the smallest rotation from a predicted one.
 fn nearest(picture: &Picture, predicted: &Pose) -> Option<Pose> {
     let turned = |pose: &&Pose| deviation(pose, predicted).fixed_rows::<3>(3).norm();
     picture.poses.iter().min_by(|a, b| turned(a).total_cmp(&turned(b))).copied()

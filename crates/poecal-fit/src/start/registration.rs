@@ -16,9 +16,9 @@ pub struct Registration<'a> {
     pub rows: &'a [u32],
     /// Noise of rows that state none.
     pub noise: Noise,
-    /// Whether the targets are unknown (otherwise they stay as in the start).
+    /// True if the targets are unknown (otherwise they stay as in the start).
     pub targets_free: bool,
-    /// What is known of the targets before (theory.md §6 (27c)), and its weight: the variance of the whitened residuals.
+    /// Prior of the targets (theory.md §6 (27c)), and its weight: the variance of the whitened residuals.
     pub prior: Option<(&'a Prior, f64)>,
 }
 
@@ -29,7 +29,7 @@ pub fn register_again(problem: &Registration<'_>, start: &Estimate) -> Estimate 
 }
 
 impl<'a> Registration<'a> {
-    /// The same with the weight of the prior that the residuals of an estimate show.
+    /// The same problem with the weight of the prior by the residuals of an estimate.
     #[must_use]
     pub fn weighed_by(self, estimate: &Estimate) -> Self {
         let Registration { session, rows, noise, .. } = self;
@@ -84,7 +84,7 @@ pub fn free_parameters(problem: &Registration<'_>, rows: &[u32]) -> Vec<Paramete
     free
 }
 
-/// The free parameter of a station's frame: stepped about the middle of its rows; its place alone if no row sees its axes.
+/// Free parameter of a station's frame: stepped about the middle of its rows; its position alone if no row determines its axes.
 pub fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Parameter {
     let own = data.seen_from(station, rows);
     let freedom = data.device_freedom(station, &own);
@@ -95,7 +95,7 @@ pub fn device_parameter(data: &Dataset, station: usize, rows: &[u32]) -> Paramet
     })
 }
 
-/// The unknown zeros and scales of distances in these rows: what the rows say, and what the session names.
+/// Unknown zeros and scales of distances in these rows: those that the rows state as unknown, and those that the session names.
 pub fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = RangeUnknown> {
     let (data, unknowns) = (session.data, session.unknowns);
     let is_seen = move |station: usize| data.zero_is_unknown(station, rows);
@@ -108,7 +108,7 @@ pub fn range_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<It
     })
 }
 
-/// The unknown lags and drifts of clocks in these rows: of instruments that measured some of them in motion, but for those that are held.
+/// Unknown lags and drifts of clocks in these rows: of instruments that measured some of them in motion, except those that are held.
 pub fn clock_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = ClockUnknown> {
     let (data, unknowns) = (session.data, session.unknowns);
     let is_seen = |station: usize| {
@@ -123,12 +123,12 @@ pub fn clock_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<It
     })
 }
 
-/// The free parameters of the targets: frames where these rows measured orientation, places elsewhere.
+/// Free parameters of the targets: frames if these rows measured orientation, positions otherwise.
 pub fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<Item = Parameter> {
     let unknowns = session.unknowns;
     let data = session.data;
     let mut freedoms = data.target_freedoms(rows);
-    // Where all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
+    // If all planes are unknown, the height of a face is one with theirs (theory.md §4 (15c)).
     let is_known = |&row: &u32| {
         let seen = session.observation(row);
         seen.measurement.face_normal().is_some()
@@ -143,7 +143,7 @@ pub fn target_parameters(session: &Session<'_>, rows: &[u32]) -> impl Iterator<I
     targets.map(|(target, freedom)| target_parameter(target, freedom))
 }
 
-/// The parameter of a target of which these motions show.
+/// Parameter of a target with these observable motions.
 fn target_parameter(target: usize, freedom: Freedom) -> Parameter {
     if freedom == Freedom::PLACE {
         Parameter::TargetPlace(TargetPlace { target })

@@ -6,11 +6,12 @@ use crate::state::Estimate;
 use poecal_numerics::distributions::median;
 use poecal_numerics::solve::{Options, minimize};
 
-/// Most reweightings of a robust registration.
+/// Largest number of reweightings of a robust registration.
 const REWEIGHTINGS: usize = 20;
 
-/// Registers data with gross errors in up to a third of the rows: the ordinary registration, then the sum of distances instead of squares
-/// by reweighting, and the same once more from the better two thirds of the rows; the lower median distance wins (theory.md §6 (34c)).
+/// Registers data with gross errors in up to a third of the rows. First comes the ordinary registration, then the sum of distances
+/// instead of squares by reweighting. The same follows once more from the better two thirds of the rows. The lower median distance wins
+/// (theory.md §6 (34c)).
 #[must_use]
 pub fn register_robustly(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let (first, first_median, distances) = least_distances(problem, register(problem, start).0);

@@ -30,16 +30,17 @@ pub(crate) fn register_roughly(problem: &Registration<'_>, start: &Estimate) -> 
     roughly_at_one_station(problem, start)
 }
 
-/// Each frame from its own rows, that of most rows first; the targets found with it are known to the others (theory.md §6, *Start*).
+/// Estimates each frame from its own rows, that with the most rows first; the targets estimated with it are known to the others (theory.md
+/// §6, *Start*).
 fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
     let unknowns = problem.session.unknowns;
-    // A data set of one station: each registration uses the rows of one station only.
+    // The data set has one station: each registration uses the rows of one station only.
     let alone = problem.session.data.without_stations();
     let mut stations: Vec<(usize, Vec<u32>)> = (0..problem.session.data.station_count())
         .map(|station| (station, problem.session.data.seen_from(station, problem.rows)))
         .filter(|(_, rows)| !rows.is_empty())
         .collect();
-    // What is held is known; a device that shows places finds its frame best.
+    // A held frame is known; a device that measures positions determines its frame best.
     stations.sort_by_key(|(station, rows)| {
         Reverse((
             !unknowns.moves_frame(*station),
@@ -57,7 +58,7 @@ fn one_by_one(problem: &Registration<'_>, start: &Estimate) -> Estimate {
         let rows = if by_known { of_known } else { rows };
         let device_free = unknowns.moves_frame(station);
         let ranges = unknowns.ranges.iter().filter(|(at, _)| *at == station).map(|&(_, term)| (0, term));
-        // All clocks are found together, once the frames are.
+        // All clocks are estimated together, once the frames are.
         let held_clocks = ClockTerm::ALL.map(|term| (0, term)).to_vec();
         let of_one =
             Unknowns { held_frames: Vec::new(), ranges: ranges.collect(), held_clocks, ..unknowns.clone() };

@@ -15,23 +15,23 @@ use poecal_numerics::kernels::FixedMotion;
 #[derive(Clone, Debug)]
 pub struct Linkage {
     tree: Arc<Tree>,
-    /// Of each route: `device_from_axis` of its first joint from the first station, then each axis in the one before.
+    /// For each route: `device_from_axis` of its first joint from the first station, then each axis in the one before.
     steps: Vec<Vec<Pose>>,
     /// Device frame of the first station in that of each further one.
     further_from_first: Vec<Pose>,
-    /// Of each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
+    /// For each sight, its first step, or the device frame if no joint moves between the two; and the target after the last step.
     ends: Vec<(Pose, Pose)>,
     first_device: Pose,
     /// Zero and scale of the distances of each station; empty if all are plain.
     ranges: Vec<Range>,
-    /// What the clock of each station is off; empty if all are right.
+    /// Error of the clock of each station; empty if all are right.
     clocks: Vec<ClockChange>,
     /// Terms of the value of each joint, with their places among all; empty if there are none.
     terms: Vec<Vec<(usize, JointTerm)>>,
 }
 
 impl Linkage {
-    /// The relative frames of an estimate: the factors of theory.md §4 (13) between two joints' motions, at zero joint values.
+    /// Relative frames of an estimate: the factors of theory.md §4 (13) between two joints' motions, at zero joint values.
     #[must_use]
     pub fn new(estimate: &Estimate) -> Self {
         let Estimate {
@@ -90,15 +90,16 @@ impl Linkage {
         }
     }
 
-    /// `device_from_axis` of the first joint on the way from an instrument to a target, then each axis in the one before, at zero joint
-    /// values; and the target in the last axis. Without a joint, the target in the base, which [`Linkage::still`] has in the device frame.
+    /// `device_from_axis` of the first joint on the kinematic chain from an instrument to a target, then each axis in the one before, at
+    /// zero joint values; and the target in the last axis. Without a joint it is the target in the base, which [`Linkage::still`] has in
+    /// the device frame.
     pub(crate) fn frames(&self, sight: Sight) -> (impl Iterator<Item = &Pose>, &Pose) {
         let (first, end) = &self.ends[self.tree.sight_index(sight)];
         let steps = &self.steps[self.tree.route_index(sight)];
         (steps.iter().take(1).map(move |_| first).chain(steps.iter().skip(1)), end)
     }
 
-    /// The device frame of a sight without moving joints.
+    /// Device frame of a sight without moving joints.
     pub(crate) fn still(&self, sight: Sight) -> Option<&Pose> {
         self.steps[self.tree.route_index(sight)]
             .is_empty()
@@ -115,12 +116,12 @@ impl Linkage {
         &self.first_device
     }
 
-    /// Device frame of the first station in that of a further one; none for the first.
+    /// Device frame of the first station in that of a further one; `None` for the first.
     pub(crate) fn station_from_first(&self, station: usize) -> Option<&Pose> {
         self.further_from_first.get(station.checked_sub(1)?)
     }
 
-    /// Whether the joint values on a route are those of a row, in their order.
+    /// True if the joint values on a route are those of a row, in their order.
     pub(crate) fn is_plain(&self, route: usize) -> bool {
         let route = &self.tree.routes()[route];
         let in_order = |(index, passed): (usize, &Passed)| passed.joint == index && !passed.backward;
@@ -130,12 +131,12 @@ impl Linkage {
             && route.iter().enumerate().all(in_order)
     }
 
-    /// The tree whose frames these are.
+    /// Tree of these frames.
     pub(crate) fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// Of each joint of a route, whether it is revolute, and its relative frame, from the first station.
+    /// For each joint of a route, true if it is revolute, and its relative frame, from the first station.
     pub(crate) fn turning_steps(&self, route: usize) -> impl Iterator<Item = (bool, FixedMotion)> {
         let kinds = self.tree.routes()[route].iter().map(|passed| self.tree.kinds()[passed.joint]);
         kinds
@@ -143,15 +144,15 @@ impl Linkage {
             .map(|(kind, pose)| (kind == JointKind::Revolute, FixedMotion::from(pose)))
     }
 
-    /// By how much the value of a joint changes since a station's clock is off, if it is: theory.md §5 (26a).
+    /// Change of the value of a joint by the error of a station's clock, if there is one: theory.md §5 (26a).
     fn by_clock(&self, station: usize, packed: &Packed, row: usize, joint: usize) -> Option<f64> {
         let clock = self.clocks.get(station)?;
         let (rates, time_s) = packed.motion(row)?;
         Some(clock.shift(time_s) * rates.get(joint)?)
     }
 
-    /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, terms included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` of one that
-    /// is passed backward.
+    /// `(θ, cos θ or θ, sin θ or 0)` of a joint passed on a route, terms included: `θ ← θ + δ` of theory.md §5 (26), and `-θ` if it is
+    /// passed backward.
     #[inline]
     pub(crate) fn joint_value(
         &self,
@@ -198,7 +199,7 @@ impl Linkage {
 pub struct JointView {
     /// Index of the joint.
     pub joint: usize,
-    /// Whether it is passed from its link towards the base.
+    /// True if it is passed from its link towards the base.
     pub backward: bool,
     /// Revolute or prismatic.
     pub kind: JointKind,
@@ -221,8 +222,8 @@ pub struct JointView {
 /// A row's joints and target in the device's axes. Reused from row to row.
 #[derive(Clone, Debug)]
 pub struct Chain {
-    /// The joints from the instrument to the target; of a device on the base from base to tip. One that both configurations of a row move is
-    /// there twice.
+    /// Joints from the instrument to the target; for a device on the base, from base to tip. A joint that both configurations of a row move
+    /// is there twice.
     pub joints: Vec<JointView>,
     /// The last link's frame after all motions (the moved frame of the last axis).
     pub last: Pose,
@@ -230,16 +231,16 @@ pub struct Chain {
     pub target: Pose,
     /// Station of the device, in whose axes all vectors are.
     pub station: usize,
-    /// The target whose frame is the device's frame, if there is one.
+    /// Target whose frame is the device's frame, if there is one.
     pub shared: Option<usize>,
-    /// Whether the instrument was in another configuration than the target.
+    /// True if the instrument was in another configuration than the target.
     in_two: bool,
-    /// How fast joint values change, and the time of the row; empty of a row that was measured at rest.
+    /// Rates of the joint values, and the time of the row; empty if the row was measured at rest.
     rates: Vec<f64>,
     time_s: f64,
-    /// The packed terms.
+    /// Packed terms.
     terms: Arc<[(usize, Term)]>,
-    /// Their functions and the joint values without terms, of the row and of the instrument's own configuration.
+    /// Functions of the terms and the joint values without terms, of the row and of the instrument's own configuration.
     bases: [(Vec<f64>, Vec<f64>); 2],
 }
 
@@ -325,12 +326,12 @@ impl Chain {
         self.target = moved * *end;
     }
 
-    /// How fast joint values change (rad/s, m/s), and the time of the row from the middle of all, seconds, if it was measured in motion.
+    /// Rates of the joint values (rad/s, m/s), and the time of the row from the middle of all, seconds, if it was measured in motion.
     pub(crate) fn moving(&self) -> Option<(&[f64], f64)> {
         (!self.rates.is_empty() && !self.in_two).then_some((&self.rates, self.time_s))
     }
 
-    /// The function b of a term of a joint in the configuration in which the joint is seen.
+    /// Function b of a term of a joint in the configuration in which the joint is passed.
     #[must_use]
     pub fn basis(&self, view: &JointView, term: Term) -> f64 {
         // Without a configuration of its own the instrument was in that of the target.
@@ -339,9 +340,9 @@ impl Chain {
         Bases::new(&self.terms, own, values).basis_of_term(view.joint, term)
     }
 
-    /// The views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.
+    /// Views of one joint: none if the target's motion does not depend on it, two if it moved between two configurations of a row.
     pub fn of_joint(&self, joint: usize) -> impl Iterator<Item = &JointView> {
-        // On a serial chain it has its own place; before that place no joint is a later one.
+        // On a serial chain the joint has its own place; before that place no joint is a later one.
         let first = self.joints.get(joint).filter(|view| view.joint == joint && !self.in_two);
         let start = if first.is_some() { joint } else { 0 };
         let views = self.joints[start..].iter().filter(move |view| view.joint == joint);

@@ -1,7 +1,7 @@
-//! Lag and drift of an instrument's clock, beyond those by which the joint readings of its rows were found.
+//! Lag and drift of an instrument's clock, beyond those with which the joint readings of its rows were computed.
 
-/// What a clock is off beyond the one by which the readings were found ([`Clock`](poecal_model::measurement::Clock)): the readings of a row at the time t
-/// from the middle of all change by `-(l + d t)` times their rates.
+/// Error of a clock beyond the one with which the readings were computed ([`Clock`](poecal_model::measurement::Clock)). The readings of a row at the
+/// time t from the middle of all change by `-(l + d t)` times their rates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClockChange {
     /// Change of the lag l, seconds.
@@ -13,20 +13,20 @@ pub struct ClockChange {
 /// One of the two, as an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ClockTerm {
-    /// The lag, seconds.
+    /// Lag, seconds.
     Lag,
-    /// The drift, seconds each second.
+    /// Drift, seconds each second.
     Drift,
 }
 
 impl ClockTerm {
-    /// Both.
+    /// Both terms.
     pub const ALL: [ClockTerm; 2] = [ClockTerm::Lag, ClockTerm::Drift];
 
-    /// Standard deviation of a clock's drift beside another, its prior: 50 ppm, as of plain quartz.
+    /// Standard deviation of a clock's drift against another, its prior: 50 ppm, as of plain quartz.
     pub const DRIFT_DEVIATION: f64 = 5e-5;
 
-    /// Its name.
+    /// Name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -35,7 +35,7 @@ impl ClockTerm {
         }
     }
 
-    /// By how much a reading changes each unit of the term, over its rate, at a time from the middle, seconds.
+    /// Change of a reading for each unit of the term, over its rate, at a time from the middle, seconds.
     #[must_use]
     pub(crate) fn factor(self, time_s: f64) -> f64 {
         match self {
@@ -46,12 +46,12 @@ impl ClockTerm {
 }
 
 impl ClockChange {
-    /// Whether nothing changes.
+    /// True if the clock has no error.
     pub(crate) fn is_none(&self) -> bool {
         *self == ClockChange::default()
     }
 
-    /// A term.
+    /// Value of a term.
     #[must_use]
     pub fn term(&self, term: ClockTerm) -> f64 {
         match term {
@@ -60,7 +60,7 @@ impl ClockChange {
         }
     }
 
-    /// By how much a reading changes, over its rate, at a time from the middle, seconds.
+    /// Change of a reading, over its rate, at a time from the middle, seconds.
     pub(crate) fn shift(&self, time_s: f64) -> f64 {
         -(self.lag_s + self.drift * time_s)
     }

@@ -4,8 +4,8 @@
 //! the screw. A local step `A_i ← A_i exp(ε)` is the adjoint update `ξ_i ← Ad_exp(η) ξ_i` with `η = Ad_A_i ε` (theory.md §5 (18)).
 //!
 //! A robot with its measurements is one value, [`Session`]: functions of both take it, and structs such as `Problem` and `Registration` hold it.
-//! [`Estimate`] is not one type with `Robot`: a fit makes a state in every step, and names, limits and readings never change in one. `tree.rs` has the
-//! joints on the way from each instrument to each target, passed forward or backward; `unknowns.rs` which unknowns a fit changes.
+//! [`Estimate`] is not one type with `Robot`: a fit makes a state in every step, and names, limits and readings never change in one. `tree.rs` has
+//! the joints on the kinematic chain from each instrument to each target, passed forward or backward; `unknowns.rs` has the unknowns of a fit.
 
 mod chain;
 mod clock;
@@ -43,7 +43,7 @@ use poecal_model::robot::{Body, JointKind, JointTerm, Robot, Term};
 /// The current estimate of everything that may be unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// Where joints, instruments and targets stand.
+    /// Bodies of joints, instruments and targets.
     pub tree: Arc<Tree>,
     /// `base_from_axis` of each joint at zero configuration: z along the screw, origin on the axis.
     pub base_from_axis: Vec<Pose>,
@@ -57,13 +57,13 @@ pub struct Estimate {
     pub further_devices: Vec<Pose>,
     /// Zero and scale of the distances of each station; those beyond the last are plain.
     pub ranges: Vec<Range>,
-    /// What the clock of each station is off; those beyond the last are right.
+    /// Error of the clock of each station; those beyond the last are right.
     pub clocks: Vec<ClockChange>,
 }
 
 impl Estimate {
-    /// The estimate of a robot's screws, targets at zero configuration and a device frame. Axis frames have z along the screw, as in
-    /// theory.md §5 (18). All targets are on the tip's link, and the device stands on the base.
+    /// Estimate of a robot's screws, targets at zero configuration and a device frame. Axis frames have z along the screw, as in
+    /// theory.md §5 (18). All targets are on the tip's link, and the device is on the base.
     #[must_use]
     pub fn new(robot: &Robot, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
         let targets = vec![robot.tip_body(); base_from_target.len()];
@@ -71,7 +71,7 @@ impl Estimate {
         Estimate::on(robot, tree, base_from_target, device_from_base)
     }
 
-    /// The same with instruments and targets where a tree has them; further device frames are that of the first.
+    /// The same estimate with instruments and targets on the bodies of a tree; further device frames are that of the first.
     #[must_use]
     pub fn on(robot: &Robot, tree: Tree, base_from_target: Vec<Pose>, device_from_base: Pose) -> Self {
         let further = tree.instruments().len().saturating_sub(1);
@@ -91,13 +91,14 @@ impl Estimate {
         }
     }
 
-    /// Revolute or prismatic, a joint.
+    /// Kind of each joint.
     #[must_use]
     pub fn kinds(&self) -> &[JointKind] {
         self.tree.kinds()
     }
 
-    /// `device_from_base` of a station, of an instrument on the robot at zero joint values; that of a shared target is found from it.
+    /// `device_from_base` of a station; for an instrument on the robot at zero joint values. That of a shared target follows from the
+    /// target.
     pub fn device_at_zero(&self, station: usize) -> Pose {
         match self.tree.shared(station) {
             Some(target) => self.base_from_target[target].inverse(),
@@ -133,7 +134,7 @@ impl Estimate {
         &mut self.ranges[station]
     }
 
-    /// What the clock of a station is off.
+    /// Error of the clock of a station.
     #[must_use]
     pub fn clock(&self, station: usize) -> ClockChange {
         self.clocks.get(station).copied().unwrap_or_default()
@@ -188,7 +189,7 @@ impl Estimate {
             .collect()
     }
 
-    /// The same estimate with other screws in the base frame, one for each joint. Frames keep their place along each axis
+    /// The same estimate with other screws in the base frame, one for each joint. Frames keep their position along each axis
     /// (theory.md §5 (18)).
     #[must_use]
     pub fn with_screws(&self, screws: &[Screw]) -> Self {
@@ -215,13 +216,13 @@ impl Estimate {
         }
     }
 
-    /// Whether any joint has a term.
+    /// True if any joint has a term.
     #[must_use]
     pub fn has_terms(&self) -> bool {
         self.terms.iter().any(|it| it.coefficient != 0.0)
     }
 
-    /// Whether joint values differ from those of the readings: by a term, or since a clock is off.
+    /// True if joint values differ from those of the readings: by a term, or by the error of a clock.
     #[must_use]
     pub fn moves_values(&self) -> bool {
         self.has_terms() || self.clocks.iter().any(|it| !it.is_none())
@@ -260,8 +261,8 @@ impl Estimate {
         estimate
     }
 
-    /// The same robot without joint offsets: the offset of joint i moves all screws beyond it, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
-    /// targets and instruments there. Exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
+    /// The same robot without joint offsets. The offset of joint i moves all screws beyond it, `ξ_j ← Ad_exp(ξ_i δ) ξ_j` for j > i, and the
+    /// targets and instruments there. The result is exact; no prediction changes (lou2009 equations 11 to 15, theory.md §3 (9a)).
     #[must_use]
     pub fn without_offsets(&self) -> Self {
         if self.offsets().iter().all(|&offset| offset == 0.0) {
@@ -270,7 +271,7 @@ impl Estimate {
         let (screws, offsets) = (self.screws(), self.offsets());
         let mut moved = self.clone();
         moved.terms.retain(|it| it.term != Term::OFFSET);
-        // How the link of each joint moves, and all that stands on it.
+        // Motion of each joint's link, and of all objects on it.
         let mut motions: Vec<Pose> = Vec::with_capacity(screws.len());
         let of = |motions: &[Pose], body: Option<usize>| {
             body.and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)
@@ -292,8 +293,8 @@ impl Estimate {
         moved
     }
 
-    /// Moves each axis frame's origin along its axis to the point nearest to the targets' mean place as seen from that joint, where a tilt
-    /// has the least leverage (theory.md §5, below (18)). Screws do not change.
+    /// Moves each axis frame's origin along its axis to the point nearest to the targets' mean position relative to that joint. A tilt has
+    /// the least leverage there (theory.md §5, below (18)). Screws do not change.
     pub fn recentre(&mut self, session: &Session<'_>, rows: &[u32]) {
         let sample = sample_rows(rows, 200);
         let count = sample.len() as f64;
@@ -328,7 +329,7 @@ pub fn radian_m(robot: &Robot, packed: &Packed) -> f64 {
     (robot.arm_m() + strokes) / 3.0
 }
 
-/// The nominal estimate: nominal screws, each target and instrument at its place in the model, other targets at the tip, and other
+/// Nominal estimate: nominal screws, each target and instrument at its pose in the model, other targets at the tip, and other
 /// instruments at the base.
 #[must_use]
 pub fn delivered(robot: &Robot, data: &Dataset) -> Estimate {

@@ -23,8 +23,8 @@ pub struct Packed {
     /// The terms of the robot, and their functions b in each row.
     terms: Arc<[(usize, Term)]>,
     bases: Vec<f64>,
-    /// How fast each joint value changes in rows that were measured in motion (rad/s, m/s), and their times from the middle of all, seconds;
-    /// empty if there are none.
+    /// Rate of each joint value in rows that were measured in motion (rad/s, m/s), and their times from the middle of all, seconds; empty if
+    /// there are none.
     rates: Vec<f64>,
     times_s: Vec<f64>,
     /// Configurations of instruments that differ from those of the targets, in rows of their own.
@@ -62,7 +62,7 @@ impl Packed {
         packed
     }
 
-    /// Packs how fast joint values change, of rows that were measured in motion.
+    /// Packs the rates of joint values, of rows that were measured in motion.
     fn move_as(&mut self, robot: &Robot, data: &Dataset) {
         let indices = robot.reading_indices();
         for observation in &data.observations {
@@ -75,12 +75,12 @@ impl Packed {
         }
     }
 
-    /// How fast the joint values of a row change (rad/s, m/s), and its time, seconds, unless all rows were measured at rest.
+    /// Rates of the joint values of a row (rad/s, m/s), and its time, seconds; `None` if all rows were measured at rest.
     pub(crate) fn motion(&self, row: usize) -> Option<(&[f64], f64)> {
         Some((self.rates.get(row * self.joints..(row + 1) * self.joints)?, *self.times_s.get(row)?))
     }
 
-    /// Whether these are the joint values of a data set's rows.
+    /// True if these are the joint values of a data set's rows.
     pub fn is_of(&self, robot: &Robot, data: &Dataset) -> bool {
         let indices = robot.reading_indices();
         let is_row = |row| {
@@ -150,7 +150,7 @@ impl Packed {
         }
     }
 
-    /// The value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.
+    /// Value of a joint in a row, or in a further configuration in place of it: θ, and `(cos θ, sin θ)` or `(θ, 0)`.
     pub(crate) fn at(&self, row: usize, further: Option<u32>, joint: usize) -> (f64, (f64, f64)) {
         let (packed, row) = match (&self.further, further) {
             (Some(packed), Some(row)) => (&**packed, row as usize),
@@ -184,12 +184,12 @@ impl Packed {
         self.bases_at(row, further).basis_of_term(joint, term)
     }
 
-    /// Place of a term of a joint among the packed ones, by which its function is found in each row.
+    /// Index of a term of a joint among the packed ones, that of its function in each row.
     pub(crate) fn place_of(&self, joint: usize, term: Term) -> Option<usize> {
         self.terms.iter().position(|it| *it == (joint, term))
     }
 
-    /// The function b of a term of a joint, at its [place](Packed::place_of), in a row or in a further configuration in place of it.
+    /// Function b of a term of a joint, at its [place](Packed::place_of), in a row or in a further configuration in place of it.
     pub(crate) fn basis_at(
         &self,
         row: usize,
@@ -202,7 +202,7 @@ impl Packed {
         known.unwrap_or_else(|| found.basis_of_term(joint, term))
     }
 
-    /// Whether each joint is revolute.
+    /// For each joint, true if it is revolute.
     pub fn turns(&self) -> impl Iterator<Item = bool> {
         self.kinds.iter().map(|&kind| kind == JointKind::Revolute)
     }
@@ -241,12 +241,12 @@ pub(crate) struct Bases<'a> {
 }
 
 impl<'a> Bases<'a> {
-    /// Of these terms, with their functions, and of others by the joint values.
+    /// Functions of these terms, and of other terms by the joint values.
     pub(crate) fn new(terms: &'a [(usize, Term)], bases: &'a [f64], values: &'a [f64]) -> Self {
         Bases { terms, bases, values }
     }
 
-    /// The function of a term of a joint; one that is not among the robot's is a function of the joint values alone.
+    /// Function of a term of a joint; one that is not among the robot's is a function of the joint values alone.
     pub(crate) fn basis_of_term(&self, joint: usize, term: Term) -> f64 {
         let at = self.terms.iter().position(|it| *it == (joint, term));
         at.and_then(|at| self.bases.get(at))
@@ -292,8 +292,8 @@ fn bases<'a>(robot: &Robot, angles: &[f64], factors: impl Fn(usize) -> &'a [f64]
     bases
 }
 
-/// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically, since a fixed stride could
-/// fall in with a rhythm of targets or grid lines in the data (theory.md §6, *End*).
+/// A subsample of `count` rows, or all if there are no more. The rows are spread evenly but not periodically: a fixed stride could
+/// coincide with a rhythm of targets or grid lines in the data (theory.md §6, *End*).
 #[must_use]
 pub fn sample_rows(rows: &[u32], count: usize) -> Vec<u32> {
     if rows.len() <= count {

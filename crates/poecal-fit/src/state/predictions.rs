@@ -18,8 +18,8 @@ impl Session<'_> {
         self.map_errors(rows, estimate, |_, error, _| error)
     }
 
-    /// Maps each row by `each`, from its observation and, of each quantity, the sum of squares (m², rad²) and the count of its residual's
-    /// numbers, as if the noise of positions were the same in all directions. Residuals are those of theory.md §4 (15), (16), or of the data
+    /// Maps each row by `each`, from its observation and, for each quantity, the sum of squares (m², rad²) and the count of its residual's
+    /// numbers. The noise of positions counts as the same in all directions. Residuals are those of theory.md §4 (15), (16), or of the data
     /// set's own formulation (16a).
     pub fn map_squares<T: Send>(
         &self,
@@ -90,7 +90,7 @@ impl Session<'_> {
         found
     }
 
-    /// Places of the rows of each route among these; none are listed if all are of the only one.
+    /// Indices of the rows of each route among these; empty if all are of the only one.
     fn by_route(&self, linkage: &Linkage, rows: &[u32]) -> Vec<(usize, Vec<usize>)> {
         let routes = linkage.tree().routes().len();
         if routes == 1 {
@@ -104,7 +104,7 @@ impl Session<'_> {
     }
 }
 
-/// Rotates the errors of rows from the axes of their own station to those of the first, `e ← R_1 R_sᵀ e` with the rotations of the device
+/// Rotates the errors of rows from the axes of their own station to those of the first: `e ← R_1 R_sᵀ e` with the rotations of the device
 /// frames `X_s` of theory.md §4 (13).
 pub fn turn_to_first(data: &Dataset, rows: &[u32], estimate: &Estimate, errors: &mut [RowError]) {
     if data.station_count() == 1 {

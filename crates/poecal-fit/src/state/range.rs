@@ -1,11 +1,11 @@
-//! What an instrument that measures distances makes of them: the zero and the scale of its reading.
+//! Readings of an instrument that measures distances: zero and scale.
 
 use nalgebra::Vector3;
 
 use poecal_arm::lie::Pose;
 use poecal_model::measurement::Sensitivity;
 
-/// Zero and scale of an instrument's distances: it reads `(1 + s) |p| + o` where a target is at p (theory.md §4 (15d)). Of a sphere that is
+/// Zero and scale of an instrument's distances: it reads `(1 + s) |p| + o` for a target at p (theory.md §4 (15d)). For a sphere that is
 /// touched, the zero is minus its radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Range {
@@ -18,17 +18,17 @@ pub struct Range {
 /// One of the two, as an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RangeTerm {
-    /// The zero, metres.
+    /// Zero, metres.
     Zero,
-    /// The scale.
+    /// Scale.
     Scale,
 }
 
 impl RangeTerm {
-    /// Both.
+    /// Both terms.
     pub const ALL: [RangeTerm; 2] = [RangeTerm::Zero, RangeTerm::Scale];
 
-    /// Its name.
+    /// Name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -39,18 +39,18 @@ impl RangeTerm {
 }
 
 impl Range {
-    /// Whether a reading is the distance itself.
+    /// True if a reading is the distance itself.
     pub(crate) fn is_plain(&self) -> bool {
         *self == Range::default()
     }
 
-    /// What the instrument reads of a target at this pose: below zero inside a sphere that is touched.
+    /// Reading of the instrument for a target at this pose: below zero inside a sphere that is touched.
     #[must_use]
     pub(crate) fn reading(&self, target: &Pose) -> f64 {
         target.translation.norm() * (1.0 + self.scale) + self.zero_m
     }
 
-    /// The target's pose at the place that has the read distance, in the direction where it is.
+    /// Pose of the target at the distance that is read, in its direction.
     #[must_use]
     pub fn seen(&self, target: &Pose) -> Pose {
         let place = target.translation;
@@ -58,7 +58,7 @@ impl Range {
         Pose { translation: place * (1.0 + self.scale) + direction * self.zero_m, ..*target }
     }
 
-    /// Makes a sensitivity at the seen place one at the target.
+    /// Transforms a sensitivity at the read position to one at the target.
     pub(crate) fn pull_back(&self, target: &Pose, sensitivity: &mut [Sensitivity]) {
         let place = target.translation;
         let Some(direction) = place.try_normalize(0.0) else { return };
@@ -70,7 +70,7 @@ impl Range {
         }
     }
 
-    /// Motion of the seen place by a unit of a term.
+    /// Motion of the read position by a unit of a term.
     pub(crate) fn motion(target: &Pose, term: RangeTerm) -> Vector3<f64> {
         match term {
             RangeTerm::Zero => target.translation.try_normalize(0.0).unwrap_or_default(),

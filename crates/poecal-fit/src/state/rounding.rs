@@ -3,35 +3,37 @@
 use super::{Session, sample_rows};
 use poecal_model::robot::ReadingKind;
 
-/// Steps of readings that are looked for, degrees and millimetres, the largest first.
+/// Steps of readings that are tested, degrees and millimetres, the largest first.
 const STEPS: [f64; 4] = [0.1, 0.05, 0.02, 0.01];
-/// How far readings may be from a multiple of a step, as a share of it.
+/// Largest distance of readings from a multiple of a step, as a share of it.
 const NEAR: f64 = 1e-3;
-/// Fewest different values of a joint of which that is no chance, and which are no commanded positions of a kind.
+/// Fewest different values of a joint for a step that is no chance, and no series of commanded positions.
 const FEWEST: usize = 12;
-/// Rows in which steps are looked for, those by which the effect is found, and the step of the differences, radians and metres.
+/// Number of rows in which steps are searched, and of those by which the effect is estimated; and the step of the differences, radians and
+/// metres.
 const LOOKED: usize = 2000;
 const ROWS: usize = 100;
 const DIFFERENCE: f64 = 1e-5;
-/// Share of the error that is left below which the rounding makes no part of it: commanded readings are exact.
+/// Share of the remaining error below which the rounding is no part of it: commanded readings are exact.
 const PART: f64 = 0.5;
 
-/// What the digits of the readings cost.
+/// Effect of the digits of the readings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding {
     /// Names of the readings with the largest step, which is in degrees or millimetres, and its unit.
     pub names: Vec<String>,
-    /// The largest step of a reading, in `unit`.
+    /// Largest step of a reading, in `unit`.
     pub step: f64,
     /// `deg` or `mm`.
     pub unit: &'static str,
-    /// Mean squared error of the tip's place, square metres, and of its orientation, square radians.
+    /// Mean squared error of the tip's position, square metres, and of its orientation, square radians.
     pub place_m2: f64,
     pub(crate) turn_rad2: f64,
 }
 
 impl Rounding {
-    /// Of a session's readings, where errors of `left_m` (RMS) are no less than half of what rounding makes; `None` if they are not rounded.
+    /// Rounding of a session's readings, if errors of `left_m` (RMS) are no less than half of its effect; `None` if readings are not
+    /// rounded.
     pub fn from_session(session: &Session<'_>, left_m: f64) -> Option<Self> {
         let Session { robot, data, .. } = *session;
         let names = data.reading_names();
@@ -76,7 +78,7 @@ impl Rounding {
     }
 }
 
-/// The largest step that all values are multiples of.
+/// Largest step that all values are multiples of.
 fn step_of(mut values: Vec<f64>) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
     values.dedup();

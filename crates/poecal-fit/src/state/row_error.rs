@@ -1,4 +1,4 @@
-//! The error of one row.
+//! Error of one row.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -15,7 +15,7 @@ pub struct RowError {
 }
 
 impl RowError {
-    /// Of a measurement and the predicted `device_from_target`.
+    /// Error of a measurement and the predicted `device_from_target`.
     #[must_use]
     pub fn new(seen: &Measurement, predicted: &Pose) -> Self {
         let mut values = [0.0; NUMBERS];
@@ -23,12 +23,12 @@ impl RowError {
         RowError { channels: seen.channels(), values }
     }
 
-    /// Of a measurement with these numbers.
+    /// Error of a measurement with these numbers.
     pub(crate) fn from_values(seen: &Measurement, values: [f64; NUMBERS]) -> Self {
         RowError { channels: seen.channels(), values }
     }
 
-    /// The error of a measured position, metres.
+    /// Error of a measured position, metres.
     #[must_use]
     pub fn of_position(error: Vector3<f64>) -> Self {
         let seen = Measurement::point(error);
@@ -42,18 +42,18 @@ impl RowError {
         RowError { channels: self.channels, values }
     }
 
-    /// The numbers with their channels.
+    /// Numbers with their channels.
     pub fn numbers(&self) -> impl Iterator<Item = (&'static Channel, f64)> {
         self.channels.iter().zip(self.values)
     }
 
-    /// Number of numbers.
+    /// Number of values.
     #[must_use]
     pub fn dim(&self) -> usize {
         self.channels.len()
     }
 
-    /// The numbers of one quantity, none if it was not measured.
+    /// Numbers of one quantity; empty if it was not measured.
     #[must_use]
     #[inline]
     pub fn part(&self, quantity: Quantity) -> &[f64] {
@@ -73,7 +73,7 @@ impl RowError {
         squared(self.part(quantity))
     }
 
-    /// Squared length of the error of each quantity, and how many numbers it has.
+    /// Squared length of the error of each quantity, and its number of values.
     pub(crate) fn squares(&self) -> ByQuantity<(f64, usize)> {
         ByQuantity::from_fn(|quantity| {
             let part = self.part(quantity);
@@ -81,7 +81,7 @@ impl RowError {
         })
     }
 
-    /// The components of a quantity as a vector, zero where one was not measured and beyond those that it has.
+    /// Components of a quantity as a vector, zero where one was not measured and beyond those that it has.
     #[must_use]
     pub fn vector(&self, quantity: Quantity) -> Vector3<f64> {
         let mut vector = Vector3::zeros();
@@ -89,60 +89,60 @@ impl RowError {
         vector
     }
 
-    /// Which components of a quantity were measured.
+    /// For each component of a quantity, true if it was measured.
     pub fn measured(&self, quantity: Quantity) -> [bool; Quantity::MOST_COMPONENTS] {
         let mut found = [false; Quantity::MOST_COMPONENTS];
         self.channels.components(quantity).for_each(|(_, component)| found[component] = true);
         found
     }
 
-    /// The error of a measured position, metres; zero if none was measured.
+    /// Error of a measured position, metres; zero if none was measured.
     #[must_use]
     pub fn position_m(&self) -> Vector3<f64> {
         self.vector(Quantity::Position)
     }
 
-    /// The error of a measured orientation, a rotation vector in radians.
+    /// Error of a measured orientation, a rotation vector in radians.
     #[must_use]
     pub fn rotation_rad(&self) -> Option<Vector3<f64>> {
         self.channels.has(Quantity::Rotation).then(|| self.vector(Quantity::Rotation))
     }
 
-    /// The first quantity, by which rows of one kind are compared.
+    /// First quantity, by which rows of one kind are compared.
     #[must_use]
     pub fn leading(&self) -> Option<Quantity> {
         self.channels.first().map(|channel| channel.quantity)
     }
 
-    /// The error of its first quantity as a vector, zero beyond the numbers it has.
+    /// Error of the first quantity as a vector, zero beyond its components.
     #[must_use]
     pub fn lead(&self) -> Vector3<f64> {
         self.leading().map_or_else(Vector3::zeros, |quantity| self.vector(quantity))
     }
 
-    /// The error of all numbers that are lengths, metres: the position's, a distance's.
+    /// Error of all numbers that are lengths, metres: of the position, of a distance.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         self.square_m2().sqrt()
     }
 
-    /// Its square.
+    /// Square of the error of all numbers that are lengths, square metres.
     pub(crate) fn square_m2(&self) -> f64 {
         self.square_of(Unit::Metre)
     }
 
-    /// The square of the error of all numbers that are angles: the rotation's.
+    /// Square of the error of all numbers that are angles, such as the rotation's, square radians.
     pub(crate) fn square_rad2(&self) -> f64 {
         self.square_of(Unit::Radian)
     }
 
-    /// Whether a number is an angle.
+    /// True if a number is an angle.
     pub(crate) fn has_angle(&self) -> bool {
         let is_angle = |quantity: Quantity| quantity.unit() == Unit::Radian && self.channels.has(quantity);
         Quantity::ALL.into_iter().any(is_angle)
     }
 
-    /// The error of all numbers that are lengths but no position, metres: of a distance, a contact, a height.
+    /// Error of all numbers that are lengths but no position, metres: of a distance, a contact, a height.
     pub fn constraint_m(&self) -> Option<f64> {
         let is_own = |quantity: &Quantity| quantity.unit() == Unit::Metre && !quantity.is_of_pose();
         let own = Quantity::ALL.into_iter().filter(is_own).filter(|quantity| self.channels.has(*quantity));

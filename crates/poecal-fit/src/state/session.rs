@@ -1,4 +1,4 @@
-//! The measurements of one robot, as every step of a calibration reads them.
+//! Measurements of one robot, as all steps of a calibration read them.
 
 use super::unknowns::USUAL;
 use super::{Packed, Unknowns, radian_m};
@@ -6,27 +6,27 @@ use poecal_model::measurement::{ByQuantity, Dataset, Noise, Observation};
 use poecal_model::robot::{JointKind, Robot};
 use poecal_numerics::unit::Unit;
 
-/// A robot and its measurements: what every fit of them, and every judgement of a fit, begins with.
+/// A robot and its measurements: the input of every fit, and of every judgement of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Session<'a> {
-    /// The nominal robot; the calibrated one where a finished calibration is judged.
+    /// Nominal robot; for the judgement of a finished calibration, the calibrated one.
     pub robot: &'a Robot,
-    /// The measurements, in the frames of the device.
+    /// Measurements, in the frames of the device.
     pub data: &'a Dataset,
-    /// Their joint values with sines and cosines, one row for each measurement.
+    /// Joint values of the measurements with sines and cosines, one row for each.
     pub packed: &'a Packed,
     /// Metres that a radian counts, the L of theory.md §6.
     pub length_m: f64,
-    /// Whether the device frame is unknown; otherwise it stays as given.
+    /// True if the device frame is unknown; otherwise it stays as it is.
     pub device_free: bool,
     /// Noise of each instrument in units of the first one's; empty if all are alike.
     pub noise_ratios: &'a [Noise],
-    /// What a fit changes.
+    /// Unknowns of a fit.
     pub unknowns: &'a Unknowns,
 }
 
 impl<'a> Session<'a> {
-    /// A radian counts a third of the reach ([`radian_m`]).
+    /// A session in which a radian counts a third of the reach ([`radian_m`]).
     #[must_use]
     pub fn new(robot: &'a Robot, data: &'a Dataset, packed: &'a Packed, device_free: bool) -> Self {
         let length_m = radian_m(robot, packed);
@@ -39,13 +39,13 @@ impl<'a> Session<'a> {
         Session { unknowns, ..self }
     }
 
-    /// Whether the base frame is a choice: the device frame is unknown, and nothing is held in the base.
+    /// True if the base frame is a choice: the device frame is unknown, and nothing is held in the base.
     #[must_use]
     pub fn base_free(&self) -> bool {
         self.device_free && self.unknowns.base_is_free()
     }
 
-    /// The station whose frame is no unknown: the first of the rows where the base frame is a choice, or the device's is known.
+    /// Station whose frame is no unknown: the first of the rows if the base frame is a choice, or if the device's is known.
     pub fn held_station(&self, rows: &[u32]) -> Option<usize> {
         (!self.device_free || self.base_free()).then(|| self.data.first_station(rows))
     }
@@ -62,7 +62,8 @@ impl<'a> Session<'a> {
         Session { noise_ratios, ..self }
     }
 
-    /// Whether nothing that these rows measure has a length, so that the size of the robot does not show. What is held has its own.
+    /// True if no measurement of these rows has a length, so that the size of the robot is not determined. Held blocks have a size of their
+    /// own.
     pub fn lacks_length(&self, rows: &[u32]) -> bool {
         let seen = |row: &u32| self.observation(*row).measurement;
         let has_length = |row: &u32| seen(row).has_length();
@@ -84,7 +85,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Noise of a row: what it states, else that of its instrument.
+    /// Noise of a row: the stated one, else that of its instrument.
     pub fn noise_of(&self, observation: &Observation, usual: Noise) -> Noise {
         observation.noise_or(self.usual_noise(observation.station, usual))
     }

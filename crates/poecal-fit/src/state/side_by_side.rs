@@ -11,7 +11,7 @@ use poecal_numerics::kernels::{self as lanes, FixedMotion, Frames, SimdLevel, WI
 pub(crate) struct SideBySide<'a> {
     linkage: &'a Linkage,
     route: &'a [Passed],
-    /// Whether the joint values are those of a row, in their order.
+    /// True if the joint values are those of a row, in their order.
     plain: bool,
     pub(crate) level: SimdLevel,
     joints: Vec<(bool, FixedMotion)>,
@@ -119,7 +119,7 @@ impl<'a> SideBySide<'a> {
         }
         let target = self.predicted(lane, seen);
         match (self.linkage.range(seen.station), measurement.range()) {
-            // The length of the seen place would lose the sign of a reading below zero.
+            // The length of the read position would lose the sign of a reading below zero.
             (Some(range), Some(measured)) => {
                 values[0] = measured - range.reading(&target);
                 RowError::from_values(measurement, values)
@@ -157,7 +157,7 @@ fn put(frames: &mut Frames, lane: usize, pose: &Pose) {
     put_row(place, lane, &pose.translation);
 }
 
-/// Writes the place of one lane.
+/// Writes the position of one lane.
 fn put_place([.., place]: &mut Frames, lane: usize, position: &Vector3<f64>) {
     put_row(place, lane, position);
 }
@@ -267,7 +267,7 @@ mod tests {
             for row in 0..ROWS as usize {
                 let target = row % 3 / 2;
                 chain.evaluate(&linkage, &packed, row, target);
-                // Every seventh is turned by as much as a rotation can be, every fourth a point.
+                // Every seventh row has nearly the largest possible rotation, every fourth is a point.
                 let angle = if row % 7 == 6 { 3.0 } else { 1e-3 * row as f64 };
                 let shift = Vector3::new(1e-3, 2e-4 * row as f64, -0.5);
                 let turn = (row % 4 != 3).then(|| Vector3::new(0.6, 0.0, -0.8) * angle);

@@ -1,32 +1,32 @@
-//! Where joints, instruments and targets stand, and the joints between them.
+//! Bodies of joints, instruments and targets, and the joints between them.
 
 use super::Sight;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Body, JointKind, Robot};
 
-/// Where an instrument's frame is.
+/// Parent of an instrument's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stand {
-    /// On a body, with a frame of its own.
+    /// A body, with a frame of its own on it.
     On(Body),
-    /// In the frame of the target of this index: the same frame seen in two configurations.
+    /// The frame of the target of this index: the same frame measured in two configurations.
     Target(usize),
 }
 
-/// A joint on the way from an instrument to a target.
+/// A joint on the kinematic chain from an instrument to a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passed {
     /// Index of the joint.
     pub joint: usize,
-    /// Whether it is passed from its link towards the base, by `exp(-ξθ)`. In a row of two configurations such joints have the values of
+    /// True if it is passed from its link towards the base, by `exp(-ξθ)`. In a row of two configurations such joints have the values of
     /// the instrument's configuration.
     pub backward: bool,
 }
 
-/// Kinds and places of the joints, and the bodies of instruments and targets: what does not change during a fit.
+/// Kinds and parents of the joints, and the bodies of instruments and targets. They do not change during a fit.
 ///
-/// The way from an instrument on body a to a target on body b is `(T_a)⁻¹ T_b`, with T the product of exponentials from the base to the
-/// body. Joints that are on both ways cancel, unless instrument and target were in different configurations.
+/// The kinematic chain from an instrument on body a to a target on body b is `(T_a)⁻¹ T_b`. T is the product of exponentials from the
+/// base to the body. Joints that are on both branches cancel, unless instrument and target were in different configurations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree {
     kinds: Vec<JointKind>,
@@ -54,8 +54,8 @@ impl Tree {
         none.with(instruments, targets)
     }
 
-    /// The tree of a robot with the instruments and targets of a data set, by their names. An instrument without a place in the model stands
-    /// on the base; one whose rows have two configurations sees from the frame of the target with its name, or else of the target that they see.
+    /// Tree of a robot with the instruments and targets of a data set, by their names. An instrument without a pose in the model is on the base.
+    /// One whose rows have two configurations measures from the frame of the target with its name, or else of the target that they measure.
     #[must_use]
     pub fn from_robot(robot: &Robot, data: &Dataset) -> Self {
         let stand = |station: usize| {
@@ -75,20 +75,20 @@ impl Tree {
         Tree::new(robot, instruments, targets)
     }
 
-    /// The same with one of the instruments only.
+    /// The same tree with one of the instruments only.
     pub(crate) fn seen_from(&self, station: usize) -> Self {
         let stand = self.instruments.get(station).copied().unwrap_or(Stand::On(Body::Base));
         self.with(vec![stand], self.targets.clone())
     }
 
-    /// The same with further instruments on the base.
+    /// The same tree with further instruments on the base.
     pub(crate) fn with_further_on_base(&self, further: usize) -> Self {
         let first = self.instruments.first().copied();
         let on_base = std::iter::repeat_n(Stand::On(Body::Base), further);
         self.with(first.into_iter().chain(on_base).collect(), self.targets.clone())
     }
 
-    /// The same with one more target.
+    /// The same tree with one more target.
     pub(crate) fn with_target(&self, body: Body) -> Self {
         let targets = self.targets.iter().copied().chain([body]).collect();
         self.with(self.instruments.clone(), targets)
@@ -102,25 +102,25 @@ impl Tree {
         tree
     }
 
-    /// Revolute or prismatic, a joint.
+    /// Kind of each joint.
     #[must_use]
     pub fn kinds(&self) -> &[JointKind] {
         &self.kinds
     }
 
-    /// Where each instrument stands.
+    /// Parent of each instrument.
     #[must_use]
     pub fn instruments(&self) -> &[Stand] {
         &self.instruments
     }
 
-    /// The body of each target.
+    /// Body of each target.
     #[must_use]
     pub fn targets(&self) -> &[Body] {
         &self.targets
     }
 
-    /// The joints from an instrument to a target, in order.
+    /// Joints from an instrument to a target, in order.
     #[must_use]
     pub fn route(&self, sight: Sight) -> &[Passed] {
         &self.routes[self.route_index(sight)]
@@ -141,7 +141,7 @@ impl Tree {
         self.of_sight[sight]
     }
 
-    /// The target in whose frame an instrument sees, if its frame is a target's.
+    /// Target in whose frame an instrument measures, if its frame is a target's.
     #[must_use]
     pub fn shared(&self, instrument: usize) -> Option<usize> {
         match self.instruments.get(instrument)? {
@@ -155,19 +155,19 @@ impl Tree {
         self.of_sight.len()
     }
 
-    /// Index of a sight among them.
+    /// Index of a sight among these pairs.
     pub(crate) fn sight_index(&self, sight: Sight) -> usize {
         let of_two = usize::from(sight.from.is_some()) * self.instruments.len();
         (of_two + sight.station) * self.targets.len() + sight.target
     }
 
-    /// The joint on whose link a joint stands.
+    /// Joint that carries a joint on its link.
     #[must_use]
     pub fn joint_before(&self, joint: usize) -> Option<usize> {
         self.stands_on.get(joint).and_then(|body| body.joint())
     }
 
-    /// The joints from a body to the base.
+    /// Joints from a body to the base.
     fn towards_base(&self, body: Body) -> Vec<usize> {
         std::iter::successors(body.joint(), |&joint| self.joint_before(joint)).collect()
     }

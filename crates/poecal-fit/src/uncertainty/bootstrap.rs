@@ -1,4 +1,4 @@
-//! Block bootstrap: scatter of predictions when neighbourhoods of rows are drawn with replacement. The only assumption is that
+//! Block bootstrap: scatter of predictions if neighbourhoods of rows are drawn with replacement. The only assumption is that
 //! neighbourhoods are independent.
 
 use rand_chacha::ChaCha8Rng;
@@ -12,28 +12,28 @@ use poecal_model::simulate::random;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::LeastSquares;
 
-/// Most rows of the bootstrap: more are sampled.
+/// Largest number of rows of the bootstrap: more are sampled.
 const SAMPLE: usize = 2000;
-/// Approximate number of rows of a neighbourhood; most and fewest neighbourhoods.
+/// Approximate number of rows of a neighbourhood; largest and smallest number of neighbourhoods.
 const NEIGHBOURHOOD: usize = 4;
 const MOST: usize = 200;
 const LEAST: usize = 10;
-/// Drawings.
+/// Number of bootstrap samples.
 const DRAWINGS: usize = 400;
 
 /// Scatter of predictions at the measured configurations, root mean square distance in metres (theory.md §9 (45)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
-    /// Number of drawings.
+    /// Number of bootstrap samples.
     pub drawings: usize,
-    /// Scatter over the drawings.
+    /// Scatter over the bootstrap samples.
     pub sigma_m: f64,
     /// Scatter by the covariance, for residuals that are white noise.
     pub formal_sigma_m: f64,
 }
 
-/// Draws neighbourhoods of rows with replacement. Each drawing is refitted by one step with the common factor of all rows
-/// (theory.md §9 (45)). `None` if the rows are too few.
+/// Draws neighbourhoods of rows with replacement. Each bootstrap sample is refitted by one step with the common factor of
+/// all rows (theory.md §9 (45)). `None` if the rows are too few.
 #[must_use]
 pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
     let rows = sample_rows(view.rows, SAMPLE);
@@ -70,7 +70,7 @@ pub fn bootstrap(view: &View<'_>, seed: u64) -> Option<Bootstrap> {
         }
         squares += quadratic(&information, &step);
     }
-    // Factors for the degrees of freedom that the unknowns take, for those that the mean takes, and for more rows than the sample.
+    // The factors are for the degrees of freedom of the unknowns, for those of the mean, and for more rows than the sample.
     let freedom = whole.residuals as f64 / (whole.residuals - n) as f64;
     let units = units.len() as f64;
     let share = rows.len() as f64 / view.rows.len() as f64;

@@ -10,7 +10,7 @@ use poecal_numerics::solve::{LeastSquares, Normal};
 
 /// Significance of a figure: standard deviations beyond its mean in white noise.
 pub(crate) const SIGNIFICANT: f64 = 3.0;
-/// Most clusters.
+/// Largest number of clusters.
 const CLUSTERS: usize = 16;
 
 /// `Σ gᵀ H⁻¹ g` over clusters, with the gradient g of a cluster's rows, over its expectation in white noise: the cluster-robust covariance
@@ -42,7 +42,8 @@ pub(crate) fn inflation(
 }
 
 /// `tr(D)` and `tr(D²)` of `D = H_c - H_c²` with the `H_c = H⁻¹ N_c` of theory.md §9 (41), from the inverse of H and the upper triangle of
-/// `N_c` (row-major): mean and half the variance of `gᵀ H⁻¹ g` of a cluster with information `N_c`, in white noise of variance 1.
+/// `N_c` (row-major). They are the mean and half the variance of `gᵀ H⁻¹ g` of a cluster with information `N_c`, in white noise of
+/// variance 1.
 fn share_of(inverse: &DMatrix<f64>, part: &[f64]) -> (f64, f64) {
     let n = inverse.nrows();
     let h = inverse * DMatrix::from_fn(n, n, |i, j| part[i.min(j) * n + i.max(j)]);
@@ -62,7 +63,7 @@ pub(crate) fn clusters(view: &View<'_>, count: usize) -> Vec<Vec<u32>> {
     };
     let mut clusters: Vec<Vec<&[u32]>> = vec![whole];
     while clusters.len() < count {
-        // The largest; of equal ones the first, so that the order is defined.
+        // The largest is split; of equal ones the first, so that the order is defined.
         let Some(largest) = (0..clusters.len()).max_by_key(|&k| (clusters[k].len(), usize::MAX - k)) else {
             break;
         };

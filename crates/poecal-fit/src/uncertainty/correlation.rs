@@ -1,8 +1,8 @@
-//! Which unknowns are known only together.
+//! Unknowns that are determined only together.
 
 /// Correlation from which a pair of unknowns is named.
 const NAMED: f64 = 0.95;
-/// Most pairs that are named.
+/// Largest number of pairs that are named.
 const MOST: usize = 20;
 
 /// Correlations of unknowns, `ρ = σᵢⱼ/(σᵢ σⱼ)`, by their blocks.
@@ -10,14 +10,14 @@ const MOST: usize = 20;
 pub struct Correlations {
     /// For each block and each up to it: the largest size of a correlation between unknowns of the two, 0 to 1.
     pub largest: Vec<Vec<f64>>,
-    /// Pairs of unknowns (by index) with a correlation of 0.95 and more either way, the strongest first; at most 20.
+    /// Pairs of unknowns (by index) with a correlation of 0.95 and more, of either sign, the strongest first; at most 20.
     pub pairs: Vec<(usize, usize, f64)>,
-    /// How many such pairs there are.
+    /// Number of such pairs.
     pub count: usize,
 }
 
 impl Correlations {
-    /// Of a covariance (row-major), of whose unknowns each belongs to a block.
+    /// Correlations of a covariance (row-major); `blocks` has the block of each unknown.
     #[must_use]
     pub fn from_covariance(covariance: &[f64], blocks: &[usize]) -> Self {
         let n = blocks.len();

@@ -1,4 +1,4 @@
-//! Model error, as the residuals show it.
+//! Model error, estimated from the residuals.
 
 use super::folds::CrossValidation;
 use super::remainder::{Attribution, Remainder};
@@ -9,12 +9,12 @@ use poecal_model::measurement::{ByQuantity, Noise, Quantity};
 use poecal_numerics::solve::Normal;
 use poecal_numerics::unit::Unit;
 
-/// Model error and noise, as the residuals show them (theory.md §9 (40) and (41)).
+/// Model error and noise, estimated from the residuals (theory.md §9 (40) and (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discrepancy {
     /// Factor κ of the covariance of the unknowns over that of independent residuals, at least 1.
     pub scatter: f64,
-    /// The factor outside the sampled range, where model error is a bias, which does not average out.
+    /// Factor κ outside the sampled range, where model error is a bias, which does not average out.
     pub extrapolation: f64,
     /// Standard deviation of each component of the model error.
     pub standard_deviation: Noise,
@@ -23,14 +23,14 @@ pub struct Discrepancy {
     /// Source of the residuals of position, and of those of rotation.
     pub attribution: ByQuantity<Attribution>,
     /// Degrees of freedom of these standard deviations and of the variance of the residuals, of positions and of rotations; infinite
-    /// where they are stated.
+    /// if they are stated.
     pub freedom: ByQuantity<f64>,
     /// Correlation of the residuals of consecutive rows, if it is significant.
     pub lag_one: Option<f64>,
 }
 
 impl Discrepancy {
-    /// No model error, and noise that is known.
+    /// No model error, and known noise.
     #[must_use]
     pub fn none() -> Self {
         let zero = Noise::new(0.0, 0.0);
@@ -46,8 +46,8 @@ impl Discrepancy {
     }
 }
 
-/// Attributes the residuals of a fit to robot or instrument, and finds the factors of its covariance (theory.md §9 (41) and (43)). They
-/// count as the robot's unless stated noise or the scatter of repeated measurements explains them and they show no structure.
+/// Attributes the residuals of a fit to robot or instrument, and estimates the factors of its covariance (theory.md §9 (41) and (43)).
+/// They count as the robot's, unless stated noise or the scatter of repeated measurements explains them and they have no structure.
 #[must_use]
 pub fn discrepancy(
     view: &View<'_>,
@@ -93,7 +93,7 @@ pub fn discrepancy(
     }
 }
 
-/// Standard deviation of what the corners of a picture share, if that is what the rows are: the error of the configuration, and no noise.
+/// Standard deviation of the shared error of a picture's corners, if all rows are pictures: an error of the configuration, and no noise.
 fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
     let pictures = &view.session.data.pictures;
     let is_picture = |row: &u32| pictures.of_row(*row).is_some();
@@ -101,7 +101,7 @@ fn of_pictures(view: &View<'_>, quantity: Quantity) -> Option<f64> {
         return None;
     }
     let CommonError { shift_m, turn_rad, about, .. } = pictures.common;
-    // Where it turns about the other of camera and board, what the row is of is carried along: two thirds of the square in each direction.
+    // If it turns about the other of camera and board, the subject of the row is carried along: two thirds of the square in each direction.
     let is_other = |picture: &&Picture| (about == Centre::Camera) != picture.of_camera;
     let arms = pictures.all.iter().filter(is_other);
     let arms = arms.filter_map(|it| view.session.data.observations.get(it.row as usize));

@@ -17,13 +17,13 @@ use poecal_model::simulate::random;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::LeastSquares;
 
-/// Most rows of a cross-validation: more are sampled.
+/// Largest number of rows of a cross-validation: more are sampled.
 const SAMPLE: usize = 2000;
 /// Number of random folds. An end of a joint's range has as many rows as one of them.
 const FOLDS: usize = 5;
 /// Fewest rows that are cross-validated.
 pub const FEWEST_VALIDATED: usize = 2 * FOLDS;
-/// Number of clusters, and of random folds, where sizes of terms are chosen.
+/// Number of clusters, and of random folds, by which sizes of terms are chosen.
 const NEIGHBOURHOODS: usize = 8;
 /// An id column defines groups if it has at most [`MOST_GROUPS`] values with [`LEAST_ROWS`] rows each on average; otherwise its values
 /// name single rows.
@@ -32,11 +32,12 @@ const LEAST_ROWS: usize = 4;
 /// Fewest rows of each station outside a block.
 const FEWEST_OF_STATION: usize = 6;
 
-/// Share of the range of the other rows by which a value beyond it counts as outside, and the least such way, radians or metres.
+/// Distance from the range of the other rows, as a share of it, beyond which a value counts as outside; and its least length, radians or
+/// metres.
 const BEYOND: f64 = 0.1;
 const JITTER: f64 = 1e-3;
 
-/// Step over which errors change as to first order, metres.
+/// Step over which errors change nearly to first order, metres.
 const SMALL_M: f64 = 1e-4;
 
 /// Rows that are left out together.
@@ -55,8 +56,8 @@ pub struct LeftOut {
     pub rows: usize,
     /// Root mean square error of each measured quantity, metres or radians.
     pub rms: Measured<f64>,
-    /// Growth of the squared error of lengths, as of position, when these rows are left out, over its expectation by the covariance of the
-    /// unknowns (theory.md §9 (43)).
+    /// Growth of the squared error of lengths, such as positions, if these rows are left out. It is relative to its expectation by the
+    /// covariance of the unknowns (theory.md §9 (43)).
     pub growth: f64,
 }
 
@@ -74,11 +75,11 @@ pub struct OutsideRange {
 pub struct CrossValidation {
     /// Random folds, left out in turn; one entry for all of them.
     pub random: LeftOut,
-    /// The rows of random folds, in order, with their errors.
+    /// Rows of random folds, in order, with their errors.
     pub errors: Vec<(u32, RowError)>,
-    /// Those of them outside the range of the others; `None` if there are none.
+    /// Rows outside the range of the others; `None` if there are none.
     pub outside: Option<OutsideRange>,
-    /// Root mean square error of each measured quantity in those that are not.
+    /// Root mean square error of each measured quantity in the other rows.
     pub inside: Measured<f64>,
     /// Blocks, left out in turn: the ends of each joint's range, files, groups of equal `id`.
     pub blocked: Vec<LeftOut>,
@@ -87,7 +88,7 @@ pub struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// The block that was predicted worst.
+    /// Block with the largest error.
     #[must_use]
     pub fn worst(&self) -> Option<&LeftOut> {
         self.blocked.iter().max_by(|a, b| a.rms.lead().total_cmp(&b.rms.lead()))
@@ -131,7 +132,7 @@ pub fn cross_validate(view: &View<'_>, seed: u64) -> Option<CrossValidation> {
     Some(CrossValidation { random: random.result(name), errors, outside, inside, blocked, sampled })
 }
 
-/// Whether each row of a fold has a joint beyond the range of the other rows.
+/// For each row of a fold, true if it has a joint beyond the range of the other rows.
 fn outside_of_others(view: &View<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool> {
     let others: Vec<u32> = sample.iter().copied().filter(|row| !fold.contains(row)).collect();
     let ranges = ranges(&view.session, &others);
@@ -144,8 +145,8 @@ fn outside_of_others(view: &View<'_>, sample: &[u32], fold: &[u32]) -> Vec<bool>
     fold.iter().map(is_outside).collect()
 }
 
-/// Parts of a subsample of the rows, of at most so many, that are left out in turn: the ends of every joint's range, each file and each
-/// repeated `id`, clusters of neighbouring configurations, and random folds. Beside them the subsample.
+/// Parts of a subsample of at most `most` rows that are left out in turn, and the subsample. They are the ends of every joint's range,
+/// each file and each repeated `id`, clusters of neighbouring configurations, and random folds.
 pub fn parts_to_leave_out(view: &View<'_>, most: usize, seed: u64) -> (Vec<u32>, Vec<Vec<u32>>) {
     let sample = sample_rows(view.rows, most);
     let few = View { rows: &sample, ..*view };
@@ -167,7 +168,7 @@ fn random_folds(view: &View<'_>, sample: &[u32], count: usize, seed: u64) -> Vec
     configurations.chunks(part).map(|part| Fold { name: String::new(), rows: part.concat() }).collect()
 }
 
-/// The ends of each joint's range, the rows of each file, and those of each `id` that several rows share.
+/// Ends of each joint's range, the rows of each file, and those of each `id` that several rows share.
 fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
     let mut folds = Vec::new();
     let size = sample.len() / FOLDS;
@@ -192,11 +193,11 @@ fn blocks(view: &View<'_>, sample: &[u32]) -> Vec<Fold> {
     folds
 }
 
-/// Whether the rows outside a fold still determine the device frame of each of several stations.
+/// True if the rows outside a fold still determine the device frame of each of several stations.
 fn leaves_all_stations(view: &View<'_>, sample: &[u32], fold: &[u32]) -> bool {
     let stations = view.session.data.station_count();
     let count = |rows: &[u32], station| view.session.data.seen_from(station, rows).len();
-    // Of others no row was fitted.
+    // Stations without fitted rows do not count.
     let fitted = || (0..stations).filter(|it| count(sample, *it) > 0);
     fitted().count() == 1 || fitted().all(|it| count(sample, it) >= count(fold, it) + FEWEST_OF_STATION)
 }
@@ -219,11 +220,11 @@ fn groups(sample: &[u32], name: impl Fn(u32) -> Option<String>) -> Vec<Fold> {
 #[derive(Clone, Copy, Default)]
 struct ErrorSums {
     rows: usize,
-    /// Of each quantity, with the number of rows that measured it.
+    /// Squared error of each quantity, with the number of rows that measured it.
     parts: ByQuantity<(f64, usize)>,
-    /// Of all lengths.
+    /// Squared error of all lengths.
     lengths: f64,
-    /// The same by the fit of all rows.
+    /// Squared error of all lengths by the fit of all rows.
     before: f64,
     /// Expected growth of the squared errors of lengths, by the covariances: denominator of theory.md §9 (43).
     expected: f64,
@@ -322,7 +323,7 @@ impl<'a> Downdated<'a> {
         Some((sums, without))
     }
 
-    /// Sum over rows of `tr P_p`, the variance of the predicted place in square metres (theory.md §9 (43)).
+    /// Sum over rows of `tr P_p`, the variance of the predicted position in square metres (theory.md §9 (43)).
     fn position_variance(&self, layout: &Layout, rows: &[u32], covariance: &DMatrix<f64>) -> f64 {
         let linkage = Linkage::new(&self.estimate);
         let of = |some: &[u32]| {
@@ -334,8 +335,8 @@ impl<'a> Downdated<'a> {
     }
 }
 
-/// Errors of some rows after a step, to first order. Directions that the rows hardly determine lead far, along which a fit follows a curved
-/// valley: at the end of the straight step are errors that no fit has.
+/// Errors of some rows after a step, to first order. Steps are long in directions that the rows hardly determine, along which a fit follows
+/// a curved valley. The end of the straight step has errors that no fit has.
 fn moved_errors(
     problem: &Problem<'_>,
     estimate: &Estimate,
@@ -353,8 +354,8 @@ fn moved_errors(
 /// Number of clusters of configurations that are left out in turn when fits are compared.
 const CLUSTERS: usize = 10;
 
-/// Mean loss of the rows, each predicted by the fit without its cluster of configurations (theory.md §9 (42)). `weights` holds the weight
-/// of each row of the data in the fit; of many rows a sample is taken. `None` if the rows without a cluster do not determine the unknowns.
+/// Mean loss of the rows, each predicted by the fit without its cluster of configurations (theory.md §9 (42)). `weights` has the weight of
+/// each row of the data in the fit; many rows are sampled. `None` if the rows without a cluster do not determine the unknowns.
 #[must_use]
 pub fn leave_clusters_out(
     view: &View<'_>,

@@ -1,4 +1,4 @@
-//! Directions of the unknowns that no row sees: covariances are stated where predictions move least along them (theory.md §9 (39e)).
+//! Unobservable directions of the unknowns: covariances are stated where predictions move least along them (theory.md §9 (39e)).
 
 use nalgebra::{DMatrix, RowDVector};
 
@@ -8,24 +8,24 @@ use crate::problem::Layout;
 use crate::state::{Linkage, Sight, sample_rows};
 use poecal_numerics::linalg;
 
-/// Most rows whose predictions choose.
+/// Largest number of rows whose predictions choose.
 const ROWS: usize = 240;
 
-/// Effect of a direction of length 1 on the places, mean square, below which it is only that of links that bend and stay behind.
+/// Effect of a direction of length 1 on the positions, mean square, below which it is only that of links that bend and stay behind.
 const NO_EFFECT: f64 = 2e-4;
 
-/// What no row sees, and what the unknowns do along it.
+/// Unobservable directions, and the motion of the unknowns along them.
 pub(super) struct Gauge {
     /// A column for each direction.
     directions: DMatrix<f64>,
-    /// Parts of the directions in a step of all unknowns: those that leave the predicted places nearest.
+    /// Parts of the directions in a step of all unknowns: those with the smallest motion of the predicted positions.
     parts: DMatrix<f64>,
-    /// Share of each direction that is growth, where nothing has a length.
+    /// Share of each direction that is growth, if no measurement has a length.
     growth: Option<RowDVector<f64>>,
 }
 
 impl Gauge {
-    /// That of a fit; `None` where its rows see everything that they predict.
+    /// Gauge of a fit; `None` if its rows determine all that they predict.
     pub(super) fn from_view(view: &View<'_>, layout: &Layout) -> Option<Self> {
         let View { session, estimate, .. } = *view;
         let mut unseen = layout.base_motions(estimate, &session, view.rows);
@@ -60,7 +60,7 @@ impl Gauge {
         })
     }
 
-    /// A covariance (row-major) with what no row sees chosen so that predicted places in the rows' configurations move least.
+    /// A covariance (row-major) with unobservable directions chosen so that predicted positions in the rows' configurations move least.
     pub(super) fn fixed(&self, covariance: &[f64]) -> Vec<f64> {
         let n = self.directions.nrows();
         let all = DMatrix::from_row_slice(n, n, covariance);
@@ -69,7 +69,7 @@ impl Gauge {
         (&both + both.transpose()).scale(0.5).as_slice().to_vec()
     }
 
-    /// Standard deviation of the size of everything, as a share, where no row sees it.
+    /// Relative standard deviation of the size of the robot and the cell, if no row determines it.
     pub(super) fn size_sigma(&self, covariance: &[f64]) -> Option<f64> {
         let n = self.directions.nrows();
         let own = self.growth.as_ref()? * &self.parts;

@@ -1,9 +1,9 @@
-//! How well unknowns are known when others are held.
+//! Uncertainty of unknowns if others are held.
 
 use super::{View, inflated_by};
 
 /// Covariance (row-major) of the `kept` unknowns of a fit with all others held: (39) with the rows and columns of N and Λ that were kept
-/// (theory.md §9 (39b)). From the upper triangle of N; κ is the `scatter`. `None` if a number is not finite.
+/// (theory.md §9 (39b)). It is computed from the upper triangle of N; κ is the `scatter`. `None` if a number is not finite.
 pub fn held_covariance(
     view: &View<'_>,
     gram: &[f64],

@@ -1,4 +1,4 @@
-//! How far a calibrated robot can be trusted, configuration by configuration (theory.md §9 (39) to (43)).
+//! Uncertainty of a calibrated robot, configuration by configuration (theory.md §9 (39) to (43)).
 
 mod bootstrap;
 mod clusters;
@@ -56,19 +56,19 @@ const TOGETHER: usize = 32;
 /// Covariance of an estimate's unknowns, and the model error beside it (theory.md §9 (39) and (41)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// The estimate.
+    /// Estimate.
     pub estimate: Estimate,
-    /// The unknowns and their scales.
+    /// Unknowns and their scales.
     pub layout: Layout,
     /// Covariance of the scaled unknowns (square metres), row-major `n × n`, with [`Discrepancy::scatter`] in it.
     pub covariance: Vec<f64>,
-    /// The covariance outside the sampled range, with [`Discrepancy::extrapolation`]; `None` where that is no larger.
+    /// Covariance outside the sampled range, with [`Discrepancy::extrapolation`]; `None` if that is no larger.
     pub covariance_outside: Option<Vec<f64>>,
-    /// Standard deviation of the size of all that was measured, as a share, where nothing that was measured has a length: it is in no covariance.
+    /// Relative standard deviation of the size of the robot and the cell, if no measurement has a length: it is in no covariance.
     pub size_sigma: Option<f64>,
     /// Sampled range of each joint, radians or metres.
     pub sampled: Vec<[f64; 2]>,
-    /// Model error that the residuals show.
+    /// Model error, estimated from the residuals.
     pub discrepancy: Discrepancy,
     /// Metres that a radian counts in the scaled unknowns.
     pub length_m: f64,
@@ -138,13 +138,14 @@ impl Uncertainty {
         self.discrepancy.freedom.map(Quantile::new)
     }
 
-    /// Covariances of predicted places alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device frame.
+    /// Covariances of predicted positions alone, square metres: `P_p` of theory.md §9 (40), in the axes of the first station's device
+    /// frame.
     pub fn positions(&self, packed: &Packed, target: usize) -> Vec<Matrix3<f64>> {
         self.spread::<1>((0..packed.rows()).map(|row| in_first((row, target))), packed).into_flattened()
     }
 
-    /// Derivatives by the scaled unknowns of `Σ dᵀ p` over rows of joint values, with the predicted position p of a target in each and
-    /// vectors d, both in the axes of the first station's device frame.
+    /// Derivatives by the scaled unknowns of `Σ dᵀ p` over rows of joint values. p is the predicted position of a target in each, d a
+    /// vector, both in the axes of the first station's device frame.
     #[must_use]
     pub fn along(&self, packed: &Packed, target: usize, vectors: &[Vector3<f64>]) -> Vec<f64> {
         let linkage = Linkage::new(&self.estimate);
@@ -176,7 +177,7 @@ impl Uncertainty {
         beyond.fold(0.0, f64::max).min(1.0)
     }
 
-    /// Covariances of the place, and with two `PARTS` of the rotation: theory.md §9 (40).
+    /// Covariances of the position, and with two `PARTS` of the rotation: theory.md §9 (40).
     fn spread<const PARTS: usize>(
         &self,
         rows: impl Iterator<Item = (usize, Sight)>,
@@ -224,7 +225,7 @@ fn inflated(gram: &[f64], n: usize, view: &View<'_>, inflation: f64) -> Option<V
     inflated_by((gram, n), prior, view.variance, inflation)
 }
 
-/// The same by the upper triangles of N and Λ, and whether the fit contained the prior.
+/// The same covariance by the upper triangles of N and Λ; `is_fitted` is true if the fit contained the prior.
 fn inflated_by(
     (gram, n): (&[f64], usize),
     (prior, is_fitted): (&[f64], bool),
@@ -265,7 +266,7 @@ fn covariance(factor: &Factor, variance: f64) -> Option<Vec<f64>> {
 }
 
 /// Mean over rows of `v_kᵀ v_l`, row-major: the Q of theory.md §9 (45). `δᵀ Q δ` is the mean square distance by which a step δ moves
-/// predicted places.
+/// predicted positions.
 pub fn position_information(view: &View<'_>, rows: &[u32]) -> Vec<f64> {
     let problem = view.problem(Vec::new());
     let layout = problem.layout();

@@ -36,7 +36,7 @@ pub(crate) fn products(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Vec<Matrix3<f64>> 
     let mut sums = vec![Matrix3::zeros(); a.nrows() / 3];
     let height = a.nrows().max(1);
     let (left, right) = (a.as_slice().chunks_exact(height), b.as_slice().chunks_exact(height));
-    // Column after column, as they lie in memory.
+    // Columns one after the other, in the order of memory.
     for (a, b) in left.zip(right) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.as_chunks::<3>().0.iter().zip(b.as_chunks::<3>().0)) {
             for (sum, b) in sum.data.0.iter_mut().zip(b) {

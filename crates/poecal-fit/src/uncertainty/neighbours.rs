@@ -7,11 +7,11 @@ use super::view::View;
 use crate::state::{sample_rows, turn_to_first};
 use poecal_model::measurement::ByQuantity;
 
-/// Rows whose nearest neighbour is sought, and rows among which it is sought.
+/// Number of rows whose nearest neighbour is sought, and of rows among which it is sought.
 const PROBES: usize = 400;
 const NEIGHBOURS: usize = 4000;
 
-/// Of each quantity, whether the residuals of one subject in neighbouring configurations are correlated significantly (theory.md §9,
+/// For each quantity, true if the residuals of one subject in neighbouring configurations are correlated significantly (theory.md §9,
 /// *Neighbours*).
 pub(crate) fn alike(view: &View<'_>) -> ByQuantity<bool> {
     let pool = sample_rows(view.rows, NEIGHBOURS);
@@ -76,7 +76,7 @@ impl PairSums {
         self.components += components;
     }
 
-    /// In white noise the correlation of m components has the standard deviation `1/√m`.
+    /// True if the correlation is significant. In white noise that of m components has the standard deviation `1/√m`.
     fn is_significant(&self) -> bool {
         self.products > SIGNIFICANT / (self.components as f64).sqrt() * self.squares
     }

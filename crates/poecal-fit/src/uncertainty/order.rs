@@ -46,7 +46,7 @@ pub(crate) fn correlation(view: &View<'_>) -> Option<f64> {
     (components >= 3 * PAIRS && !is_chance && correlation.is_finite()).then_some(correlation)
 }
 
-/// Whether some joint moves little from row to row.
+/// True if some joint moves little from row to row.
 fn is_ordered(view: &View<'_>, rows: &[u32]) -> bool {
     let count = rows.len().max(1) as f64;
     let joints = view.session.robot.joints.len();

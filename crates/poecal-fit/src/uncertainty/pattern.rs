@@ -1,4 +1,4 @@
-//! Errors that follow the position of one joint, as its transmission or load causes them.
+//! Errors that follow the position of one joint, as caused by its transmission or load.
 
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use poecal_model::robot::JointKind;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// Most rows of the search: more are sampled.
+/// Largest number of rows of the search: more are sampled.
 const SAMPLE: usize = 4000;
 /// Number of shape functions of a joint's position.
 const SHAPES: usize = 5;
@@ -68,7 +68,7 @@ pub fn strongest_pattern(view: &View<'_>, normal: &Normal) -> Option<(usize, Pat
                 JointKind::Revolute => (joint.z.cross(&(chain.target.translation - joint.origin)), joint.z),
                 JointKind::Prismatic => (joint.z, Vector3::zeros()),
             };
-            // What the first quantity shows of it.
+            // Component of the motion that the first quantity measures.
             let mut motion = Vector3::zeros();
             let channels = observation.measurement.channels();
             for (k, component) in channels.components(quantity) {
@@ -119,7 +119,7 @@ impl ShapeSums {
         }
     }
 
-    /// The squares that the best amplitudes explain, `R_j` of theory.md §9 (44), and the root mean square of that error of the joint.
+    /// Squares that the best amplitudes explain, `R_j` of theory.md §9 (44), and the root mean square of that error of the joint.
     fn explained(&self, rows: usize) -> Option<(f64, f64)> {
         let scale = (0..SHAPES).map(|i| self.gram[i * SHAPES + i]).fold(0.0, f64::max);
         let factor = linalg::cholesky(&self.gram, SHAPES, 1e-9 * scale)?;

@@ -5,14 +5,14 @@ use nalgebra::Matrix3;
 use poecal_model::measurement::{ByQuantity, Quantity};
 use poecal_numerics::distributions::f_quantile;
 
-/// Covariances of a predicted target's place (square metres) and turn (square radians), device axes (theory.md §9 (40)).
+/// Covariances of a predicted target's position (square metres) and rotation (square radians), device axes (theory.md §9 (40)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictedError {
-    /// Of the place, square metres.
+    /// Covariance of the position, square metres.
     pub position: Matrix3<f64>,
-    /// Of the rotation vector, square radians.
+    /// Covariance of the rotation vector, square radians.
     pub rotation: Matrix3<f64>,
-    /// Factors by which the bounds exceed those of known covariances, of each quantity.
+    /// For each quantity, factors by which the bounds exceed those of known covariances.
     pub quantiles: ByQuantity<Quantile>,
 }
 
@@ -42,8 +42,8 @@ impl PredictedError {
     }
 }
 
-/// The 95 % quantile of the length of a normal vector with this covariance, in the root of its unit. The squared length is taken as a
-/// scaled χ² of equal mean and variance (satterthwaite1946), whose quantile follows wilson1931.
+/// 95 % quantile of the length of a normal vector with this covariance, in the root of its unit. The squared length is approximated
+/// by a scaled χ² of equal mean and variance (satterthwaite1946), whose quantile follows wilson1931.
 #[must_use]
 pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     const Z: f64 = 1.644_853_626_951_472_7;
@@ -58,7 +58,7 @@ pub fn bound(covariance: &Matrix3<f64>) -> f64 {
     (squares / trace * quantile).sqrt()
 }
 
-/// Growth of 95 % bounds where the variance was estimated from few residuals: quantiles of F instead of χ² (abramowitz1964).
+/// Growth of 95 % bounds if the variance was estimated from few residuals: quantiles of F instead of χ² (abramowitz1964).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantile {
     /// Squares of the factors for distributions of 1, 2 and 3 degrees of freedom.
@@ -69,8 +69,8 @@ impl Quantile {
     /// A variance that is known.
     pub const KNOWN: Quantile = Quantile { growth: [1.0; 3] };
 
-    /// A variance that was estimated with so many degrees of freedom: 95 % quantiles of F over those of χ² over its degrees of freedom
-    /// (theory.md §9, below (40)).
+    /// Quantile of a variance that was estimated with these degrees of freedom: 95 % quantiles of F over those of χ² over its degrees
+    /// of freedom (theory.md §9, below (40)).
     #[must_use]
     pub fn new(freedom: f64) -> Self {
         const MANY: f64 = 1e5;
@@ -88,7 +88,7 @@ impl Quantile {
     pub fn bound(&self, covariance: &Matrix3<f64>) -> f64 {
         let (trace, squares) = (covariance.trace(), covariance.norm_squared());
         let freedom = if squares > 0.0 { (trace * trace / squares).clamp(1.0, 3.0) } else { 3.0 };
-        // A parabola through the three.
+        // The growth is a parabola through the three.
         let [one, two, three] = self.growth;
         let t = freedom - 2.0;
         let growth = two + 0.5 * t * (three - one) + 0.5 * t * t * (three - 2.0 * two + one);
@@ -106,7 +106,7 @@ mod tests {
         let position = Matrix3::identity() * 1e-8;
         let error = PredictedError { position, rotation: Matrix3::zeros(), quantiles };
         assert!((error.sigma_position_m() - 3f64.sqrt() * 1e-4).abs() < 1e-15);
-        // Of three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
+        // With three equal components, the distance is below 2.7955 standard deviations in 95 % of all cases.
         assert!((error.bound_position_m() - 2.7955e-4).abs() < 1e-6);
     }
 

@@ -1,4 +1,4 @@
-//! The size of a robot's deviations from nominal, and of the terms of its joints, beside their priors: theory.md §9 (39d).
+//! Size of a robot's deviations from nominal, and of the terms of its joints, relative to their priors: theory.md §9 (39d).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,28 +7,28 @@ use super::view::View;
 use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 
-/// Number of deviations that the belief counts for that they have the size of the prior.
+/// Weight of the assumption that deviations have the size of the prior, as a number of deviations.
 const BELIEVED: f64 = 2.0;
-/// Least size of deviations beside the prior, squared.
+/// Least size of deviations relative to the prior, squared.
 const LEAST: f64 = 0.0025;
 /// Share of the largest information below which a direction has no prior.
 const NONE: f64 = 1e-12;
-/// Steps by which the sizes of the parts are found together; each halves what is left at least.
+/// Largest number of steps by which the sizes of the parts are estimated together; each halves the remaining change at least.
 const STEPS: usize = 40;
 
-/// A part of the prior, with what it makes of the covariance.
+/// A part of the prior, with its part of the covariance.
 struct Part {
     information: DMatrix<f64>,
     /// `s⁴ H⁻¹ Λ H⁻¹`.
     covariance: DMatrix<f64>,
-    /// Square of the deviations in units of the prior, and what noise makes of it.
+    /// Square of the deviations in units of the prior, and its expectation from noise.
     found: f64,
     of_noise: f64,
     size: f64,
 }
 
-/// A covariance (row-major) with the parts of the prior at the sizes that the deviations show: (39d). From that of the prior's sizes, and the
-/// normal equations of the measurements.
+/// A covariance (row-major) with the parts of the prior scaled to the sizes of the deviations: (39d). The input is the covariance with the
+/// prior's sizes, and the normal equations of the measurements.
 pub(super) fn own_size(covariance: Vec<f64>, measured: &Normal, view: &View<'_>) -> Vec<f64> {
     let n = measured.gradient.len();
     let prior = view.prior;
@@ -38,7 +38,7 @@ pub(super) fn own_size(covariance: Vec<f64>, measured: &Normal, view: &View<'_>)
     let formal = DMatrix::from_row_slice(n, n, &linalg::inverse(&factor)) * view.variance;
     let pull = measured.gradient.iter().zip(&prior.normal.gradient);
     let pull = DVector::from_iterator(n, pull.map(|(data, prior)| data / view.variance + prior));
-    // Terms that are possible and were not fitted are where one step would take them.
+    // Terms that are possible and were not fitted are at the end of one step.
     let step = &formal * pull;
     let mut full = DMatrix::from_row_slice(n, n, &covariance);
     let parts = prior.parts.iter().filter(|part| part.gram.iter().any(|value| *value > 0.0));
@@ -64,9 +64,9 @@ impl Part {
         Part { information, covariance, found: found.max(0.0), of_noise: 0.0, size: 1.0 }
     }
 
-    /// What deviations of the size of the prior make of the square that is found: the trace of `(I - P)²`.
+    /// Expected square for deviations of the size of the prior: the trace of `(I - P)²`.
     fn determined(&self, formal: &DMatrix<f64>) -> f64 {
-        // Unknowns that the part says nothing of are no directions of it.
+        // Unknowns without information in the part are no directions of it.
         let own: Vec<usize> =
             (0..self.information.nrows()).filter(|&at| self.information[(at, at)] > 0.0).collect();
         let some = self.information.select_rows(&own).select_columns(&own);
@@ -78,7 +78,7 @@ impl Part {
     }
 }
 
-/// The sizes of all parts, each with those of the others.
+/// Estimates the sizes of all parts, each with those of the others.
 fn settle(parts: &mut [Part], formal: &DMatrix<f64>) {
     let determined: Vec<f64> = parts.iter().map(|part| part.determined(formal)).collect();
     for _ in 0..STEPS {

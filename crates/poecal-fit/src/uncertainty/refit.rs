@@ -1,4 +1,4 @@
-//! Uncertainty of predictions when device frame and targets are refitted from the very rows that are predicted
+//! Uncertainty of predictions if device frame and targets are refitted from the very rows that are predicted
 //! (theory.md §9, *Coverage*).
 
 use nalgebra::DMatrix;
@@ -19,18 +19,18 @@ const SMALL: f64 = 1e-12;
 pub struct Refit<'a> {
     /// Robot and rows.
     pub session: Session<'a>,
-    /// The refitted device frame and targets.
+    /// Refitted device frame and targets.
     pub found: &'a Estimate,
-    /// The refitted unknowns.
+    /// Refitted unknowns.
     pub free: &'a [Parameter],
     /// Scatter of the rows beside the unknowns of the calibration: measurement noise and model error, the D of theory.md §9.
     pub scatter: Noise,
-    /// For each target of the rows, which of the calibration's targets it is; `None` if it is refitted.
+    /// For each target of the rows, its number among the calibration's targets; `None` if it is refitted.
     pub targets: &'a [Option<usize>],
 }
 
 impl Uncertainty {
-    /// The uncertainty of predictions after a refit, with the targets of its rows: the covariance `(I - P)(A Σ Aᵀ + D)(I - P)ᵀ` of
+    /// Uncertainty of predictions after a refit, with the targets of its rows: the covariance `(I - P)(A Σ Aᵀ + D)(I - P)ᵀ` of
     /// theory.md §9, *Coverage*. It is written as a covariance of more unknowns: the refitted ones follow the errors of the kept
     /// ones. `None` if the refitted unknowns are not determined.
     #[must_use]
@@ -48,7 +48,7 @@ impl Uncertainty {
         let (before, anew) = joint.split_at(places.len());
         let information = |a: usize, b: usize| gram[a.min(b) * n + a.max(b)];
 
-        // Information of the rows about the refitted unknowns, and how these follow the others.
+        // Information of the rows about the refitted unknowns, and the derivatives of these by the others.
         let count = anew.len();
         let own: Vec<f64> = anew
             .iter()
@@ -87,7 +87,7 @@ impl Uncertainty {
         Some(Uncertainty { estimate, layout, covariance, covariance_outside, ..self.clone() })
     }
 
-    /// The parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
+    /// Parameters that stay as calibrated, targets by their numbers among the rows', and the places of their unknowns.
     fn kept(&self, refit: &Refit<'_>) -> (Vec<Parameter>, Vec<usize>) {
         let targets = refit.targets;
         let is_refitted = |parameter: &Parameter| {

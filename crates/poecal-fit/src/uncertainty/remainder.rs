@@ -17,13 +17,13 @@ use poecal_numerics::unit::Unit;
 const REPEATED: f64 = 20.0;
 /// False-alarm probability of the test of lack of fit.
 const CHANCE: f64 = 0.01;
-/// Rows up to which the effective number of unknowns of rotations is computed exactly.
+/// Number of rows up to which the effective number of unknowns of rotations is computed exactly.
 const FEW: usize = 300;
 /// Noise of positions that count as not measured.
 const UNMEASURED_M: f64 = 1e9;
-/// Largest share of what is left that counts as the rounding of the readings.
+/// Largest share of the residual variance that counts as the rounding of the readings.
 const ROUNDED: f64 = 0.5;
-/// Configurations that the belief counts for that they err alike.
+/// Weight of the assumption that the errors of configurations are alike, as a number of configurations.
 const BELIEVED: f64 = 2.0;
 /// Residuals below this (metres, radians) are rounding.
 const ROUNDING: f64 = 1e-9;
@@ -33,9 +33,9 @@ const ROUNDING: f64 = 1e-9;
 pub struct Part {
     /// Mean square of a component over its degrees of freedom; between configurations, if rows are repeated.
     pub mean_square: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom.
     pub freedom: f64,
-    /// Those of configurations: what all numbers of one are off by varies together where it is the robot's.
+    /// Degrees of freedom by configurations: the errors of all numbers of one configuration vary together if they are the robot's.
     pub of_configurations: f64,
     /// Mean square of a component within configurations, and its degrees of freedom; both zero without repeated rows.
     pub within: (f64, f64),
@@ -43,19 +43,19 @@ pub struct Part {
     pub repeats: f64,
     /// Mean stated variance of a component, and the mean square over it, if the noise of all rows is stated.
     pub stated: Option<(f64, f64)>,
-    /// Variance of a component that the rounding of the readings makes.
+    /// Variance of a component by the rounding of the readings.
     pub rounded: f64,
 }
 
-/// Whether the residuals count as the robot's or the instrument's.
+/// Source of the residuals: robot or instrument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Attribution {
-    /// The robot's: nothing shows that they are measurement noise.
+    /// The robot: no evidence that they are measurement noise.
     Robot,
-    /// The instrument's: stated noise explains them, and no structure is found in them.
+    /// The instrument: stated noise explains them, and no structure is found in them.
     StatedNoise,
-    /// The instrument's: measurements that were repeated in one configuration scatter as much as the others.
+    /// The instrument: measurements that were repeated in one configuration scatter as much as the others.
     Repeats,
 }
 
@@ -80,7 +80,7 @@ impl Part {
         Some(is_within_band(ratio, self.freedom))
     }
 
-    /// F test of lack of fit: whether the mean square between configurations exceeds that within them. `None` if too few rows are
+    /// F test of lack of fit: true if the mean square between configurations exceeds that within them. `None` if too few rows are
     /// repeated.
     fn lacks_fit(&self) -> Option<bool> {
         let (within, freedom) = self.within;
@@ -88,7 +88,7 @@ impl Part {
             .then(|| self.mean_square > within * f_quantile(CHANCE, self.freedom.max(1.0), freedom))
     }
 
-    /// Residuals of which a part of this standard deviation is the robot's, and the rest the instrument's.
+    /// Variance components of residuals, of which a part with this standard deviation is the robot's, and the rest the instrument's.
     #[must_use]
     pub fn shared(&self, robot: f64) -> Settled {
         let ratio = self.stated.map_or(1.0, |(_, ratio)| ratio.max(1.0));
@@ -101,10 +101,10 @@ impl Part {
         }
     }
 
-    /// Attributes the residuals to robot or instrument, by whether they show structure (theory.md §9, between (40) and (41)).
+    /// Attributes the residuals to robot or instrument, by their structure (theory.md §9, between (40) and (41)).
     #[must_use]
     pub fn settled(&self, structured: bool) -> Settled {
-        // Rounding is no error of the robot; but for half of what is left it may be that exact readings only look rounded.
+        // Rounding is no error of the robot; but for half of the variance, exact readings may only look rounded.
         let robot = |variance: f64, instrument: f64| {
             let rounded = self.rounded.min(ROUNDED * variance.max(0.0));
             Settled {
@@ -153,17 +153,17 @@ impl Part {
 /// Variances of the residuals of a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remainder {
-    /// Of each quantity.
+    /// Variances of each quantity.
     pub parts: ByQuantity<Part>,
-    /// Variance of the whitened residuals, of configurations if rows are repeated; 1 where stated noise explains it.
+    /// Variance of the whitened residuals, of configurations if rows are repeated; 1 if stated noise explains it.
     pub variance: f64,
     /// Effective number of unknowns that the measurements determine (theory.md §6 (34)).
     pub effective_unknowns: f64,
-    /// Numbers measured, those that were measured again in one configuration counted once.
+    /// Number of measured values; those that were measured again in one configuration count once.
     pub numbers: usize,
 }
 
-/// Error of a row, the same as if its noise were the same in all directions, and its noise.
+/// Error of a row, the same error with noise that is the same in all directions, and its noise.
 struct Deviation {
     error: RowError,
     alike: RowError,
@@ -189,7 +189,7 @@ impl ResidualSums {
     fn add(&mut self, quantity: Quantity, rows: &[Deviation]) {
         let mut rows: Vec<&Deviation> =
             rows.iter().filter(|row| !row.error.part(quantity).is_empty()).collect();
-        // Rows repeat each other where they have the same components.
+        // Rows repeat each other if they have the same components.
         while let Some(first) = rows.first() {
             let kind = first.error.measured(quantity);
             let (own, rest) = rows.into_iter().partition(|row| row.error.measured(quantity) == kind);
@@ -203,7 +203,7 @@ impl ResidualSums {
         }
     }
 
-    /// Adds errors, each beside itself as if noise were the same in all directions, with its standard deviation.
+    /// Adds errors in pairs (as measured, and with noise that is the same in all directions), each with its standard deviation.
     fn add_vectors(&mut self, rows: &[([Vector3<f64>; 2], f64)], components: usize) {
         if rows.is_empty() {
             return;
@@ -240,7 +240,7 @@ impl ResidualSums {
             of_configurations: (share * freedom + BELIEVED).min(freedom),
             within: (if is_repeated { self.within / within_freedom } else { 0.0 }, within_freedom),
             repeats,
-            // Of all rows: noise alone explains those within configurations as well as the others.
+            // The ratio is of all rows: noise alone explains those within configurations as well as the others.
             stated: (stated && self.components > 0)
                 .then(|| (variance, if is_repeated { self.between(freedom) } else { self.whitened / whole })),
             rounded: 0.0,
@@ -253,11 +253,11 @@ impl ResidualSums {
     }
 }
 
-/// Variances of the residuals of a fit, given its normal information at the optimum: the s² of theory.md §9 (39), and mean squares of
-/// position (m²) and rotation (rad²) with the unknowns of each taken off (theory.md §6 (34)).
+/// Variances of the residuals of a fit, from its normal information at the optimum: the s² of theory.md §9 (39), and mean squares of
+/// position (m²) and rotation (rad²) less the unknowns of each (theory.md §6 (34)).
 #[must_use]
 pub fn remainder(view: &View<'_>, normal: &Normal, layout: &Layout) -> Remainder {
-    // A sample of so many rows gives the same variances.
+    // A sample of this size has the same variances.
     let sample = sample_rows(view.rows, MANY_ROWS);
     let share = sample.len() as f64 / view.rows.len().max(1) as f64;
     let sums = residual_sums(view, &sample);
@@ -350,7 +350,7 @@ fn effective_unknowns(view: &View<'_>, normal: &Normal) -> f64 {
     n as f64 - variance * linalg::trace_of_quotient(&factor, &view.prior.normal.gram, n)
 }
 
-/// Effective number of unknowns that the rotation rows determine, `tr(N⁻¹ N_R)`: theory.md §6 (34). Of many rows it is in proportion.
+/// Effective number of unknowns that the rotation rows determine, `tr(N⁻¹ N_R)`: theory.md §6 (34). With many rows it is in proportion.
 fn determined_by_rotations(
     view: &View<'_>,
     normal: &Normal,
@@ -386,7 +386,8 @@ fn determined_by_rotations(
 mod tests {
     use super::*;
 
-    /// Twenty places and thirty unknowns: thirty numbers are left, which are off by what ten configurations are off by, and two are believed.
+    /// Twenty configurations and thirty unknowns leave thirty of sixty numbers. These have the degrees of freedom of ten configurations,
+    /// and two are assumed.
     #[test]
     fn what_is_the_robots_varies_with_the_configuration() {
         let sums = ResidualSums {

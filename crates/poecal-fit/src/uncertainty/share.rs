@@ -1,9 +1,9 @@
-//! What the measurements said of an estimate, and what the prior said.
+//! Shares of the measurements and of the prior in an estimate.
 
 use super::{View, factor};
 use poecal_numerics::linalg::{self, Factor};
 
-/// Shares of the measurements and of the prior in what is known of functions of the unknowns (theory.md §9 (39a)).
+/// Shares of the measurements and of the prior in the information on functions of the unknowns (theory.md §9 (39a)).
 pub struct Shares<'a> {
     /// Upper triangle of N, the information of the measurements.
     gram: &'a [f64],
@@ -12,14 +12,14 @@ pub struct Shares<'a> {
 }
 
 impl<'a> Shares<'a> {
-    /// Of a fit; `None` if it contained no prior.
+    /// Shares of a fit; `None` if it contained no prior.
     pub fn new(view: &View<'_>, gram: &'a [f64], n: usize) -> Option<Self> {
         let factor = factor(gram, n, view.prior, view.variance).filter(|_| view.prior.is_fitted)?;
         Some(Shares { gram, n, factor })
     }
 
-    /// The measurements' share in what is known of a vector, by the derivatives of its parts: `Σ xᵀN x / Σ aᵀx` with `x = H⁻¹a`, which is 1
-    /// where the measurements say all of it and 0 where the prior does. `None` of what no unknown moves.
+    /// Determined share of a vector, by the derivatives of its parts: `Σ xᵀN x / Σ aᵀx` with `x = H⁻¹a`. It is 1 if the measurements
+    /// determine all of the vector and 0 if the prior does. `None` if no unknown moves it.
     pub fn of_measurements(&self, derivatives: &[Vec<f64>]) -> Option<f64> {
         let (mut measured, mut all) = (0.0, 0.0);
         for a in derivatives {

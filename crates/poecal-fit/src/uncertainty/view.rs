@@ -15,11 +15,11 @@ use poecal_numerics::solve::Normal;
 pub struct PriorInformation {
     /// Upper triangle of the information, 1/m², and the gradient.
     pub normal: Normal,
-    /// Whether the fit contained the prior; if not, it only bounds undetermined directions.
+    /// True if the fit contained the prior; if not, it only bounds undetermined directions.
     pub is_fitted: bool,
-    /// The parts of it that are of the joints' axes and of their terms; none of a prior that the fit did not contain.
+    /// Parts for the joints' axes and for their terms; empty for a prior that the fit did not contain.
     pub parts: Vec<Normal>,
-    /// Weight that the fit gave it beside whitened residuals; none if that was the variance of these.
+    /// Weight of the prior in the fit relative to whitened residuals; `None` if that was the variance of these.
     pub weight: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ impl PriorInformation {
     pub fn new(prior: Option<&Prior>, estimate: &Estimate, layout: &Layout, length_m: f64) -> Self {
         if let Some(prior) = prior {
             let mut found = Self::of_weight((prior, 1.0 / prior.looseness(estimate)), estimate, layout);
-            // Terms that were freed one by one say nothing of each other.
+            // Terms that were freed one by one have no information on each other.
             found.parts.truncate(1);
             return found;
         }
@@ -40,7 +40,7 @@ impl PriorInformation {
         PriorInformation { normal, is_fitted: false, parts: Vec::new(), weight: None }
     }
 
-    /// The information of a prior of some weight that was in the fit.
+    /// Information of a prior of some weight that was in the fit.
     #[must_use]
     pub fn of_weight((prior, weight): (&Prior, f64), estimate: &Estimate, layout: &Layout) -> Self {
         let of = |prior: &Prior| {
@@ -58,7 +58,7 @@ impl PriorInformation {
         PriorInformation { normal: Normal::new(n), is_fitted: false, parts: Vec::new(), weight: None }
     }
 
-    /// The same with directions that are a choice, such as motions of the base without effect: as if they were known.
+    /// The same information with directions that are a choice, such as motions of the base without effect: as if they were known.
     #[must_use]
     pub fn with_chosen(mut self, directions: &[Vec<f64>], length_m: f64) -> Self {
         const CHOSEN: f64 = 1e-6;
@@ -84,19 +84,19 @@ impl PriorInformation {
 pub struct View<'a> {
     /// Robot and measurements.
     pub session: Session<'a>,
-    /// The rows that were fitted.
+    /// Rows of the fit.
     pub rows: &'a [u32],
-    /// The unknowns.
+    /// Unknowns.
     pub free: &'a [Parameter],
-    /// The noise by which residuals were whitened.
+    /// Noise with which residuals were whitened.
     pub noise: Noise,
-    /// Whether that noise is stated rather than estimated, of positions and of rotations.
+    /// For each quantity, true if that noise is stated rather than estimated.
     pub noise_is_stated: ByQuantity<bool>,
     /// Prior of the unknowns.
     pub prior: &'a PriorInformation,
     /// Variance of the whitened residuals.
     pub variance: f64,
-    /// The optimum.
+    /// Optimum.
     pub estimate: &'a Estimate,
 }
 

@@ -1,4 +1,4 @@
-//! Bundles of pictures: their derivatives beside differences, and what corners share beside whitened poses.
+//! Bundles of pictures: their derivatives compared with differences, and the shared error of corners compared with whitened poses.
 
 use nalgebra::DVector;
 use poecal_fit::parameters::{DeviceFrame, Parameter, TargetFrame, screw_axes};
@@ -21,7 +21,7 @@ fn photographed(in_hand: bool, noise_px: f64) -> Photographed {
     made
 }
 
-/// Nominal axes, and camera and board where they are.
+/// Nominal axes, with camera and board at their poses.
 fn start(made: &Photographed) -> Estimate {
     let held = made.nominal.home * made.tip_from_held;
     Estimate::new(&made.nominal, vec![held], made.base_from_other.inverse())
@@ -88,7 +88,7 @@ fn the_gradient_is_that_of_differences() {
     assert!(worst < 1e-5, "{worst:e}");
 }
 
-/// What the corners share, eliminated, beside poses whitened with the same error.
+/// The shared error of corners, eliminated, has the result of poses whitened with the same error.
 #[test]
 fn what_corners_share_is_eliminated() {
     let mut worst: f64 = 0.0;
@@ -103,7 +103,7 @@ fn what_corners_share_is_eliminated() {
         let of = |common| bundle(session, &start, &lens, common).normal(&start, &numbers);
         let (with, without) = (of(common), of(CommonError::NONE));
         let n = with.gradient.len();
-        // By the rows of the session, whitened with the same error: the robot's part.
+        // The rows of the session, whitened with the same error, have the robot's part.
         let mut data = made.data.clone();
         data.pictures.common = common;
         let (linkage, mut chain) = (Linkage::new(&start), Chain::default());
@@ -133,7 +133,7 @@ fn what_corners_share_is_eliminated() {
         assert!(with.cost < without.cost);
     }
     println!("information of the robot's unknowns: {worst:.1e} beside that of whitened poses");
-    // The root of a matrix and back.
+    // The tolerance is for the root of a matrix and back.
     assert!(worst < 1e-6, "{worst:e}");
 }
 

@@ -1,5 +1,5 @@
-//! Anything may see anything: instruments and targets on any body of a tree, in one configuration or two. Sensitivities of every way between
-//! them, and ranks in closed form (theory.md §4 and §7).
+//! Instruments and targets on any body of a tree, in one configuration or two. Tests of the sensitivities of every kinematic chain between
+//! them, and of ranks in closed form (theory.md §4 and §7).
 
 use crate::reference;
 use nalgebra::Vector3;
@@ -31,7 +31,7 @@ type Function = fn(&Pose) -> Measurement;
 const POINT: Function = |pose| Measurement::point(pose.translation);
 const POSE: Function = |pose| Measurement::of_pose(pose);
 
-/// What can be measured, with the number of unknowns that one target and its first instrument add to those of the axes.
+/// Possible measurements, with the number of unknowns that one target and its first instrument add to those of the axes.
 const FUNCTIONS: [(&str, Function, usize); 6] = [
     ("poses", POSE, 6),
     ("points", POINT, 3),
@@ -46,7 +46,7 @@ fn components(pose: &Pose, measured: [bool; 3]) -> Measurement {
     Measurement::components([of(0), of(1), of(2)])
 }
 
-/// What else can be measured, at numbers that no constraint would allow.
+/// Further measurements, with values that no constraint would allow.
 const OTHERS: [(&str, Function); 4] = [
     ("sockets", |pose| Measurement::socket(pose.translation)),
     ("flush", |pose| {
@@ -57,7 +57,7 @@ const OTHERS: [(&str, Function); 4] = [
     ("changes", |pose| Measurement::distance_change(pose.translation.norm() + 0.3)),
 ];
 
-/// Something that an instrument sees, by their names; in two configurations if `apart`.
+/// A measured target and its instrument, by their names; in two configurations if `apart`.
 #[derive(Clone, Copy, Debug)]
 struct Sees {
     instrument: Option<&'static str>,
@@ -70,7 +70,7 @@ const fn sees(instrument: Option<&'static str>, target: Option<&'static str>, se
     Sees { instrument, target, seen, apart: false }
 }
 
-/// A robot with somebody's measurements of it.
+/// A robot with the measurements of it.
 struct Cell {
     name: &'static str,
     robot: Robot,
@@ -84,7 +84,7 @@ fn place(generator: &mut ChaCha8Rng, scale: f64) -> Pose {
     Pose::new(turn, random::direction(generator) * scale)
 }
 
-/// Joints of these kinds with random axes: `r` turns, `p` slides.
+/// Joints of these kinds with random axes: `r` revolute, `p` prismatic.
 fn joints(kinds: &str, prefix: &str, generator: &mut ChaCha8Rng) -> Vec<Joint> {
     let joint = |(index, kind): (usize, char)| {
         let name = format!("{prefix}{}", index + 1);
@@ -141,7 +141,7 @@ fn torso() -> Robot {
     robot
 }
 
-/// Joints below the base frame that move the instrument, so that the way goes back and forth on one arm.
+/// Joints below the base frame move the instrument, so that the chain goes back and forth on one arm.
 fn cells() -> Vec<Cell> {
     let tip = |seen: Function| vec![sees(None, None, seen)];
     let camera = |seen: Function| vec![sees(Some("camera"), Some("board"), seen)];
@@ -159,7 +159,7 @@ fn cells() -> Vec<Cell> {
     let two_hands = |of: &'static str| {
         vec![sees(Some(of), Some("left_hand"), POSE), sees(Some(of), Some("right_hand"), POSE)]
     };
-    // The chest is on the torso: what is below it cancels. The head's own joint is seen.
+    // The chest is on the torso: joints below it cancel. The head's own joint is seen.
     all.push(cell("chest sees both hands", torso(), two_hands("chest"), 48 + 12));
     all.push(cell("head sees both hands", torso(), two_hands("eyes"), 52 + 12));
     // A device on the floor sees the torso as well; a second one shares its targets.
@@ -170,7 +170,7 @@ fn cells() -> Vec<Cell> {
     all
 }
 
-/// The frame of a station, or its place if no row sees its axes.
+/// Frame of a station, or its position if no row determines its axes.
 fn device(data: &Dataset, station: usize, about: Vector3<f64>) -> Parameter {
     let freedom = data.device_freedom(station, &data.all_rows());
     Parameter::DeviceFrame(if freedom == Freedom::FRAME {
@@ -245,10 +245,10 @@ impl Measured {
     }
 }
 
-/// The same cell whose joints sag, wobble and tilt, with coefficients that are not zero.
+/// The same cell with joints that sag, wobble and tilt, with coefficients that are not zero.
 fn deviating(cell: &Cell) -> Cell {
     let all: Vec<usize> = (0..cell.robot.joints.len()).collect();
-    // In all directions of the shortest arm, whose terms are fewest.
+    // All directions are used for the shortest arm, whose terms are fewest.
     let directions = if all.len() <= 4 { Gives::All } else { Gives::Tilting };
     let (mut robot, _) = cell.robot.giving(&all, directions);
     let gravity = Gravity::of_unit_weights(&robot, Vector3::new(0.2, -0.1, -0.9));
@@ -282,8 +282,8 @@ fn with_terms(made: &Measured, terms: impl Iterator<Item = (usize, Term)>) -> Ve
     free
 }
 
-/// The gradient of the kernels is the derivative of their own cost by every unknown, for every way from instrument to target; and their
-/// products are those of the formulas row by row.
+/// The gradient of the kernels is the derivative of their own cost by every unknown, for every kinematic chain from instrument to
+/// target. Their products are those of the formulas row by row.
 #[test]
 fn sensitivities_of_every_way_are_those_of_differences() {
     for cell in cells() {
@@ -300,7 +300,7 @@ fn sensitivities_of_every_way_are_those_of_differences() {
     }
 }
 
-/// The same of what is touched, of a direction, and of instruments whose zero and scale are unknown.
+/// The same test for contacts, for a direction, and for instruments whose zero and scale are unknown.
 #[test]
 fn sensitivities_of_every_kind_are_those_of_differences() {
     for (name, seen) in OTHERS {
@@ -324,10 +324,10 @@ fn sensitivities_of_every_kind_are_those_of_differences() {
     }
 }
 
-/// The same for joints that sag, wobble and tilt: of gives only their terms are unknown.
+/// The same test for joints that sag, wobble and tilt: for compliant joints only their terms are unknown.
 #[test]
 fn sensitivities_of_what_joints_do_are_those_of_differences() {
-    // Of the torso, whose terms are hundreds, the case that has all ways.
+    // For the torso, which has hundreds of terms, only the case with all chains is tested.
     let all_ways = |cell: &Cell| cell.robot.is_serial() || cell.name == "floor and chest";
     for cell in cells().into_iter().filter(all_ways) {
         let made = Measured::new(&deviating(&cell), 24, 0.05);
@@ -339,7 +339,7 @@ fn sensitivities_of_what_joints_do_are_those_of_differences() {
     }
 }
 
-/// The same of clocks that are off, of rows that were measured in motion.
+/// The same test for clocks with errors, with rows that were measured in motion.
 #[test]
 fn sensitivities_of_clocks_are_those_of_differences() {
     for cell in cells() {
@@ -364,7 +364,7 @@ fn sensitivities_of_clocks_are_those_of_differences() {
         let mut free = with_terms(&made, [(0, Term::RATIO)].into_iter());
         let clocks = stations.flat_map(|station| ClockTerm::ALL.map(|term| ClockUnknown { station, term }));
         free.extend(clocks.map(Parameter::ClockUnknown));
-        // Of an instrument that sees in two configurations, no clock moves anything.
+        // For an instrument that measures in two configurations, no clock moves anything.
         free.retain(|it| !matches!(it, Parameter::ClockUnknown(_)) || cell.sees.iter().all(|it| !it.apart));
         compare(&made, &estimate, free, cell.name);
     }
@@ -424,7 +424,7 @@ fn of_order(order: usize) -> [Term; 2] {
     [TermKind::Sine, TermKind::Cosine].map(|it| it.numbered(order))
 }
 
-/// A robot of joints that turn, each with gives in all directions, and harmonics of orders 1 and 2.
+/// A robot of revolute joints, each with compliant joints in all directions, and harmonics of orders 1 and 2.
 fn giving_everywhere(count: usize) -> Robot {
     let rigid = chain(&"r".repeat(count), 41);
     let (mut robot, _) = rigid.giving(&(0..count).collect::<Vec<_>>(), Gives::All);
@@ -434,11 +434,11 @@ fn giving_everywhere(count: usize) -> Robot {
     robot
 }
 
-/// theory.md §6: which of the terms of a bearing the screws have already, by the rank of the information. A tilted and shifted axis is a first
-/// harmonic across it, 4 a joint; a point's own turning is one of the last joint. Nothing else.
+/// theory.md §6: terms of a bearing that the screws have already, by the rank of the information. A tilted and shifted axis is a first
+/// harmonic across it, 4 a joint; a point's own rotation is one of the last joint. There are no others.
 #[test]
 fn ranks_of_what_bearings_do_are_those_of_the_closed_form() {
-    // Joints, what is seen, order, and the directions in which screws do the same.
+    // The columns are joints, measurement, order, and the number of directions in which screws do the same.
     let cases: [(usize, &str, Function, u8, usize); 6] = [
         (6, "poses", POSE, 1, 24),
         (6, "poses", POSE, 2, 0),
@@ -514,7 +514,7 @@ fn what_joints_turn_is_told_from_their_screws() {
     }
 }
 
-/// Errors are those of the formulas, whatever the ways of the rows.
+/// Errors are those of the formulas, for all kinematic chains of the rows.
 #[test]
 fn errors_of_every_way_are_measured_minus_predicted() {
     for cell in cells() {

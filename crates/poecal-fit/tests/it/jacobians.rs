@@ -12,13 +12,13 @@ use poecal_numerics::solve::LeastSquares;
 use poecal_testing::largest::larger;
 use std::f64::consts::PI;
 
-/// What the differences below can tell: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
+/// Accuracy of the differences below: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
 const RELATIVE: f64 = 1e-6;
 /// Rounding of one whitened residual of order one, which differences magnify by the inverse of their step.
 const ROUNDING: f64 = 2e-15;
 /// Metres that a radian counts.
 const LENGTH_M: f64 = 0.7;
-/// Different for position and rotation, so that a mix-up shows.
+/// Values differ for position and rotation, so that a mix-up is detected.
 const NOISE: Noise = Noise::new(0.5, 0.8);
 
 /// Makes a measurement of a target that was seen at a pose.
@@ -27,7 +27,7 @@ type Measure = fn(Pose) -> Measurement;
 const MEASUREMENTS: [(&str, Measure); 2] =
     [("point", |seen| Measurement::point(seen.translation)), ("pose", |seen| Measurement::of_pose(&seen))];
 
-/// In the order of the chain, as a problem takes them.
+/// Parameters in the order of the chain, as a problem takes them.
 fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     let about = Vector3::new(0.1, -0.2, 0.3);
     let mut all = vec![
@@ -43,7 +43,7 @@ fn parameters(robot: &Robot) -> Vec<(&'static str, Parameter)> {
     all
 }
 
-/// Joint values and residual rotations (radians; metres for sliding joints).
+/// Joint values and residual rotations (radians; metres for prismatic joints).
 const JOINT_VALUES: [f64; 4] = [0.0, 1e-8, 0.9, PI - 1e-8];
 const RESIDUAL_ANGLES: [f64; 4] = [0.0, 1e-8, 1.1, PI - 1e-3];
 
@@ -63,14 +63,14 @@ fn device() -> Pose {
     Pose::from_xyz_rpy([0.3, -0.2, 0.1], [-0.5, 0.9, 2.0])
 }
 
-/// The device stands at two places.
+/// An estimate with the device at two stations.
 fn estimate(robot: &Robot) -> Estimate {
     let mut estimate = Estimate::new(robot, vec![robot.home], device());
     estimate = estimate.with_further_devices(vec![Pose::from_xyz_rpy([0.2, -0.1, 0.15], [-0.5, 0.9, 1.4])]);
     estimate
 }
 
-/// What one measurement needs to be predicted.
+/// Input of the prediction of one measurement.
 struct Row {
     robot: Robot,
     data: Dataset,
@@ -78,7 +78,7 @@ struct Row {
 }
 
 impl Row {
-    /// A measurement from one of the device's places that is off the estimate's prediction by a shift and a turn.
+    /// A measurement from one of the stations, with a shift and a turn from the estimate's prediction.
     fn new(
         robot: &Robot,
         estimate: &Estimate,
@@ -202,7 +202,7 @@ fn normal_information_is_made_of_the_same_columns() {
     let estimate = estimate(&robot);
     for (name, make) in MEASUREMENTS {
         let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, 1), 0.3);
-        // A target is unknown as a place or as a frame.
+        // A target is unknown as a position or as a frame.
         let all = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
         let problem = row.problem(all.filter(|it| !matches!(it, Parameter::TargetPlace(_))).collect());
         let columns = row.columns(&estimate, problem.layout());
@@ -249,7 +249,7 @@ fn hessian_error_from(make: Measure, station: usize, turn: f64) -> f64 {
     let robot = robot();
     let estimate = estimate(&robot);
     let row = Row::new(&robot, &estimate, &[0.4, 0.2, -1.3, 2.2], (make, station), turn);
-    // A place and a frame of the same target are not both free in any problem: their shifts are one and the same.
+    // A position and a frame of the same target are not both free in any problem: their shifts are one and the same.
     let free = parameters(&robot).into_iter().map(|(_, parameter)| parameter);
     let free =
         free.filter(|it| !matches!(it, Parameter::TargetPlace(_)) && it.model().has_curvature()).collect();
@@ -281,7 +281,7 @@ fn full_hessian_of_poses_is_exact_to_first_order_in_the_residual() {
     let (_, make) = MEASUREMENTS[1];
     let (near, far) = (hessian_error(make, 0.01), hessian_error(make, 0.1));
     println!("poses: {near:.1e} at a residual of 0.01 rad, {far:.1e} at 0.1 rad");
-    // What is left out is of second order: at a tenth of the residual, a hundredth of the error (with room for the next order).
+    // The omitted part is of second order: at a tenth of the residual, a hundredth of the error (with room for the next order).
     assert!(far < 0.1_f64.powi(2) && near < far / 50.0);
 }
 

@@ -63,7 +63,7 @@ fn misread_pictures_are_named_and_others_are_not() {
     println!(
         "of {count} sessions each: mirrored {mirrored}, readings of the picture after it {before}, before it {after}; clean ones: none"
     );
-    // 19 of 20.
+    // The limit is 19 of 20.
     for named in [mirrored, before, after] {
         assert!(20 * named as u64 >= 19 * count, "{named} of {count}");
     }

@@ -1,4 +1,4 @@
-//! Joint readings and measurements with nothing that says what belongs to what: pairs by the nominal robot.
+//! Joint readings and measurements without an assignment of one to the other: pairs by the nominal robot.
 
 use poecal_fit::start::{Agreement, Pair, Unpaired};
 use poecal_model::measurement::{Dataset, Kind, Observation, Source};
@@ -14,7 +14,7 @@ fn below(random: &mut ChaCha8Rng, count: usize) -> usize {
     (random.next_u64() % count as u64) as usize
 }
 
-/// The order in which was measured.
+/// Order of the measurements.
 type Shots = dyn Fn(&mut ChaCha8Rng) -> Vec<usize>;
 
 /// Joint readings of a session, and its measurements in some order without them.
@@ -24,7 +24,7 @@ struct Session {
     data: Dataset,
 }
 
-/// A robot that is off by 0.2 degrees and 1 mm a joint, measured with noise of 0.05 mm and 0.01 degrees.
+/// A robot with errors of 0.2 degrees and 1 mm a joint, measured with noise of 0.05 mm and 0.01 degrees.
 fn session(kind: Kind, count: usize, seed: u64, shots: &Shots) -> (Session, Vec<usize>) {
     let simulation = Simulation {
         error_rotation_rad: 0.2_f64.to_radians(),
@@ -122,7 +122,7 @@ fn wrong_orders_of_equal_counts_are_named() {
 #[test]
 fn lists_of_very_unequal_length_have_no_order_and_take_no_time() {
     let (session, _) = session(Kind::POINT, 24, 3, &|_| (0..24).collect());
-    // As many rows as a recording has, in no order.
+    // There are as many rows as in a recording, in no order.
     let rows = (0..5600).flat_map(|at| {
         let width = session.data.reading_names().len();
         let row = at * 7 % 24;

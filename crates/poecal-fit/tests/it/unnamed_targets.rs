@@ -1,4 +1,4 @@
-//! Several targets without names, and what looks like them.
+//! Several targets without names, and similar cases.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -6,7 +6,7 @@ use poecal_fit::forensics::{DiagnosisOptions, diagnose};
 use poecal_model::measurement::{Dataset, Measurement};
 use poecal_model::simulate::{Kind, Simulation, elbow};
 
-/// The statements on rows of 30 configurations, of which each shows what `seen` makes of the tip.
+/// Statements on rows of 30 configurations; the positions of each are those that `seen` computes from the tip.
 fn statements(seen: impl Fn(usize, Pose) -> Vec<Vector3<f64>>) -> Vec<String> {
     let made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
     let mut data = Dataset::new(made.data.reading_names().to_vec());
@@ -37,7 +37,7 @@ fn targets_without_names_are_told_by_their_distances() {
 
 #[test]
 fn wrong_rows_are_no_targets() {
-    // A wrong row in some configurations, each somewhere else.
+    // A wrong row in some configurations, each at another position.
     let found = statements(|row, pose| {
         let wrong = pose.translation + Vector3::new(0.03, 0.02, 0.01) * (row + 1) as f64;
         if row % 3 == 0 { vec![pose.translation, wrong] } else { vec![pose.translation] }

@@ -1,4 +1,4 @@
-//! The reference of the kernels: every measurement and parameter by its own formulas, row after row.
+//! Reference of the kernels: every measurement and parameter by its own formulas, row after row.
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, TargetTwist};
@@ -50,7 +50,8 @@ pub(crate) fn for_rows(
     }
 }
 
-/// The target where its instrument's zero and scale have it, and the twists of all unknowns as motions of it (theory.md §4 (15d)).
+/// The target at the position that the zero and scale of its instrument yield, and the twists of all unknowns as motions of it (theory.md
+/// §4 (15d)).
 fn as_read(problem: &Problem<'_>, state: &Estimate, chain: &Chain, twists: &mut [TargetTwist]) -> Pose {
     let range = state.range(chain.station);
     if range == Range::default() {

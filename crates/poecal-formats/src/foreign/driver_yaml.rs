@@ -1,4 +1,4 @@
-//! Origins of joints by link or joint, in YAML, as Universal Robots' driver, uFactory's and Franka's descriptions have them.
+//! Origins of joints by link or joint, in YAML, in the forms of Universal Robots' driver, uFactory's and Franka's descriptions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -29,7 +29,7 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Links> {
         Err(ErrorKind::Model.error(format!("found {found}, expected {EXPECTED}")).in_file(path))
     };
     let Some(first) = values.first() else { return refuse("no values".to_owned()) };
-    // Franka's numbers lie deeper, and have nothing above.
+    // Franka's numbers are nested more deeply, below no other key.
     let is_franka = first.keys.get(1).is_some_and(|key| key == "kinematic");
     let own: &[&str] = if is_franka { &["kinematic"] } else { &[] };
     let above: &[&str] = if is_franka { &[] } else { &["kinematics"] };
@@ -51,7 +51,7 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Links> {
     let names: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
     let unknown = values.iter().find(|value| match parts(value, above, own) {
         Some((key, _)) => !names.contains(key),
-        // Joint limits, masses and a checksum may stand beside, but no other origin.
+        // Joint limits, masses and a checksum may be beside, but no other origin.
         None => strip(&value.keys, above).and_then(<[String]>::split_first).is_some_and(|(key, rest)| {
             let is_joint = names.contains(key.as_str()) || key.strip_prefix("joint").is_some_and(is_number);
             is_joint && !rest.is_empty() && strip(rest, own).is_some()
@@ -116,7 +116,7 @@ pub(crate) fn ur_arm(frames: &AxisFrames) -> Links {
     serial("ur", "base_link_inertia", &names, "tool0", frames)
 }
 
-/// A serial arm of joints that turn about z.
+/// A serial arm of joints that rotate about z.
 fn serial(name: &str, base: &str, names: &[(String, String)], tip: &str, frames: &AxisFrames) -> Links {
     let mut links = Links::new(name);
     let mut parent = links.add(base, None);

@@ -1,4 +1,4 @@
-//! Links and joints, and the URDF that says them.
+//! Links and joints, and the equivalent URDF.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,11 +17,11 @@ pub(crate) struct Links {
     names: Names,
     joint_names: Names,
     pub(crate) joints: Vec<LinkJoint>,
-    /// What the file states beyond what is read, a sentence.
+    /// Contents of the file that are not read, a sentence.
     pub(crate) unread: Option<String>,
 }
 
-/// Names that are there, those of the file among them from the beginning, and those that were made.
+/// Names in use: those of the file, from the beginning, and those that were added.
 #[derive(Default)]
 struct Names {
     of_file: BTreeSet<String>,
@@ -35,7 +35,7 @@ impl Names {
         if self.used.insert(name.to_owned()) { name.to_owned() } else { self.free(name) }
     }
 
-    /// A name that no one has: the wanted one, or with a number behind.
+    /// A name that is not in use: the wanted one, or with a number at its end.
     fn free(&mut self, wanted: &str) -> String {
         let count = self.made.entry(wanted.to_owned()).or_default();
         let mut name = wanted.to_owned();
@@ -69,7 +69,7 @@ pub(crate) struct LinkJoint {
     pub(crate) mimic: Option<Mimic>,
 }
 
-/// What a joint does, as URDF has it.
+/// Kind of motion of a joint in URDF.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LinkJointKind {
     Fixed,
@@ -80,7 +80,7 @@ pub(crate) enum LinkJointKind {
 }
 
 impl LinkJointKind {
-    /// The motion by a value; none of a joint that is fixed or has several degrees of freedom.
+    /// The motion by a value; `None` for a joint that is fixed or has several degrees of freedom.
     pub(crate) fn motion(self, axis: &Unit<Vector3<f64>>, value: f64) -> Option<Pose> {
         let along = axis.into_inner() * value;
         match self {
@@ -103,7 +103,7 @@ impl Links {
         Links { name: name.to_owned(), ..Links::default() }
     }
 
-    /// Keeps the names of the file's links and joints from those that are made.
+    /// Reserves the names of the file's links and joints, so that added ones differ.
     pub(crate) fn keep_names(&mut self, links: BTreeSet<String>, joints: BTreeSet<String>) {
         self.names.of_file = links;
         self.joint_names.of_file = joints;
@@ -123,7 +123,7 @@ impl Links {
         name
     }
 
-    /// Whether there is, or will be, a link of this name.
+    /// True if there is, or will be, a link of this name.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.names.of_file.contains(name) || self.names.used.contains(name)
     }

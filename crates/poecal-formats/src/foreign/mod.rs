@@ -1,5 +1,5 @@
-//! Models in forms of simulators and makers. Each is read as links and joints, and the URDF that says the same is the robot's document: so
-//! chains are selected, and results written, as for any URDF.
+//! Models in forms of simulators and makers. Each is read as links and joints, and the equivalent URDF is the robot's document. So chains are
+//! selected, and results written, as for any URDF.
 //!
 //! A new form is a module that makes links and joints, and a variant of [`Form`].
 
@@ -22,7 +22,7 @@ pub enum Form {
     Mjcf,
     /// Gazebo's model.
     Sdf,
-    /// Origins of joints, as drivers and descriptions of arms have them.
+    /// Origins of joints, in files of drivers and descriptions of arms.
     DriverYaml,
     /// `calibration.conf` and `urcontrol.conf` of a controller of Universal Robots.
     UrConf,
@@ -54,12 +54,12 @@ impl Form {
         }
     }
 
-    /// The file beside, without which a text says too little.
+    /// The file beside that an incomplete text needs.
     pub fn sibling(self, text: &str, path: &Path) -> Option<PathBuf> {
         (self == Form::UrConf).then(|| ur_conf::sibling(text, path)).flatten()
     }
 
-    /// The URDF that says what a text says, with the one of its sibling.
+    /// The URDF that is equivalent to a text and its sibling.
     pub fn read(
         self,
         text: &str,
@@ -80,7 +80,7 @@ impl Form {
             Form::DriverYaml => driver_yaml::read(text, path),
             Form::UrConf => ur_conf::read(text, path, beside),
         }?;
-        // Its places are in no file.
+        // Its lines are in no file.
         UrdfDocument::parse(&links.urdf(), path, selection)
             .map(|document| document.made_from(self.name(), links.unread.clone()))
             .map_err(|error| error.without_line())

@@ -1,5 +1,5 @@
-//! The controller's files of an arm of Universal Robots: `urcontrol.conf` with its nominal table of Denavit and Hartenberg, and
-//! `calibration.conf` with what the maker's calibration adds to it.
+//! The controller's files of an arm of Universal Robots: `urcontrol.conf` with its nominal DH table, and `calibration.conf` with the corrections of
+//! the maker's calibration.
 
 use std::path::{Path, PathBuf};
 
@@ -13,13 +13,13 @@ use poecal_storage::numbers::LARGEST_NUMBER;
 
 /// Number of joints.
 const JOINTS: usize = 6;
-/// What the maker's calibration adds to a, d, alpha and theta.
+/// Corrections of a, d, alpha and theta by the maker's calibration.
 const DELTAS: [&str; 4] = ["delta_a", "delta_d", "delta_alpha", "delta_theta"];
-/// What the text must have.
+/// Required contents of the text.
 const EXPECTED: &str =
     "a = [...], d = [...] and alpha = [...] of six numbers in [DH], as in the controller's urcontrol.conf";
 
-/// The file beside a `calibration.conf` that has the nominal table, if the text does not have it itself.
+/// The file beside a `calibration.conf` with the nominal table, if the text does not have it itself.
 pub(crate) fn sibling(text: &str, path: &Path) -> Option<PathBuf> {
     let lines = lines(text, path);
     let has = |section: &str, key: &str| lines.iter().any(|line| line.section == section && line.key == key);
@@ -27,7 +27,7 @@ pub(crate) fn sibling(text: &str, path: &Path) -> Option<PathBuf> {
     (is_delta && !has("DH", "a")).then(|| path.with_file_name("urcontrol.conf"))
 }
 
-/// Of a text and the one beside it.
+/// The arm of a text and of the one beside it.
 pub(crate) fn read(text: &str, path: &Path, beside: Option<(&str, &Path)>) -> Result<Links> {
     let mut lines = lines(text, path);
     lines.extend(beside.into_iter().flat_map(|(text, path)| self::lines(text, path)));
@@ -109,7 +109,7 @@ impl Line<'_> {
         let mut numbers = Vec::new();
         for word in inside.split(',').map(str::trim) {
             let number: f64 = word.parse().map_err(|_| refuse(format!("`{word}`")))?;
-            // Nearly parallel axes put the maker's lengths at hundreds of metres.
+            // The maker's lengths are hundreds of metres for nearly parallel axes.
             if !number.is_finite() || number.abs() > LARGEST_NUMBER {
                 return Err(refuse(format!("`{word}`")));
             }

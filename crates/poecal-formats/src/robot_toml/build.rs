@@ -184,7 +184,7 @@ fn joint_of_line(
         let message = format!("the direction of {of} is zero, expected a direction, such as [0, 0, 1]");
         return Err(context.error(direction.span(), message));
     }
-    // Scaled first, so that tiny numbers do not vanish when squared.
+    // The vector is scaled first, so that tiny numbers do not vanish when squared.
     let axis = axis / axis.amax();
     let point = point
         .map(|point| context.metres(*point.get_ref(), point.span(), &of).map(Vector3::from))
@@ -293,7 +293,7 @@ fn limits(context: &Context, table: &JointTable) -> Result<Option<Limits>> {
     Ok(Some(Limits { lower, upper }))
 }
 
-/// Reading of a joint, through mimic relations. A leader outside the chain is read beside it, in the follower's unit.
+/// Reading of a joint, through mimic relations. A leader outside the chain is read too, in the follower's unit.
 fn reading(context: &Context, tables: &BTreeMap<&str, &JointTable>, table: &JointTable) -> Result<Reading> {
     let find = |name: &str| tables.get(name).copied();
     let follows = |name: &str| -> Result<Option<Reading>> {

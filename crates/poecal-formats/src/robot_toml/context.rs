@@ -1,4 +1,4 @@
-//! Numbers of the file in SI, checked, with their places for messages.
+//! Numbers of the file in SI, checked, with their positions for messages.
 
 use std::ops::Range;
 use std::path::Path;
@@ -15,7 +15,7 @@ use poecal_storage::numbers::LARGEST_NUMBER;
 /// Rounding of tables with four digits, in unit vectors, quaternions and rotation matrices.
 pub(crate) const TABLE_ROUNDING: f64 = 2e-3;
 
-/// Text, for places, and units.
+/// Text, for positions, and units.
 pub(crate) struct Context<'a> {
     pub(crate) text: &'a str,
     pub(crate) path: &'a Path,
@@ -23,7 +23,7 @@ pub(crate) struct Context<'a> {
     pub(crate) angle: AngleUnit,
 }
 
-/// Where a value stands, if it is there.
+/// Byte range of a value, if it exists.
 pub(crate) fn span<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
     value.as_ref().map(Spanned::span)
 }
@@ -33,7 +33,7 @@ impl Context<'_> {
         ErrorKind::Model.error(message).at_offset(self.path, self.text, span.start)
     }
 
-    /// Refuses the first of the keys that is there.
+    /// Refuses the first of the keys that exists.
     pub(crate) fn refuse<const N: usize>(
         &self,
         keys: [(&str, Option<Range<usize>>); N],

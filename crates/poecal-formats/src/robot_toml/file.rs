@@ -1,4 +1,4 @@
-//! The tables and keys of the file, as serde reads them.
+//! The tables and keys of the file, for serde.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ pub(crate) enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// Divided, not multiplied: 834 mm are exactly the number 0.834.
+    /// Division instead of multiplication: 834 mm are exactly the number 0.834.
     pub(crate) fn to_metres(self, length: f64) -> f64 {
         match self {
             LengthUnit::M => length,

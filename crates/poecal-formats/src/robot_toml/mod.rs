@@ -35,7 +35,7 @@ use poecal_storage::source_text;
 /// Reads a robot from a TOML file.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if the file cannot be read, and as [`parse`].
+/// [`ErrorKind::File`] if the file cannot be read, and those of [`parse`].
 pub fn read(path: impl AsRef<Path>) -> Result<Robot> {
     let path = path.as_ref();
     parse(&source_text::read(path, "a robot model in TOML")?, path)
@@ -59,7 +59,7 @@ fn parse_at(text: &str, path: &Path) -> Result<Robot> {
     build::robot(&context, &file)
 }
 
-/// The parser's message as one sentence with its place.
+/// The parser's message as one sentence with its position.
 fn syntax_error(error: &toml::de::Error, text: &str, path: &Path) -> Error {
     let complaint = error.message().trim().replace('\n', ", ");
     let message = match complaint.as_str() {

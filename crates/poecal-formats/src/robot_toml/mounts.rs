@@ -1,4 +1,4 @@
-//! Bodies: on which links joints stand, and where tip, targets and instruments are.
+//! Bodies: parent links of joints, and poses of tip, targets and instruments.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::file::{Convention, File, TargetTable};
 use poecal_model::robot::{Body, Mass, Robot};
 use poecal_numerics::error::{Result, nearest_or_all};
 
-/// Word for the base; the empty name means it too, where a joint has this name.
+/// Word for the base; the empty name means it too, for the case of a joint with this name.
 pub(crate) const BASE: &str = "base";
 
 /// Completes a robot with its branches, targets and instruments.
@@ -85,7 +85,7 @@ fn masses(context: &Context, file: &File, robot: &mut Robot) -> Result<()> {
     Ok(())
 }
 
-/// A name that no other of its kind has.
+/// A name, unique within its kind.
 fn name<'a>(
     context: &Context,
     table: &'a TargetTable,
@@ -116,7 +116,7 @@ fn body(context: &Context, robot: &Robot, name: &Spanned<String>, of: &str) -> R
     }
 }
 
-/// A DH table is a chain: each row begins where the one before ends.
+/// A DH table is a chain: each row begins at the end of the row before.
 fn refuse_in_dh(context: &Context, file: &File) -> Result<()> {
     if file.convention == Convention::Screws {
         return Ok(());

@@ -7,8 +7,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, Joint, JointKind, Robot};
 use poecal_storage::numbers::{shortest, tidy};
 
-/// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding
-/// below 1e-15.
+/// The robot as a TOML text of screws, SI units. Numbers are the shortest decimals that read back the same, freed of rounding below 1e-15.
 ///
 /// Joint frames are not part of the format: screws and home pose suffice for forward kinematics.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Links and joints of the robot: the chain from base to tip, the selected one or the only one, and the ways to named links.
+//! Links and joints of the robot: the chain from base to tip, the selected one or the only one, and the paths to named links.
 
 use std::collections::BTreeSet;
 
@@ -7,11 +7,10 @@ use super::{ChainSelection, ends};
 use poecal_numerics::error::{Error, ErrorKind, Result, nearest_or_all};
 use poecal_storage::xml::XmlSource;
 
-/// Links and joints of the robot, as indices into the tree. Each joint comes after that on whose link it stands: those from base to tip
-/// first.
+/// Links and joints of the robot, as indices into the tree. Each joint comes after the joint of its parent link: those from base to tip first.
 pub(crate) struct UrdfChain {
     pub(crate) base: usize,
-    /// Fixed joints from the base up to the link from which the others lead down, where the base is beside the chain.
+    /// Fixed joints from the base up to the link from which the others lead down, if the base is beside the chain.
     pub(crate) up: Vec<usize>,
     pub(crate) tip: usize,
     pub(crate) joints: Vec<usize>,
@@ -60,8 +59,8 @@ pub(crate) fn select(tree: &Tree, selection: &ChainSelection) -> Result<UrdfChai
     Ok(chain)
 }
 
-/// The link from which the chain leads down, and the fixed joints from the base up to it: the base itself where the tip, or something that
-/// moves, is below it; else the nearest link above it, by fixed joints alone, of which that is so.
+/// The link from which the chain leads down, and the fixed joints from the base up to it. It is the base itself if the tip, or a moving link, is
+/// below it. Otherwise it is the nearest link above with this property, over fixed joints only.
 fn beside(tree: &Tree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
     let leads = |link: usize| match tip {
         Some(tip) => tip == link || tree.ancestors(tip).any(|(_, joint)| joint.parent == link),
@@ -74,7 +73,7 @@ fn beside(tree: &Tree, base: usize, tip: Option<usize>) -> (usize, Vec<usize>) {
                 up.push(index);
                 at = joint.parent;
             }
-            // Not by fixed joints: what is wrong is said of the base that was stated.
+            // A moving joint is in between: the error will concern the stated base.
             Some(_) | None => return (base, Vec::new()),
         }
     }
@@ -109,7 +108,7 @@ fn find_link(tree: &Tree, name: &str, option: &str) -> Result<usize> {
     })
 }
 
-/// The only end link below a moving joint (below `base`, if given).
+/// The only end link below a moving joint (below `base`, if stated).
 fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
     let error = |message: String| Err(error(&tree.source, message));
     let mut tips = ends::ends(tree, base);
@@ -143,7 +142,7 @@ fn only_tip(tree: &Tree, base: Option<usize>) -> Result<usize> {
     }
 }
 
-/// Links before a fork that a message names.
+/// Number of links before a fork that a message lists.
 const FORKS: usize = 3;
 
 /// Path from `tip` up to `base`, or to the root. `what` is the link at its end, for messages.
@@ -219,7 +218,7 @@ fn check_joints(tree: &Tree, chain: &UrdfChain) -> Result<()> {
     Ok(())
 }
 
-/// Names in backticks; of many, the first twelve.
+/// Names in backticks; if there are many, the first twelve.
 fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
     let first: Vec<_> = names.by_ref().take(12).map(|name| format!("`{name}`")).collect();

@@ -1,4 +1,4 @@
-//! What looks like other units in a URDF, which states none: radians and metres.
+//! Signs of other units in a URDF, which states none: radians and metres.
 
 use std::f64::consts::PI;
 
@@ -9,12 +9,12 @@ use poecal_model::robot::{JointKind, Robot};
 
 /// Limit (rad) beyond which a whole number looks like degrees: two turns.
 const TURNS: f64 = 4.0 * PI;
-/// Turn of an origin (rad) that none needs.
+/// Rotation of an origin (rad) larger than any that is needed.
 const TURN: f64 = 2.0 * PI + 0.01;
 /// Distance of two joints (m) that looks like millimetres.
 const FAR_M: f64 = 50.0;
 
-/// What looks like degrees, millimetres or placeholders, a sentence each.
+/// Signs of degrees, millimetres or placeholders, a sentence each.
 pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
     let mut found = Vec::new();
     let is_degrees = |it: f64| it.abs() > TURNS && it.fract() == 0.0;
@@ -47,7 +47,7 @@ pub fn doubts(document: &UrdfDocument, robot: &Robot) -> Vec<String> {
     found
 }
 
-/// The first turns that look like degrees.
+/// The first rotations that look like degrees.
 fn turned(text: &str) -> Option<String> {
     let mut lines = text.lines().zip(1..).filter_map(|(line, number)| {
         let (_, rest) = line.split_once("rpy=")?;
@@ -123,7 +123,7 @@ mod tests {
     fn degrees_and_millimetres_are_said_and_usual_numbers_are_not() {
         for (origin, limit, words) in [
             ("xyz=\"0 0 0.3\" rpy=\"0 1.57 -6.28\"", "lower=\"-2.9\" upper=\"2.9\"", ""),
-            // Axes that turn many times, by radians that are no whole numbers.
+            // Axes with many turns, in radians that are no whole numbers.
             ("xyz=\"0 0 0.3\"", "lower=\"-1520.53\" upper=\"1520.53\"", ""),
             ("xyz=\"0 0 0.3\"", "lower=\"-160\" upper=\"160\"", "write `lower=\"-2.7925\" upper=\"2.7925\"`"),
             (

@@ -8,7 +8,7 @@ use super::tree::Tree;
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct End {
     pub(crate) link: usize,
-    /// Whether all moving joints above it lead mimic joints elsewhere, as the motor beside a telescopic column does.
+    /// True if all moving joints above it lead mimic joints elsewhere, like the motor beside a telescopic column.
     pub(crate) only_leads: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn ends(tree: &Tree, base: Option<usize>) -> Vec<End> {
 pub(crate) fn beyond(tree: &Tree, link: usize) -> Vec<(String, String)> {
     let below = joints_below(tree);
     let children = |link: usize| below.get(link).map_or(&[][..], Vec::as_slice);
-    // Parents before their children.
+    // Parents precede their children.
     let mut order = children(link).to_vec();
     let mut at = 0;
     while let Some(&joint) = order.get(at) {
@@ -70,8 +70,8 @@ pub(crate) fn beyond(tree: &Tree, link: usize) -> Vec<(String, String)> {
     moving.map(|joint| (tree.joints[joint].name.to_owned(), tree.link_name(ends[joint]).to_owned())).collect()
 }
 
-/// The links below a moving joint from which several of the ends lead on, such as a flange with two tools, the nearest to the ends first; each
-/// with the number of moving joints above it.
+/// The links below a moving joint at which paths to several ends part, such as a flange with two tools, the nearest to the ends first. Each has the
+/// number of moving joints above it.
 pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usize, usize)> {
     let mut ways = vec![0_usize; tree.links.len()];
     for end in ends {
@@ -82,12 +82,12 @@ pub(crate) fn forks(tree: &Tree, base: Option<usize>, ends: &[End]) -> Vec<(usiz
             at = joint.parent;
             ways[at] += 1;
             if ways[at] > 1 {
-                // Its own way up is counted.
+                // Its own path upwards is already counted.
                 break;
             }
         }
     }
-    // Joints above links, each of which is found once.
+    // Numbers of joints above links, each of which is determined once.
     let mut above: Vec<Option<usize>> = vec![None; tree.links.len()];
     let mut forks: Vec<(usize, usize)> = Vec::new();
     for fork in (0..ways.len()).filter(|link| ways[*link] > 1) {
@@ -136,11 +136,11 @@ fn leaders_of(tree: &Tree, joint: &super::tree::TreeJoint<'_>) -> BTreeSet<usize
     mimics.filter_map(|mimic| tree.joint_index(mimic.attribute("joint")?)).collect()
 }
 
-/// Joints from the start of a walk to its current place.
+/// Joints from the start of a walk to its current link.
 struct Way<'a> {
     tree: &'a Tree<'a>,
     leaders: &'a [BTreeSet<usize>],
-    /// For each joint: whether it is on the path, and how many joints elsewhere follow it.
+    /// True for each joint on the path; then, for each joint, the number of its followers elsewhere.
     is_on: Vec<bool>,
     elsewhere: Vec<usize>,
     /// Moving joints on the path, and those of them that lead no joint elsewhere.
@@ -201,7 +201,7 @@ mod tests {
         )
     }
 
-    /// A flange with a tool and a camera, beside a second arm: links that moving joints are above, where the ways part.
+    /// A flange with a tool and a camera, beside a second arm: the links below moving joints at which the paths part.
     #[test]
     fn links_before_a_fork_can_be_chosen() {
         let fixed =
@@ -234,7 +234,7 @@ mod tests {
         }
     }
 
-    /// A star, and a comb: each tooth's way to the root is long.
+    /// A star, and a comb: the path from each tooth to the root is long.
     #[test]
     fn the_ends_of_a_tree_of_very_many_branches_are_found_by_one_walk() {
         const COUNT: usize = 20_000;

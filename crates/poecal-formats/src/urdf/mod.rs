@@ -46,7 +46,7 @@ pub struct UrdfDocument {
     parts: Vec<Part>,
     /// The tip's link, then those of instruments and targets, in the robot's order.
     ends: Vec<End>,
-    /// Pose in the base of the link from which the chain leads down: the base itself, or one that it is joined to by fixed joints.
+    /// Pose in the base of the link from which the chain leads down: the base itself, or a link connected to it by fixed joints.
     base_from_top: Pose,
     beyond: Vec<(String, String)>,
     made_from: Option<&'static str>,
@@ -57,7 +57,7 @@ impl UrdfDocument {
     /// Reads a URDF file.
     ///
     /// # Errors
-    /// `ErrorKind::File` if the file cannot be read, and as [`UrdfDocument::parse`].
+    /// `ErrorKind::File` if the file cannot be read, and those of [`UrdfDocument::parse`].
     pub fn read(path: impl AsRef<Path>, selection: &ChainSelection) -> Result<Self> {
         let path = path.as_ref();
         Self::parse(&source_text::read(path, "a URDF robot description")?, path, selection)
@@ -116,7 +116,7 @@ impl UrdfDocument {
         &self.robot
     }
 
-    /// The selection with which this text gives this robot: base, tip, instruments and targets with their links.
+    /// The selection that yields this robot from this text: base, tip, instruments and targets with their links.
     #[must_use]
     pub fn selection(&self) -> ChainSelection {
         let links: Vec<&str> = self.ends.iter().map(|end| end.link.as_str()).collect();
@@ -129,19 +129,19 @@ impl UrdfDocument {
         &self.beyond
     }
 
-    /// The same, made from a file of another form.
+    /// The document with the form of another file from which it was made.
     pub(crate) fn made_from(self, form: &'static str, unread: Option<String>) -> Self {
         UrdfDocument { made_from: Some(form), remarks: unread.into_iter().collect(), ..self }
     }
 
-    /// What the file states of links and joints that is not read, or that others understand differently, a sentence each; what scales or shifts is
-    /// refused.
+    /// Contents on links and joints that are not read, or that other readers understand differently, a sentence each; contents that scale or shift
+    /// are refused.
     #[must_use]
     pub fn remarks(&self) -> &[String] {
         &self.remarks
     }
 
-    /// The form of the file that was read: `URDF`, or the one that this text was made from.
+    /// The form of the file that was read: `URDF`, or the one from which this text was made.
     #[must_use]
     pub fn form(&self) -> &'static str {
         self.made_from.unwrap_or("URDF")
@@ -155,10 +155,10 @@ impl UrdfDocument {
 }
 
 const EXPECTED: &str = "a URDF robot description";
-/// Where an element would be read: it may make links and joints there. What a visual, a sensor or an unknown element has in it is not read.
+/// Parents of elements that are read, which may add links and joints. Contents of a visual, a sensor or an unknown element are not read.
 const READ_IN: [&str; 3] = ["robot", "link", "joint"];
 
-/// An expanded file may still declare the prefix, and have elements of it where nothing is read.
+/// An expanded file may still declare the prefix, and have elements of it in parts that are not read.
 fn refuse_xacro(source: &XmlSource) -> Result<()> {
     let is_xacro = |node: &roxmltree::Node| {
         let name = node.tag_name();

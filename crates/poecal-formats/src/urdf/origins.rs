@@ -4,14 +4,14 @@ use super::UrdfDocument;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::robot::Robot;
 
-/// The `<origin>` of a joint as its text has it, metres and radians.
+/// The `<origin>` of a joint in its text, metres and radians.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
     /// Name of the joint.
     pub joint: String,
     /// Translation, metres.
     pub xyz: [f64; 3],
-    /// Roll, pitch and yaw about fixed axes, radians.
+    /// Roll, pitch and yaw: extrinsic angles about x, y, z, radians.
     pub rpy: [f64; 3],
 }
 
@@ -32,12 +32,13 @@ impl UrdfDocument {
         self.parts.iter().map(of).collect()
     }
 
-    /// Pose in the base of the link below a joint, by those of all links so far; without a joint, of the link from which the chain leads down.
+    /// Pose in the base of the link below a joint, by the poses of all links so far. Without a joint, it is the link from which the chain leads
+    /// down.
     pub(crate) fn below(&self, links: &[Pose], part: Option<usize>) -> Pose {
         part.and_then(|part| links.get(part)).copied().unwrap_or(self.base_from_top)
     }
 
-    /// Pose in the base of the link on which the first moving joint stands, by the fixed joints before it.
+    /// Pose in the base of the parent link of the first moving joint, by the fixed joints before it.
     pub fn base_from_first_parent(&self) -> Pose {
         let mut links: Vec<Pose> = Vec::new();
         for part in &self.parts {

@@ -1,4 +1,4 @@
-//! Joints of the chain or tree: origins, axes, limits and mimic relations, with their places in the text.
+//! Joints of the chain or tree: origins, axes, limits and mimic relations, with their positions in the text.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,12 +14,12 @@ use poecal_model::robot::{Body, Joint, JointKind, Limits, Mass, Reading, Robot, 
 use poecal_numerics::error::{Result, first_few, nearest_or_all};
 use poecal_storage::xml::{XmlSource, value_range};
 
-/// A fixed or moving joint, with the places for writing it back.
+/// A fixed or moving joint, with its positions in the text for changes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part {
     /// Name of the joint.
     pub(crate) name: String,
-    /// The joint above its parent link; none for the base.
+    /// The joint above its parent link; `None` for the base.
     pub(crate) parent: Option<usize>,
     /// `<origin>`: pose of the joint's frame in its parent link.
     pub(crate) parent_from_joint: Pose,
@@ -27,9 +27,9 @@ pub(crate) struct Part {
     pub(crate) axis: Option<Vector3<f64>>,
     /// Length of the axis in the text.
     pub(crate) axis_length: f64,
-    /// Whether it is a revolute or prismatic joint without a range, which other readers refuse or hold at 0.
+    /// True for a revolute or prismatic joint without a range, which other readers refuse or hold at 0.
     pub(crate) is_without_range: bool,
-    /// Whether its origin has a quaternion that does not count in this version of URDF.
+    /// True if its origin has a quaternion that does not count in this version of URDF.
     pub(crate) has_idle_quaternion: bool,
     pub(crate) place: Place,
 }
@@ -40,13 +40,13 @@ const ROUNDED_AXIS: f64 = 1e-6;
 const WRONG_AXIS: f64 = 1e-3;
 
 impl Part {
-    /// Whether the axis in the text is a unit vector.
+    /// True if the axis in the text is a unit vector.
     pub(crate) fn has_unit_axis(&self) -> bool {
         (self.axis_length - 1.0).abs() < ROUNDED_AXIS
     }
 }
 
-/// What other readers understand differently in these joints, a sentence each.
+/// Properties of these joints that other readers understand differently, a sentence each.
 pub(crate) fn remarks(parts: &[Part]) -> Vec<String> {
     let list = |is: &dyn Fn(&Part) -> bool, words: &dyn Fn(&Part) -> String| {
         let found: Vec<String> = parts.iter().filter(|it| is(it)).map(words).collect();
@@ -103,11 +103,11 @@ pub(crate) struct Place {
 pub(crate) struct End {
     /// Name of the link.
     pub(crate) link: String,
-    /// The joint above it; none for the base.
+    /// The joint above it; `None` for the base.
     pub(crate) part: Option<usize>,
 }
 
-/// Where a link is.
+/// Pose of a link.
 #[derive(Clone, Copy)]
 struct At {
     base_from_link: Pose,
@@ -115,10 +115,10 @@ struct At {
     body: Body,
 }
 
-/// The joints in their order, the ends, the robot of the moving joints with frames and screws in the base link, and the pose in it of the link
-/// from which the chain leads down.
+/// The joints in their order, the ends, and the robot of the moving joints with frames and screws in the base link. The pose is in the base link,
+/// of the link from which the chain leads down.
 pub(crate) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Part>, Vec<End>, Robot, Pose)> {
-    // From the base up to the link from which the chain leads down.
+    // The walk goes from the base up to the link from which the chain leads down.
     let (mut base_from_top, mut top) = (Pose::identity(), chain.base);
     for joint in chain.up.iter().filter_map(|&joint| tree.joints.get(joint)) {
         base_from_top = base_from_top * read_part(&tree.source, joint)?.parent_from_joint.inverse();
@@ -165,14 +165,14 @@ pub(crate) fn read(tree: &Tree, chain: &UrdfChain, name: &str) -> Result<(Vec<Pa
     Ok((parts, ends, robot, base_from_top))
 }
 
-/// Masses of the links of the chain and of what they carry, other joints at zero. Nothing else needs them: what cannot be read is no mass.
+/// Masses of the links of the chain and of the links that it carries, other joints at zero. They are optional: an unreadable mass is omitted.
 fn masses(tree: &Tree, links: &BTreeMap<usize, At>, base: At) -> Vec<Mass> {
     let source = &tree.source;
     let mut links = links.clone();
     let mut found = Vec::new();
     for node in source.children(source.document.root_element(), "link") {
         let Some(link) = node.attribute("name").and_then(|name| tree.link(name)) else { continue };
-        // From the nearest link that is known down to this one; what is not carried by the chain is as if on the base.
+        // The walk goes from the nearest known link down to this one; links that the chain does not carry count as fixed to the base.
         let unknown = |&(_, joint): &(usize, &TreeJoint)| !links.contains_key(&joint.child);
         let way: Vec<&TreeJoint> = tree.ancestors(link).take_while(unknown).map(|(_, joint)| joint).collect();
         let known = way.last().map_or(links.get(&link), |joint| links.get(&joint.parent));
@@ -207,7 +207,7 @@ fn mass<'a>(source: &XmlSource<'a>, link: Node<'a, 'a>, at: At, of: &str) -> Res
     Ok(Some(Mass { body: at.body, place: at.base_from_link.act(&Vector3::from(centre)), kg }))
 }
 
-/// The `<origin>` of any joint of the tree; none if it cannot be read.
+/// The `<origin>` of any joint of the tree; `None` if it cannot be read.
 pub(crate) fn fixed_pose(source: &XmlSource, joint: &TreeJoint) -> Option<Pose> {
     read_part(source, joint).ok().map(|part| part.parent_from_joint)
 }
@@ -259,7 +259,7 @@ fn read_part<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Part> 
     })
 }
 
-/// Whether the version of the text has quaternions: 1.1 and later ones.
+/// True if the version of the text has quaternions: 1.1 and later ones.
 fn has_quaternions(source: &XmlSource<'_>) -> bool {
     let version = source.document.root_element().attribute("version");
     version.and_then(|it| it.trim().parse::<f64>().ok()).is_some_and(|it| it >= 1.1)
@@ -285,7 +285,7 @@ pub(crate) fn read_origin<'a>(source: &XmlSource<'a>, origin: Node<'a, 'a>, of: 
     Ok(Pose::from_position_quaternion(xyz, quaternion))
 }
 
-/// Whether a joint needs a range and states none: without a `<limit>`, or with one that states neither end.
+/// True if a joint needs a range and states none: without a `<limit>`, or with one that states neither end.
 fn is_without_range<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<bool> {
     if !matches!(joint.kind, JointType::Revolute | JointType::Prismatic) {
         return Ok(false);
@@ -295,7 +295,7 @@ fn is_without_range<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result
     Ok(!states("lower") && !states("upper"))
 }
 
-/// The unit axis in the joint's frame, with the length that the text has; without an `<axis>` it is x.
+/// The unit axis in the joint's frame, with its length in the text; without an `<axis>` it is x.
 fn read_axis<'a>(
     source: &XmlSource<'a>,
     joint: &TreeJoint<'a>,
@@ -307,11 +307,11 @@ fn read_axis<'a>(
     if axis == Vector3::zeros() {
         return Err(source.error(node, format!("{of} is 0 0 0, expected a direction, such as 0 0 1")));
     }
-    // Scaled first, so that tiny numbers do not vanish when squared.
+    // The vector is scaled first, so that tiny numbers do not vanish when squared.
     Ok(((axis / axis.amax()).normalize(), axis.norm()))
 }
 
-/// Limits, unless the joint is continuous or its range is empty (as exporters write unknown limits).
+/// Limits, unless the joint is continuous or its range is empty (exporters write unknown limits so).
 fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Option<Limits>> {
     let of = format!("joint `{}`", joint.name);
     let Some(node) = source.only_child(joint.node, "limit", &of, false)? else { return Ok(None) };
@@ -328,7 +328,7 @@ fn read_limits<'a>(source: &XmlSource<'a>, joint: &TreeJoint<'a>) -> Result<Opti
     Ok(Limits::between(lower, upper))
 }
 
-/// The reading that gives a joint its value, through all mimic relations.
+/// The reading that determines the value of a joint, through all mimic relations.
 fn read_reading(tree: &Tree, joint: &TreeJoint) -> Result<Reading> {
     let follows = |name: &str| tree.joint(name).map_or(Ok(None), |follower| read_mimic(tree, follower));
     mimic::reading(joint.name, follows, |message| tree.source.error(joint.node, message))

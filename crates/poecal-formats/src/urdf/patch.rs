@@ -24,18 +24,18 @@ pub struct PatchedUrdf {
     pub text: String,
     /// The link that is now the tip.
     pub tip_link: String,
-    /// The selection with which the text gives the robot again.
+    /// The selection that yields the robot from the text.
     pub selection: ChainSelection,
     /// Notes for the user, a sentence each.
     pub notes: Vec<String>,
 }
 
 impl UrdfDocument {
-    /// The text with the origins (and axes, where needed) of `calibrated`; all other bytes stay.
+    /// The text with the origins (and axes, if needed) of `calibrated`; all other bytes stay.
     ///
     /// `calibrated` is this document's robot with other screws, joint frames, home pose, instruments and targets. Values that differ only by
-    /// rounding stay. The tip's pose is written to the last fixed joint before the tip; without one, a link `<tip>_calibrated` is added.
-    /// Frames of instruments and targets are written in the same way, but to no fixed joint on which a moving one stands.
+    /// rounding stay. The tip's pose is written to the last fixed joint before the tip; without one, a link `<tip>_calibrated` is added. Frames of
+    /// instruments and targets are written too, but never to a fixed joint above a moving one.
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if `calibrated` has other joints, instruments or targets, or a number of it is not finite.
@@ -45,7 +45,7 @@ impl UrdfDocument {
         let mut splice = Splice::new(&self.text);
         let mut joints = calibrated.joints.iter();
         let carried = self.carried(&wanted);
-        // Values as the new text has them, so that rounding does not add up along the chain.
+        // Poses by the values of the new text, so that rounding does not accumulate along the chain.
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.parts.len());
         for (part, carried) in self.parts.iter().zip(carried) {
             let base_from_parent = self.below(&base_from_links, part.parent);
@@ -59,7 +59,7 @@ impl UrdfDocument {
         let mut added = Added { names: BTreeSet::new(), links: Vec::new() };
         let (mut links, mut notes) = (Vec::new(), self.changed_kinds(calibrated));
         for (index, (end, wanted)) in self.ends.iter().zip(&wanted).enumerate() {
-            // What is on the base itself, and not on a link that it is joined to, is where it is.
+            // Mounts on the base link itself, and not on a link fixed to it, have the identity as their link's pose.
             let is_base = end.part.is_none() && end.link == self.robot.base_name;
             let base_from_link =
                 if is_base { Pose::identity() } else { self.below(&base_from_links, end.part) };
@@ -129,7 +129,7 @@ impl UrdfDocument {
         }
     }
 
-    /// For each joint, the pose of the link below it if it is fixed and holds an end: no moving joint stands on it.
+    /// For each joint, the pose of the link below it, if the joint is fixed and holds an end: no moving joint follows it.
     fn carried(&self, wanted: &[Pose]) -> Vec<Option<Pose>> {
         let mut leads = vec![false; self.parts.len()];
         for (index, part) in self.parts.iter().enumerate().rev() {
@@ -150,7 +150,7 @@ impl UrdfDocument {
         carried
     }
 
-    /// The tip, or the name of an instrument or a target.
+    /// Name of an end: the tip, or an instrument or a target.
     fn end_words(&self, index: usize) -> String {
         let mounts = self.robot.instruments.iter().chain(&self.robot.mounted);
         match index.checked_sub(1).and_then(|index| mounts.into_iter().nth(index)) {
@@ -183,7 +183,7 @@ impl UrdfDocument {
         Ok(())
     }
 
-    /// A name of a link that nothing in the text has.
+    /// A name of a link that is not in the text.
     fn free_name(&self, link: &str, added: &Added) -> String {
         let mut name = format!("{link}_calibrated");
         while self.text.contains(&escaped(&name)) || added.names.contains(&name) {
@@ -193,7 +193,7 @@ impl UrdfDocument {
     }
 }
 
-/// Links that were added, and what they hold: the link below which each is, and its pose in the base.
+/// Links that were added, and their purpose: the parent link of each, and its pose in the base.
 struct Added {
     names: BTreeSet<String>,
     links: Vec<(String, Pose, String)>,
@@ -203,7 +203,7 @@ fn is_finite(pose: &Pose) -> bool {
     pose.rotation.iter().chain(pose.translation.iter()).all(|number| number.is_finite())
 }
 
-/// Writes a moving joint's origin, and its axis if it is not that of the frame. Returns its frame as in the text.
+/// Writes a moving joint's origin, and its axis if it is not that of the frame. Returns the frame by the numbers of the text.
 fn write_joint(
     splice: &mut Splice,
     part: &Part,
@@ -223,12 +223,12 @@ fn write_joint(
     written
 }
 
-/// Whether a joint without a range is written as one that turns without end.
+/// True if a joint without a range is written as one that rotates without limits.
 fn is_made_continuous(part: &Part, joint: &Joint) -> bool {
     part.is_without_range && joint.kind == JointKind::Revolute && joint.limits.is_none()
 }
 
-/// The frame with its origin shifted onto the axis, if it is off it.
+/// The frame with its origin shifted onto the axis, unless it is on it.
 pub(crate) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
     let on_axis = screw.nearest_point(&frame.translation);
     if (on_axis - frame.translation).norm() > AXIS_TOLERANCE {
@@ -238,7 +238,7 @@ pub(crate) fn frame_on_axis(frame: &Pose, screw: &Screw) -> Pose {
     }
 }
 
-/// Writes the changed parts of an origin so that the frame is at `target`. Returns the frame as in the text.
+/// Writes the changed parts of an origin so that the frame is at `target`. Returns the frame by the numbers of the text.
 fn write_origin(splice: &mut Splice, part: &Part, base_from_link: Pose, target: &Pose) -> Pose {
     let unchanged = base_from_link * part.parent_from_joint;
     if close(&unchanged, target) {

@@ -1,4 +1,4 @@
-//! Which joints and links of a URDF are read.
+//! Selection of the joints and links of a URDF that are read.
 
 use poecal_model::robot::{Mount, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
@@ -6,8 +6,8 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// Selection of a chain, or of a tree. An omitted end must be unique: the base is then the root above the tip, and the tip the only end link
 /// below a moving joint.
 ///
-/// With instruments and targets on named links, the robot is the tree of all joints between the base and these links and the tip, which is
-/// then the first target's link that a joint moves, if it is not selected.
+/// With instruments and targets on named links, the robot is the tree of all joints between the base and these links and the tip. If the tip is not
+/// selected, it is the first target's link that a joint moves.
 ///
 /// ```
 /// let selection = poecal_formats::urdf::ChainSelection { tip_link: Some("tool0".into()), ..Default::default() };
@@ -26,7 +26,7 @@ pub struct ChainSelection {
 }
 
 impl ChainSelection {
-    /// The selection that gives a robot, by its links: the tip's, then those of instruments and targets.
+    /// The selection that yields a robot, by its links: the tip's, then those of instruments and targets.
     pub(crate) fn from_links(robot: &Robot, links: &[&str]) -> Self {
         let mut links = links.iter().map(|&link| link.to_owned());
         let tip_link = links.next();
@@ -37,7 +37,7 @@ impl ChainSelection {
         ChainSelection { base_link: Some(robot.base_name.clone()), tip_link, instruments, targets }
     }
 
-    /// This selection with further instruments and targets, as those of a mapping file.
+    /// This selection with further instruments and targets, such as those of a mapping file.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if one of them has two links.
@@ -62,7 +62,7 @@ impl ChainSelection {
     }
 }
 
-/// `NAME=LINK` as it is typed.
+/// Parses `NAME=LINK`.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if it is not of this form.

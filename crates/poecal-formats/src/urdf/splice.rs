@@ -1,4 +1,4 @@
-//! Changes a text at a few places; all other bytes stay.
+//! Changes a text at a few positions; all other bytes stay.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ impl<'a> Splice<'a> {
         }
     }
 
-    /// Sets the given values of `<origin>`, and the element itself if there is none.
+    /// Sets the passed values of `<origin>`, and the element itself if there is none.
     pub(crate) fn set_origin(&mut self, place: &Place, xyz: Option<String>, rpy: Option<String>) {
         if let Some(after_name) = place.origin {
             if let Some(xyz) = xyz {
@@ -87,7 +87,7 @@ impl<'a> Splice<'a> {
 
     /// The changed text.
     pub(crate) fn apply(mut self) -> String {
-        // Stable: insertions at one place keep their order.
+        // The sort is stable: insertions at one position keep their order.
         self.edits.sort_by_key(|(range, _)| range.start);
         let mut text = String::with_capacity(self.text.len() + 64 * self.edits.len());
         let mut done = 0;

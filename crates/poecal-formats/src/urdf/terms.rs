@@ -1,15 +1,15 @@
-//! What URDF cannot hold of a robot: terms of joint values.
+//! Terms of joint values, which URDF cannot hold.
 
 use std::borrow::Cow;
 
 use crate::proof::Difference;
 use poecal_model::robot::{JointTerm, Robot};
 
-/// Configurations on which the loss is measured.
+/// Number of configurations on which the loss is measured.
 const CONFIGURATIONS: usize = 1000;
 
-/// The robot as URDF can hold it: joint offsets within the screws, which changes nothing, and without other terms of joint values. A note
-/// says what that loses.
+/// The robot in the form that URDF can hold: joint offsets within the screws, which changes nothing, and without other terms of joint values. A
+/// note states the loss.
 pub fn holdable<'a>(robot: &'a Robot, notes: &mut Vec<String>) -> Cow<'a, Robot> {
     if robot.terms.is_empty() {
         return Cow::Borrowed(robot);

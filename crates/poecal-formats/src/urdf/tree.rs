@@ -36,7 +36,7 @@ impl JointType {
         Self::WORDS.iter().find(|(_, kind)| *kind == self).map_or("", |&(word, _)| word)
     }
 
-    /// Whether the joint has one degree of freedom.
+    /// True if the joint has one degree of freedom.
     pub(crate) fn moves(self) -> bool {
         matches!(self, JointType::Revolute | JointType::Continuous | JointType::Prismatic)
     }

@@ -1,4 +1,4 @@
-//! What links look like: `<visual>` of every link, or `<collision>` where no link has one.
+//! Shapes of links: `<visual>` of every link, or `<collision>` if no link has one.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::robot::Body;
 use poecal_storage::xml::{XmlSource, parsed, readable};
 
-/// Shapes of a file at most.
+/// Largest number of shapes of a file.
 const MOST: usize = 4000;
 
 /// The shape of a part of a link, metres. Cylinders are along z, everything is about its middle; a mesh has the axes of its file.
@@ -34,14 +34,14 @@ pub enum Geometry {
     },
     /// A mesh of a file, and the factors along its axes.
     Mesh {
-        /// Name of the file, as the URDF has it.
+        /// Name of the file in the URDF.
         file: String,
         /// Factors along the axes of the file.
         scale: [f64; 3],
     },
 }
 
-/// A shape with its place: the body that carries it, and its pose in the base with all joints at zero.
+/// A shape with its pose: the body that carries it, and its pose in the base with all joints at zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
     /// Name of the link.
@@ -55,18 +55,18 @@ pub struct Visual {
 }
 
 impl UrdfDocument {
-    /// The shapes of all links, in the order of the text. Links that no joint of the robot moves stand where they are with all other joints at
-    /// zero. Nothing else needs them: what cannot be read is no shape.
+    /// The shapes of all links, in the order of the text. Links that no joint of the robot moves are posed with all other joints at zero. They are
+    /// optional: an unreadable shape is omitted.
     pub fn visuals(&self) -> Vec<Visual> {
         self.shapes("visual", "collision")
     }
 
-    /// The same for what may collide: `<collision>` of every link, or `<visual>` where no link has one.
+    /// The shapes that may collide: `<collision>` of every link, or `<visual>` if no link has one.
     pub fn collisions(&self) -> Vec<Visual> {
         self.shapes("collision", "visual")
     }
 
-    /// The shapes of one element, or of another where there are none.
+    /// The shapes of one element, or of another if there are none.
     fn shapes(&self, first: &'static str, else_of: &'static str) -> Vec<Visual> {
         let path = Path::new(&self.path);
         let text = readable(&self.text);
@@ -86,13 +86,13 @@ impl UrdfDocument {
         if shapes.is_empty() { of(else_of) } else { shapes }
     }
 
-    /// Body and pose in the base of each link of the tree, with all joints at zero; none where an origin above it cannot be read.
+    /// Body and pose in the base of each link of the tree, with all joints at zero; `None` if an origin above it cannot be read.
     fn links(&self, tree: &Tree) -> Vec<Option<(Body, Pose)>> {
         let joints = self.robot.joints.iter().enumerate();
         let bodies: BTreeMap<&str, usize> = joints.map(|(k, joint)| (joint.name.as_str(), k)).collect();
         let mut known: Vec<Option<Option<(Body, Pose)>>> = vec![None; tree.links.len()];
         for link in 0..tree.links.len() {
-            // From the nearest link that is known, or the root, down to this one.
+            // The walk goes from the nearest known link, or the root, down to this one.
             let up = std::iter::once(link).chain(tree.ancestors(link).map(|(_, joint)| joint.parent));
             let way: Vec<usize> = up.take_while(|&at| known[at].is_none()).collect();
             for at in way.into_iter().rev() {

@@ -22,8 +22,8 @@ pub struct Converted {
 /// Limits of a prismatic joint without limits, metres: URDF requires some.
 pub(crate) const WIDE_LIMITS: Limits = Limits { lower: -1000.0, upper: 1000.0 };
 
-/// Writes a robot as a new URDF: base link, one link a joint, and the tip on a fixed joint. Instruments, and targets with a body of their own,
-/// are links on fixed joints too.
+/// Writes a robot as a new URDF: base link, one link for each joint, and the tip on a fixed joint. Instruments, and targets with a body of their
+/// own, are links on fixed joints too.
 ///
 /// # Errors
 /// [`ErrorKind::Export`] if URDF cannot express a joint's reading (a factor or offset on its own reading).
@@ -31,13 +31,13 @@ pub fn write_new(robot: &Robot) -> Result<Converted> {
     written_new(robot).map(|(converted, _)| converted)
 }
 
-/// The same with the selection that gives the robot again.
+/// Writes it, and returns the selection that yields the robot from the text.
 pub fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
     let text = UrdfText::of_robot(&robot.name);
     let mut writer = Writer { text, notes: Vec::new(), links: vec![robot.tip_name.clone()] };
     let base = writer.link(&robot.base_name);
     writer.leaders(robot, &base);
-    // Name and pose of each joint's link as in the text.
+    // Name of each joint's link, and its pose by the numbers of the text.
     let mut links: Vec<(String, Pose)> = Vec::with_capacity(robot.joints.len());
     let of = |links: &[(String, Pose)], body: Body| {
         let link = body.joint().and_then(|joint| links.get(joint)).cloned();
@@ -91,7 +91,7 @@ pub fn written_new(robot: &Robot) -> Result<(Converted, ChainSelection)> {
 pub(crate) struct UrdfText(String);
 
 impl UrdfText {
-    /// The first lines of a robot's.
+    /// The first lines of a robot.
     pub(crate) fn of_robot(name: &str) -> Self {
         UrdfText(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", escaped(name)))
     }
@@ -105,7 +105,7 @@ impl UrdfText {
         self.line(1, &format!("<link name=\"{}\"/>", escaped(name)));
     }
 
-    /// Writes an origin, and returns it as in the text.
+    /// Writes an origin, and returns it by the numbers of the text.
     pub(crate) fn origin(&mut self, depth: usize, pose: &Pose) -> Pose {
         let (xyz, rpy) = origin_values(pose);
         self.line(depth, &format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(xyz), triple(rpy)));
@@ -203,7 +203,7 @@ impl Writer {
         }
     }
 
-    /// Writes a moving joint, and returns its origin as in the text.
+    /// Writes a moving joint, and returns its origin by the numbers of the text.
     fn joint(&mut self, joint: &Joint, ends: (&str, &str), origin: &Pose) -> Result<Pose> {
         let kind = match (joint.kind, joint.limits) {
             (JointKind::Prismatic, _) => "prismatic",

@@ -1,4 +1,4 @@
-//! A calibrated robot written into a URDF text: what is read back moves as the calibrated robot does, and the rest of the text stays.
+//! A calibrated robot is written into a URDF text. The model that is read back moves like the calibrated robot, and the rest of the text stays.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist, rotation};
@@ -42,7 +42,7 @@ fn words(v: Vector3<f64>) -> String {
     format!("{} {} {}", v.x, v.y, v.z)
 }
 
-/// A chain of random joints, origins, axes of a length, quotes and gaps, with a leader beside it.
+/// A chain of random joints and origins, axes of one length, quotes and gaps, with a leader beside it.
 fn random_urdf(random: &mut Random, length: f64) -> String {
     let (end, quote) = (random.choice(&["\n", "\r\n", ""]), random.choice(&["\"", "'"]));
     let count = 2 + random.0.next_u64() % 9;
@@ -93,7 +93,7 @@ fn parse(text: &str, tip: &str) -> UrdfDocument {
     UrdfDocument::parse(text, "test.urdf", &selection).unwrap()
 }
 
-/// Every screw and the home pose moved by something like 3° and 15 mm.
+/// The robot with every screw and the home pose moved by about 3° and 15 mm.
 fn disturbed(robot: &Robot, random: &mut Random) -> Robot {
     let mut motion = || Pose::exp(&Twist::new(random.vector(0.015), random.vector(0.05)));
     let screws: Vec<Screw> = robot.joints.iter().map(|joint| joint.screw.transformed(&motion())).collect();
@@ -127,7 +127,7 @@ fn random_robots_read_back_as_they_were_calibrated() {
         let difference = largest_difference(&calibrated, again.robot(), &mut random);
         assert!(difference < TOLERANCE, "seed {seed}: {difference:e}\n{text}\n{}", patched.text);
         assert_eq!(again.robot().joints.len(), calibrated.joints.len());
-        // What was read back needs no further change.
+        // The model that was read back needs no further change.
         assert_eq!(again.patched(again.robot()).unwrap().text, patched.text);
         largest = larger(largest, difference);
     }
@@ -137,7 +137,7 @@ fn random_robots_read_back_as_they_were_calibrated() {
 #[test]
 fn an_unchanged_robot_leaves_every_byte() {
     for seed in trials(200).seeds() {
-        // A turn without a range is written as continuous.
+        // A revolute joint without a range is written as continuous.
         let text = random_urdf(&mut Random::new(seed), 1.0).replace("'revolute'", "'continuous'");
         let tip = format!("l{}", text.matches("<visual>").count() - 1);
         let urdf = parse(&text, &tip);
@@ -184,7 +184,7 @@ fn only_changed_values_are_replaced_and_missing_ones_inserted() {
 fn an_axis_that_leaves_its_frame_is_written() {
     let urdf = parse(TEXT, "hand");
     let mut calibrated = urdf.robot().clone();
-    // The screws alone: frames that do not follow.
+    // Only the screws change: the frames do not follow.
     calibrated.joints[0].screw = Screw::revolute(&Vector3::new(0.0, 0.6, 0.8), &Vector3::new(0.5, 0.0, 0.3));
     calibrated.joints[1].screw = Screw::revolute(&Vector3::y(), &Vector3::new(0.0, 0.0, 0.25));
     let patched = urdf.patched(&calibrated).unwrap();
@@ -211,7 +211,7 @@ fn another_robot_is_refused() {
     );
 }
 
-/// What other readers understand differently: an axis of length 2 by which they scale a slide, and a turn without a range.
+/// Other readers understand these differently: an axis of length 2 scales a slide, and a revolute joint has no range.
 #[test]
 fn axes_are_written_as_unit_vectors_and_endless_joints_as_continuous() {
     let text = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n\

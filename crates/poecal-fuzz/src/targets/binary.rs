@@ -1,4 +1,4 @@
-//! Workbooks, bags and pictures: bytes with checksums, which are made right so that what lies behind them is reached.
+//! Workbooks, bags and pictures: bytes whose checksums are corrected, so that the data behind them are reached.
 
 use poecal_detect::{Detector, Picture, Spec};
 use poecal_storage::limits::{self, Limit, Limits};
@@ -7,7 +7,7 @@ use super::recorded::{NAMES, read_files};
 use crate::properties::one_line;
 use crate::{BETWEEN, LONGEST};
 
-/// What an input of this size may take.
+/// Limits for an input of this size.
 fn low() -> Limits {
     [
         (Limit::Cells, 50_000),
@@ -23,7 +23,7 @@ fn low() -> Limits {
     .fold(Limits::default(), |all, (limit, most)| all.with(limit, most))
 }
 
-/// Files of which one may be beside, whose bytes are mended.
+/// Files, of which one may be a companion; their bytes are mended.
 fn files(data: &[u8], mend: impl Fn(&[u8]) -> Vec<u8>) -> Vec<Vec<u8>> {
     let between = format!("\n{BETWEEN}{BETWEEN}\n");
     let at = data.windows(between.len()).position(|it| it == between.as_bytes());
@@ -42,7 +42,7 @@ fn read(data: &[u8], mend: impl Fn(&[u8]) -> Vec<u8>) -> bool {
     limits::on(low(), || read_files(&named))
 }
 
-/// A workbook: an old one as it is, or the parts of an archive, each a line with its name and what it holds; and maybe a table beside it.
+/// A workbook: an old one as it is, or the parts of an archive, each a line with its name and its content; optionally with a table.
 pub fn workbooks(data: &[u8]) -> bool {
     read(data, |bytes| {
         let is_text = !bytes.starts_with(b"PK") && !bytes.starts_with(b"\xd0\xcf");
@@ -50,12 +50,12 @@ pub fn workbooks(data: &[u8]) -> bool {
     })
 }
 
-/// A bag as it is, and maybe a table beside it.
+/// A bag as it is, optionally with a table.
 pub fn bags(data: &[u8]) -> bool {
     read(data, <[u8]>::to_vec)
 }
 
-/// What stands before the first of these bytes, and behind them.
+/// Bytes before the first of these, and behind them.
 fn cut<'a>(bytes: &'a [u8], at: &[u8]) -> (&'a [u8], Option<&'a [u8]>) {
     match bytes.windows(at.len()).position(|it| it == at) {
         Some(place) => (&bytes[..place], Some(&bytes[place + at.len()..])),
@@ -63,7 +63,7 @@ fn cut<'a>(bytes: &'a [u8], at: &[u8]) -> (&'a [u8], Option<&'a [u8]>) {
     }
 }
 
-/// An archive of parts that are not packed.
+/// An uncompressed archive of parts.
 fn archive(parts: &[u8]) -> Vec<u8> {
     let (mut bytes, mut list, mut count) = (Vec::new(), Vec::new(), 0_u16);
     let (between, mut rest) = (format!("\n{BETWEEN}\n"), Some(parts));
@@ -90,7 +90,7 @@ fn archive(parts: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A picture, in which boards of dots and of squares are sought if it is small. A picture is as large as its head states, and its levels are numbers.
+/// A picture, which is searched for boards of dots and of squares if it is small. Its size is that of its header, and its levels are numbers.
 pub fn pictures(data: &[u8]) -> bool {
     /// Most pixels of a picture, and of one that is searched.
     const MOST: [u64; 2] = [1_000_000, 40_000];

@@ -43,7 +43,7 @@ fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-/// What is written must read back the same.
+/// Asserts that written text reads back the same.
 pub(crate) fn same(file: &CalibrationFile) {
     let written = certain(file.to_text(), "to_text");
     let again = certain(CalibrationFile::parse(&written, PATH), &written);
@@ -59,7 +59,7 @@ pub fn report(data: &[u8]) -> bool {
     page(&file, &residuals)
 }
 
-/// The page must be whole, and nothing that a file says may be markup in it.
+/// Asserts that the page is complete, and no text of a file becomes markup in it.
 pub(crate) fn page(file: &CalibrationFile, residuals: &Residuals) -> bool {
     let page = match calibration_page(file, residuals) {
         Ok(page) => page,
@@ -69,7 +69,7 @@ pub(crate) fn page(file: &CalibrationFile, residuals: &Residuals) -> bool {
         }
     };
     let [head, body, _, data, ..] = page.as_slice() else { panic!("{} pieces", page.len()) };
-    // A leverage that is none is told as such.
+    // A leverage that is not a number is reported as such.
     let unfit = residuals
         .rows()
         .iter()

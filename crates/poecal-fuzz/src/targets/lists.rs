@@ -12,14 +12,14 @@ use poecal_results::validation::History;
 use crate::one_file::with_files;
 use crate::properties::{PATH, one_line, parts, text, understood};
 
-/// Most rows that are computed with.
+/// Most rows that are used in computations.
 const MOST_ROWS: usize = 40;
 
 fn row_name(row: usize) -> String {
     format!("row {}", row + 1)
 }
 
-/// Poses of an arm and of a target, in one file or in two, as tables or as YAML: what is read has as many of both, and a camera that is found is somewhere.
+/// Poses of an arm and of a target, in one file or in two, as tables or as YAML: the numbers of both are equal, and a detected camera has a pose.
 pub fn hand_eye(data: &[u8]) -> bool {
     let Some([one, other]) = parts::<2>(data) else { return false };
     let ending = if one.starts_with(['-', '{', '[']) { "yaml" } else { "csv" };

@@ -6,7 +6,7 @@ use poecal_model::simulate::scara;
 use super::tables::{joints_sound, sound};
 use crate::properties::{PATH, text, understood};
 
-/// Files that a mapping may be of: one with names of its own, and one with two targets in a row.
+/// Files for a mapping: one with names of its own, and one with two targets in a row.
 const FILES: [&str; 2] = [
     "run;phase;A1;A2;A3;A4;px;py;pz;a;b;c;s\n1;train;12,5;-40;100;10;512,31;-40,02;130,9;1;2;3;0,1\n\
      2;test;-3;15,25;50;20;540,77;102,4;112,18;4;5;6;0,1\n",

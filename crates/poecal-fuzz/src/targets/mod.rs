@@ -1,4 +1,4 @@
-//! What is fuzzed: functions of bytes that tell whether the input was understood.
+//! Fuzzed functions of bytes, which return true if the input was understood.
 
 mod binary;
 mod calibration;

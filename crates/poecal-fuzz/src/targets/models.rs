@@ -9,7 +9,7 @@ use poecal_results::model::{Model, ModelFormat, ModelSource, convert};
 
 use crate::properties::{PATH, VAST_M, alike, certain, one_line, size_m, text, understood};
 
-/// Rounding of what is written and read again, of a robot of 1 m.
+/// Rounding of writing and reading again, for a robot of 1 m.
 const ROUNDING: f64 = 1e-10;
 
 /// A URDF: read, written into its own text as it is and with other screws, and in the other form.
@@ -31,7 +31,7 @@ pub fn urdf(data: &[u8]) -> bool {
     true
 }
 
-/// A model in a form of a simulator or maker, and the URDF that says the same.
+/// A model in a form of a simulator or maker, and the equivalent URDF.
 pub fn foreign(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let form = if text.trim_start().starts_with('<') {
@@ -63,7 +63,7 @@ pub(crate) fn patched(document: &UrdfDocument, robot: &Robot) {
     alike(robot, again.robot(), ROUNDING, "patched");
     let limits = |robot: &Robot| robot.joints.iter().map(|joint| joint.limits).collect::<Vec<_>>();
     assert_eq!(limits(robot), limits(again.robot()));
-    // Once written, a robot's text stays.
+    // Once written, a robot's text does not change.
     let twice = certain(again.patched(again.robot()), "patched twice");
     alike(
         again.robot(),
@@ -73,7 +73,7 @@ pub(crate) fn patched(document: &UrdfDocument, robot: &Robot) {
     );
 }
 
-/// The robot with every axis and its tip somewhere else, as a calibration finds them.
+/// The robot with every axis and its tip displaced, as by a calibration.
 pub(crate) fn moved(robot: &Robot) -> Robot {
     let little = Pose::from_xyz_rpy([2e-3, -1e-3, 3e-3], [0.01, -0.02, 0.005]);
     let screws: Vec<Screw> = robot.joints.iter().map(|joint| joint.screw.transformed(&little)).collect();
@@ -82,7 +82,7 @@ pub(crate) fn moved(robot: &Robot) -> Robot {
     moved
 }
 
-/// A model in both forms, if it can be.
+/// Writes a model in both forms, if possible.
 pub(crate) fn converted(model: &Model) {
     let is_vast = size_m(&model.robot) > VAST_M;
     for form in [ModelFormat::Urdf, ModelFormat::Toml] {
@@ -107,7 +107,7 @@ pub fn robot_toml(data: &[u8]) -> bool {
     let written = robot_toml::write(&robot);
     let again = certain(robot_toml::parse(&written, PATH), &written);
     same_robot(&robot, &again);
-    // A robot of that form is the same to the last digit but for the length of its directions, which are made 1 again.
+    // A robot of that form is the same to the last digit, except for its directions, which are normalised again.
     let once_more = certain(robot_toml::parse(&robot_toml::write(&again), PATH), "written twice");
     same_robot(&again, &once_more);
     converted(&Model { robot, source: ModelSource::Toml, path: PATH.into() });

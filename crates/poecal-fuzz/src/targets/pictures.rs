@@ -1,4 +1,4 @@
-//! What belongs to pictures: files of cameras and of boards, and messages of robot_calibration.
+//! Files that accompany pictures: of cameras and of boards, and messages of robot_calibration.
 
 use std::collections::BTreeSet;
 
@@ -30,7 +30,7 @@ pub fn cameras(data: &[u8]) -> bool {
     true
 }
 
-/// Whether the numbers of a lens are some, and what it does to points is.
+/// Asserts that the numbers of a lens are finite, and its pixels and rays valid.
 fn maps(lens: &Lens) {
     assert!(lens.numbers().iter().all(|it| it.is_finite()), "{lens:?}");
     assert!(lens.focal_px.iter().all(|it| *it > 0.0), "{lens:?}");
@@ -43,7 +43,7 @@ fn maps(lens: &Lens) {
     }
 }
 
-/// The same of a file of boards: each has points with names, and words that say the same.
+/// A line with the ending of the name, and a file of boards: each has points with names, and an equivalent description.
 pub fn boards(data: &[u8]) -> bool {
     let Some(whole) = text(data) else { return false };
     let Some((path, text)) = file(&whole, &["yaml", "xml", "csv"]) else { return false };
@@ -63,7 +63,7 @@ fn are_points(board: &Board) {
     assert!(!board.points.is_empty() && board.points.iter().all(|it| it.iter().all(|it| it.is_finite())));
 }
 
-/// Messages of robot_calibration, with a lens and a board that are stated where they state no lens.
+/// Messages of robot_calibration, with a stated lens and board for those that state no lens.
 pub fn messages(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let mut options = ReadOptions::default();
@@ -84,7 +84,7 @@ pub fn messages(data: &[u8]) -> bool {
     true
 }
 
-/// What was read must fit together and belong to the text: each row is a picture.
+/// Asserts that the data are consistent and belong to the text: each row is a picture.
 fn sound(file: &MeasurementFile, text: &str) {
     certain(file.data.check(), "data");
     file.warnings.iter().for_each(|warning| one_line(warning));

@@ -15,7 +15,7 @@ use super::models::{converted, patched};
 use super::tables::{joints_sound, sound};
 use crate::properties::{PATH, VAST_M, certain, one_line, parts, size_m, understood};
 
-/// What is calibrated at most, so that one input takes little time.
+/// Limits of a calibrated input, so that it takes little time.
 const MOST_JOINTS: usize = 8;
 const MOST_ROWS: usize = 60;
 const MOST_TARGETS: usize = 4;
@@ -66,7 +66,7 @@ fn checked(model: &Model, file: &MeasurementFile) {
     certain(report::json(&check), "check as JSON");
 }
 
-/// What is written of a calibration, and the model that it becomes.
+/// Results of a calibration, and the model that it becomes.
 fn results(model: &Model, read: &MeasurementFile, calibration: &Calibration) -> Model {
     for sentence in &calibration.warnings {
         one_line(sentence);

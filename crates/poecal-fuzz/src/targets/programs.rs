@@ -8,13 +8,13 @@ use poecal_model::simulate::elbow;
 use crate::LONGEST;
 use crate::properties::{one_line, understood};
 
-/// Characters of numbers: all others of a program stay.
+/// True for characters of numbers: all others of a program stay.
 fn is_of_number(byte: u8) -> bool {
     byte.is_ascii_digit() || b".+-eE".contains(&byte)
 }
 
-/// A line with the language (`urscript`, `rapid`, `krl`, `fanuc`), and the program in it: what is no number stays, the same again, and
-/// of what stays as it is each says why in a line.
+/// A line with the language (`urscript`, `rapid`, `krl`, `fanuc`), and the program in it: text other than numbers stays, repetition is equal, and
+/// each unchanged target has its reason in a line.
 pub fn programs(data: &[u8]) -> bool {
     if data.len() > LONGEST {
         return false;

@@ -10,8 +10,8 @@ use crate::{BETWEEN, LONGEST};
 /// The names under which files are read.
 pub(crate) const NAMES: [&str; 2] = ["input.1", "input.2"];
 
-/// A file in any form, or two of which one has the joint readings of the other, bytes of workbooks and bags too: read as they are, joined row by
-/// row. What was read is the same each time, and as a table of our own.
+/// A file in any form, or two of which one has the joint readings of the other, including bytes of workbooks and bags: read as they are, joined row
+/// by row. The data are the same each time, and as a table of the project's form.
 pub fn recorded(data: &[u8]) -> bool {
     if data.len() > LONGEST {
         return false;
@@ -57,13 +57,13 @@ pub(crate) fn read_files(files: &[(&str, &[u8])]) -> bool {
     let Ok(table) = imported_table(&file, &robot) else { return true };
     let Ok(back) = parse(&table, "session.csv", &robot, &ReadOptions::default()) else { return true };
     let (own, other) = (file.data.all_readings(), back.data.all_readings());
-    // Degrees of radians are rounded.
+    // Degrees from radians are rounded.
     let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= 4.0 * f64::EPSILON * a.abs();
     assert!(own.len() == other.len() && own.iter().zip(other).all(is_same), "{table}");
     true
 }
 
-/// What was read must fit together.
+/// Asserts that the data are consistent.
 fn sound(file: &MeasurementFile) {
     let checked = file.data.check();
     assert!(checked.is_ok(), "{checked:?}");

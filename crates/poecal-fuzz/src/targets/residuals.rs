@@ -12,11 +12,11 @@ pub fn residuals(data: &[u8]) -> bool {
     true
 }
 
-/// What is written must read back the same.
+/// Asserts that written text reads back the same.
 pub(crate) fn same(residuals: &Residuals) {
     let written = residuals.text();
     let again = certain(Residuals::parse(&written, PATH), &written);
     assert_eq!(again.text(), written);
-    // What is no number, such as an empty cell, does not equal itself, but is shown alike.
+    // A missing number, such as an empty cell, does not equal itself, but is shown alike.
     assert!(&again == residuals || format!("{again:?}") == format!("{residuals:?}"), "{written}");
 }

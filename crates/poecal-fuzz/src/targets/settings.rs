@@ -4,7 +4,7 @@ use poecal_results::settings::{SettingValue, Settings};
 
 use crate::properties::{PATH, certain, text, understood};
 
-/// Keys that settings may have: those of the examples, and some of each kind.
+/// Possible keys of settings: those of the examples, and some of each kind.
 const KEYS: [&str; 14] = [
     "model",
     "measurements",

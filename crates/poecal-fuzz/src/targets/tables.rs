@@ -8,7 +8,7 @@ use poecal_results::predictions::{PredictionFrame, predict};
 
 use crate::properties::{PATH, certain, one_line, parts, text, understood};
 
-/// A robot that a table's joints may be of.
+/// A robot with the joints of a table.
 pub(crate) fn robot_of(table: &str) -> Robot {
     if table.contains("joint6") { elbow() } else { scara() }
 }
@@ -26,14 +26,14 @@ pub fn measurements(data: &[u8]) -> bool {
     let options = ReadOptions { mapping, ..ReadOptions::default() };
     let Some(file) = understood(parse(&table, PATH, &robot, &options), &table) else { return false };
     sound(&file, &table);
-    // Which lines are fitted says nothing of what they hold.
+    // The set of a line does not affect its content.
     let all = ReadOptions { ignore_sets: true, ..options };
     let again = certain(parse(&table, PATH, &robot, &all), "without sets");
     assert_eq!(file.data.all_readings(), again.data.all_readings());
     true
 }
 
-/// What was read must fit together and belong to the text.
+/// Asserts that the data are consistent and belong to the text.
 pub(crate) fn sound(file: &MeasurementFile, text: &str) {
     certain(file.data.check(), "data");
     file.warnings.iter().for_each(|warning| one_line(warning));
@@ -42,14 +42,14 @@ pub(crate) fn sound(file: &MeasurementFile, text: &str) {
     for understood in &file.understood {
         let others: usize = understood.others.values().sum();
         assert_eq!(understood.points + understood.poses + others, file.data.len());
-        // Nothing may be measured in a row.
+        // A row may have no measurement.
         assert!(understood.rows <= lines);
     }
     assert!(file.data.observations.iter().all(|row| (1..=lines).contains(&(row.source.line as usize))));
     assert!(file.data.all_readings().iter().all(|reading| reading.abs() <= 1e6));
 }
 
-/// A table of joint readings, and what is predicted from them.
+/// A table of joint readings, and predictions from them.
 pub fn joints(data: &[u8]) -> bool {
     let Some(text) = text(data) else { return false };
     let robot = robot_of(&text);

@@ -1,11 +1,11 @@
-//! Columns, words and units that were chosen in place of what was guessed.
+//! Columns, words and units that a person chooses in place of the guess.
 
 use super::Sample;
 use super::fields::{MappedField, WAYS};
 use poecal_numerics::error::{ErrorKind, Result, nearest_or_all};
 
 impl Sample<'_> {
-    /// Takes a column or a word in place of what was guessed.
+    /// Takes a column or a word in place of the guess.
     pub(super) fn choose(&self, fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
         if key == "pose" {
             let expected = WAYS.join(" or ");
@@ -32,7 +32,7 @@ impl Sample<'_> {
         Ok(())
     }
 
-    /// A column of the file by its name, with or without its unit.
+    /// Finds a column of the file by its name, with or without its unit.
     fn known(&self, name: &str, key: &str) -> Result<String> {
         let known: Vec<&str> = self.columns.iter().map(|it| it.name.as_str()).collect();
         let found = self.index(name).or_else(|| self.names.named(name)).and_then(|it| self.name(it));

@@ -1,4 +1,4 @@
-//! What a person can choose of a mapping, as fields with what is chosen.
+//! Fields of a mapping that a person can choose, with the present choice.
 
 use serde::Serialize;
 
@@ -8,21 +8,21 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::{NamedUnit, units_of};
 use poecal_numerics::unit::Unit;
 
-/// A choice of a mapping: a column for what poecal reads, or one of some words.
+/// A choice of a mapping: a column for an input of poecal, or one of some words.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct MappedField {
-    /// What `--column` calls it.
+    /// Key of the field, as `--column` takes it.
     pub key: String,
-    /// What it is part of: `joints`, `position`, `orientation` or `rows`.
+    /// Group of the field: `joints`, `position`, `orientation` or `rows`.
     pub group: &'static str,
-    /// What it is.
+    /// Label of the field.
     pub label: String,
-    /// The words to choose from; none where it is a column.
+    /// Words to choose from; empty if the field is a column.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<MappedChoice>,
     /// The column or word; empty for none.
     pub chosen: String,
-    /// Whether nothing can be read without it.
+    /// True if nothing can be read without it.
     pub required: bool,
     /// The key of the field with the unit of this column; empty for none.
     #[serde(skip)]
@@ -34,7 +34,7 @@ pub struct MappedField {
 pub struct MappedChoice {
     /// The word.
     pub value: String,
-    /// What it means.
+    /// Meaning of the word.
     pub text: String,
 }
 
@@ -44,7 +44,7 @@ impl MappedChoice {
     }
 }
 
-/// The unit of some columns: its field, and what it is up to a number, and beyond it.
+/// Unit of some columns: its field, and the usual units up to a number and beyond it.
 pub(crate) struct UnitField {
     pub(crate) key: &'static str,
     pub(crate) of: Unit,
@@ -56,16 +56,16 @@ const fn unit(key: &'static str, of: Unit, most: f64, usual: [&'static str; 2]) 
     UnitField { key, of, most, usual }
 }
 
-/// Beyond this an angle is in degrees: joints turn once to either side.
+/// Largest angle that is taken as radians; larger ones are degrees, since joints turn once to either side.
 pub(crate) const MOST_RADIANS: f64 = 7.0;
-/// Units of angles of joints, slides, positions and angles of orientations; robots reach less than 20 m.
+/// Units of joint angles, slides, positions and angles of orientations; robots reach less than 20 m.
 pub(crate) const UNITS: [UnitField; 4] = [
     unit("unit.angle", Unit::Radian, MOST_RADIANS, ["rad", "deg"]),
     unit("unit.length", Unit::Metre, 10.0, ["m", "mm"]),
     unit("unit.position", Unit::Metre, 20.0, ["m", "mm"]),
     unit("unit.orientation", Unit::Radian, MOST_RADIANS, ["rad", "deg"]),
 ];
-/// Ways in which poses may point, as a mapping calls them.
+/// Directions in which poses may point, in the words of a mapping.
 pub(crate) const WAYS: [&str; 2] = ["device_from_target", "target_from_device"];
 
 impl MappedField {
@@ -75,7 +75,7 @@ impl MappedField {
         MappedField { key, group, label, chosen, ..MappedField::default() }
     }
 
-    /// The same of a column without which nothing can be read, in a unit.
+    /// Requires the column, and states the field of its unit.
     pub(crate) fn of_number(self, unit: &'static str) -> Self {
         MappedField { required: true, unit, ..self }
     }
@@ -96,7 +96,7 @@ impl MappedField {
         MappedField { choices, ..MappedField::column("orientation", "orientation", "form", chosen) }
     }
 
-    /// The field for the way in which poses point.
+    /// A field for the direction in which poses point.
     pub(crate) fn way() -> Self {
         let texts = ["of the target, as the device sees it", "of the device, as the target sees it"];
         let choices = WAYS.into_iter().zip(texts).map(|(way, text)| MappedChoice::new(way, text)).collect();
@@ -125,7 +125,7 @@ fn forms() -> Vec<MappedChoice> {
     std::iter::once(none).chain(OrientationForm::with_names().chain(angles).map(choice)).collect()
 }
 
-/// Takes a unit in place of what was guessed.
+/// Takes a unit in place of the guess.
 pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) -> Result<()> {
     let unit = UNITS.iter().find(|it| it.key == key);
     let of = unit.map_or(Unit::Radian, |it| it.of);
@@ -142,7 +142,7 @@ pub(super) fn choose_unit(fields: &mut [MappedField], key: &str, value: &str) ->
     Ok(())
 }
 
-/// An error of a value that was chosen.
+/// The error of a value that was chosen.
 pub(super) fn refused(error: poecal_numerics::error::Error) -> poecal_numerics::error::Error {
     ErrorKind::Option.error(format!("--column: {}", error.message()))
 }

@@ -1,5 +1,4 @@
-//! Which columns of a file are the joints' readings and what was measured: a guess for a person to look over and correct, and the mapping file
-//! that it makes.
+//! Guess of the columns of a file that hold joint readings and measurements, and the mapping file for it. A person looks it over and corrects it.
 
 mod choices;
 mod fields;
@@ -31,16 +30,16 @@ use poecal_numerics::unit::Unit;
 const ROWS: usize = 200;
 /// Cells of a column that are shown.
 const SHOWN: usize = 3;
-/// Which columns of a file are taken for what, with all that can be chosen instead, and the mapping that says so.
+/// Columns of a file with their guessed meaning, all other choices, and the mapping that states them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnGuess {
     /// The columns of the file, in their order.
     pub columns: Vec<FoundColumn>,
-    /// What a mapping says, with what is chosen.
+    /// Fields of the mapping, with the present choice.
     pub fields: Vec<MappedField>,
-    /// Columns that nothing is read from.
+    /// Columns from which nothing is read.
     pub ignored: Vec<String>,
-    /// What has no column, and nothing can be read without.
+    /// Required inputs for which there is no column.
     pub missing: Vec<String>,
     /// The mapping file (TOML).
     pub mapping: String,
@@ -49,7 +48,7 @@ pub struct ColumnGuess {
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FoundColumn {
-    /// What a mapping calls it.
+    /// Name of the column in a mapping.
     pub name: String,
     /// Its first cells.
     pub cells: Vec<String>,
@@ -64,12 +63,12 @@ struct Sample<'h> {
     largest: Vec<f64>,
 }
 
-/// Guesses which columns of a file are the joints' readings and what was measured. Each of `chosen` is what a field is called and the column
-/// or word for it, empty for none.
+/// Guesses which columns of a file are the joint readings and the measurements. Each item of `chosen` is the key of a field, and the column or word
+/// for it, empty for none.
 ///
 /// # Errors
-/// As [`super::read`] of a file that is no table; [`ErrorKind::Option`] of a form that is read without a mapping, and of a field or a column
-/// that is not there.
+/// Those of [`super::read`] for a file that is no table; [`ErrorKind::Option`] for a form that is read without a mapping, and for a field or a
+/// column that does not exist.
 pub fn guess_columns(
     path: impl AsRef<Path>,
     robot: &Robot,
@@ -91,7 +90,7 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
         );
         return Err(ErrorKind::Option.error(message).in_file(path));
     }
-    // As a mapping that names columns reads it.
+    // A mapping that names columns reads the table as it is.
     let position = Some(PositionSpec { columns: Some([1, 2, 3].map(numbered_column)), unit: None });
     let mapping = Some(ColumnMap { position, ..ColumnMap::default() });
     let options = ReadOptions { mapping, ..ReadOptions::default() };
@@ -104,7 +103,7 @@ fn guess_at(path: &Path, robot: &Robot, chosen: &[(String, String)]) -> Result<C
     Ok(sample.guess(fields, way, path))
 }
 
-/// The first cells of each column, and its largest number; NaN where it has none.
+/// The first cells of each column, and its largest number; NaN if it has none.
 fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
     let count = table.header.cells.len();
     let (mut shown, mut largest) = (vec![Vec::new(); count], vec![f64::NAN; count]);
@@ -113,7 +112,7 @@ fn first_rows(table: &mut Table<'_>) -> Result<(Vec<Vec<String>>, Vec<f64>)> {
     while read < ROWS
         && let Some(mut rows) = table.next_block()?
     {
-        // A broken row is told by who reads it.
+        // The reader of the rows reports a broken row.
         while read < ROWS
             && let Ok(Some(row)) = rows.next()
         {
@@ -152,7 +151,7 @@ impl<'h> Sample<'h> {
         self.columns.iter().position(|it| it.name == name)
     }
 
-    /// What poecal guesses, with what was chosen in its place.
+    /// The guessed fields, with the choices of a person in their place.
     fn fields(&self, robot: &Robot, chosen: &[(String, String)]) -> Result<Vec<MappedField>> {
         let names = robot.joint_reading_names();
         let columns = self.names.joints(robot, &names);
@@ -240,7 +239,7 @@ impl<'h> Sample<'h> {
         }
     }
 
-    /// The unit of some columns, unless all state theirs: that in the first one's name, or by the size of the numbers.
+    /// The unit of some columns: that in the name of the first one, else by the size of the numbers. None if all state theirs.
     fn guess_unit(
         &self,
         columns: &[usize],
@@ -255,7 +254,7 @@ impl<'h> Sample<'h> {
         named.or_else(|| NamedUnit::parse(symbol, *of).ok())
     }
 
-    /// Columns with a name of ours that would be read without being chosen.
+    /// Columns with a name of our form that would be read without being chosen.
     fn left_out(&self, fields: &[MappedField]) -> Vec<String> {
         let is_chosen = |key: &str| {
             let is_it = |it: &&MappedField| it.group != "joints" && it.key == key;

@@ -1,4 +1,4 @@
-//! Columns by what their names say: joints in their order, three coordinates, the parts of an orientation.
+//! Meaning of columns by their names: joints in their order, three coordinates, the parts of an orientation.
 
 use std::collections::BTreeMap;
 
@@ -15,20 +15,20 @@ use poecal_numerics::named_unit::NamedUnit;
 /// The last words of the names of an orientation's columns, and its form.
 type Ends = (&'static [&'static str], OrientationForm);
 
-/// Three angles that no maker calls so, and the form that they have most often.
+/// Three angles whose names no maker uses, and their most frequent form.
 const GREEK: Ends = (&["alpha", "beta", "gamma"], OrientationForm::Angles(Angles::XYZ));
 
-/// Orientations by the last words of their names: quaternions, then our own angles, as where they are read, then those of makers.
+/// Orientations by the last words of their names: quaternions, then the angles of our form, in the order of the reader, then those of makers.
 fn orientations() -> impl Iterator<Item = Ends> {
     let rank = |it: &&Convention| if it.form.len() == 4 { 0 } else { 1 + u8::from(it.is_unique()) };
-    // Joints are called q0 to q3.
+    // Joints are named q0 to q3.
     let is_sought = |it: &&Convention| it.form.len() <= 4 && !it.has("q0");
     let mut known: Vec<&Convention> = CONVENTIONS.iter().filter(is_sought).collect();
     known.sort_by_key(rank);
     known.into_iter().map(|it| (it.columns, it.form)).chain([GREEK])
 }
 
-/// What the names of some columns begin with, and the columns.
+/// The common beginning of the names of some columns, and the columns.
 type Begun = (String, Vec<usize>);
 
 /// The name of a column in words.
@@ -51,7 +51,7 @@ impl Words {
         }
     }
 
-    /// How well a stem says that its columns were measured; none of statistics.
+    /// Likelihood, by its stem, that a column was measured, as a rank; `None` for statistics.
     fn rank(stem: &str) -> Option<usize> {
         match stem {
             _ if Role::InStatistic.is_in(stem) => None,
@@ -67,7 +67,7 @@ impl Words {
 pub(crate) struct Names<'h> {
     header: &'h Header<'h>,
     words: Vec<Words>,
-    /// Whether the cells of each are numbers.
+    /// True for each column whose cells are numbers.
     numeric: Vec<bool>,
 }
 
@@ -92,8 +92,8 @@ impl<'h> Names<'h> {
         self.header.find(name).ok().flatten()
     }
 
-    /// The columns of the joints: those of their names, those that are read without a mapping too, or as many as there are joints with a word for
-    /// them, in their order.
+    /// The columns of the joints: by their names, by the names that are read without a mapping, or in their order, if as many columns as joints
+    /// have a word for them.
     pub(crate) fn joints(&self, robot: &Robot, names: &[String]) -> Vec<Option<usize>> {
         let own: Vec<Option<usize>> = names.iter().map(|name| self.named(name)).collect();
         if own.iter().any(Option::is_some) {
@@ -110,7 +110,7 @@ impl<'h> Names<'h> {
         if found.len() == names.len() { found.into_iter().map(Some).collect() } else { own }
     }
 
-    /// The columns whose names end with these words and begin alike, with what they begin with; those that were measured, if there are several.
+    /// The columns whose names end with these words and begin alike, with their common beginning; measured columns take precedence.
     fn ending(&self, last: &[&str], near: Option<&str>) -> Option<Begun> {
         let mut stems: BTreeMap<&str, Vec<Option<usize>>> = BTreeMap::new();
         for (column, words) in self.numeric() {
@@ -132,7 +132,7 @@ impl<'h> Names<'h> {
         Some((stem.to_owned(), found))
     }
 
-    /// The columns of the position, and what their names begin with.
+    /// The columns of the position, and the beginning of their names.
     pub(crate) fn position(&self) -> Option<Begun> {
         Role::Axes.rows().find_map(|axes| self.ending(&axes.split(' ').collect::<Vec<_>>(), None))
     }
@@ -142,7 +142,7 @@ impl<'h> Names<'h> {
         orientations().find_map(|(last, form)| Some((form, self.ending(last, near)?.1)))
     }
 
-    /// The columns of a form that was chosen, as far as their names say so.
+    /// The columns of a form that was chosen, as far as their names show it.
     pub(crate) fn parts(&self, form: OrientationForm, near: Option<&str>) -> Vec<Option<usize>> {
         let angles = orientations().filter(|it| it.1.len() == 3 && form.len() == 3).map(|it| it.0);
         let found = std::iter::once(form.part_names()).chain(angles).find_map(|last| self.ending(last, near));

@@ -10,7 +10,7 @@ fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
-/// A key as TOML has it.
+/// A key in TOML.
 fn key(name: &str) -> String {
     let is_bare = |it: char| it.is_ascii_alphanumeric() || it == '_' || it == '-';
     if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
@@ -20,7 +20,7 @@ fn list<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
     format!("[{}]", names.into_iter().map(|it| quoted(it)).collect::<Vec<_>>().join(", "))
 }
 
-/// The mapping in TOML, of poses that point in a way; what has no column is a comment.
+/// The mapping in TOML, of poses that point in the direction `way`; an input without a column is a comment.
 pub(crate) fn mapping(fields: &[MappedField], way: Option<&str>, left_out: &[String], file: &str) -> String {
     let mut out = format!("# How the columns of {} are read, by the option --columns.\n", visible(file));
     let of = |group: &'static str| fields.iter().filter(move |it| it.group == group && it.choices.is_empty());

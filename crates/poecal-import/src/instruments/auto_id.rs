@@ -1,5 +1,5 @@
-//! The table that *Auto ID* of DELMIA reads: no header, tabs, the name, x, y, z in millimetres, roll, pitch, yaw in degrees, and the joints in
-//! degrees.
+//! The table that *Auto ID* of DELMIA reads, without header and separated by tabs. Columns are the name, x, y, z in millimetres, roll, pitch, yaw
+//! in degrees, and the joints in degrees.
 
 use super::maker::{At, Column, Made, Refused, Value, place};
 use super::words::{cells, lines, number};

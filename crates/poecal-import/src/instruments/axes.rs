@@ -37,7 +37,7 @@ enum Place {
 }
 
 impl<'t> Listed<'t> {
-    /// One without axes.
+    /// A configuration without axes.
     pub(super) fn new(line: usize, name: String) -> Self {
         Listed { line, name, own: BTreeMap::new(), external: BTreeMap::new() }
     }
@@ -56,7 +56,7 @@ impl Axis<'_> {
         number(self.value) == Some(0.0)
     }
 
-    /// True if its unit, where one is stated, is that of a joint.
+    /// True if its unit, if one is stated, is that of a joint.
     fn fits(&self, slides: bool) -> bool {
         self.unit.is_none_or(|it| (it == "mm") == slides)
     }
@@ -91,12 +91,12 @@ impl<'a, 't> Axes<'a, 't> {
         }
     }
 
-    /// The unit that an axis has where it first stands.
+    /// The unit of an axis at its first occurrence.
     fn unit(&self, place: Place) -> Option<&'t str> {
         self.listed.iter().find_map(|it| it.axis(place)).and_then(|it| it.unit)
     }
 
-    /// The axis of each joint: own axes are the joints that turn, or all joints where their units say so, and external ones the others.
+    /// The axis of each joint. Own axes are the joints that turn, or all joints if their units agree; external axes are the others.
     fn of_joints(&self) -> Option<Vec<Place>> {
         let turning = self.slides.iter().filter(|it| !**it).count();
         // A slide at an end of the chain may be a rail, which has no number of the arm's.
@@ -125,7 +125,7 @@ impl<'a, 't> Axes<'a, 't> {
         (1..=self.own).map(Place::Own).chain(external).collect()
     }
 
-    /// Axes that are not the joints one to one.
+    /// The error of axes that do not match the joints one to one.
     fn refuse<T>(&self, joints: &[String]) -> Result<T, Refused> {
         let axes = self.all().into_iter().map(|it| match self.unit(it) {
             Some(unit) => format!("{} ({unit})", self.name(it)),
@@ -144,8 +144,8 @@ impl<'a, 't> Axes<'a, 't> {
     }
 }
 
-/// The table of configurations in degrees and millimetres, their names in the first column; by a mapping, with the axes as the file names them where these
-/// are not the joints.
+/// The table of configurations in degrees and millimetres, with their names in the first column. If a mapping is to match the axes to the joints,
+/// the axes keep their names in the file.
 pub(super) fn made(
     listed: &[Listed<'_>],
     first: Column,

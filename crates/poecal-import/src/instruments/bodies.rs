@@ -1,4 +1,4 @@
-//! What a recorder saw at each time: bodies with poses, or markers.
+//! Bodies with poses, or markers, that a recorder observed at each time.
 
 use nalgebra::Vector3;
 
@@ -9,20 +9,20 @@ use super::words::{lines, quoted};
 use poecal_fit::start::{FEWEST_MARKERS, MarkerPlaces, RenamedMarkers};
 use poecal_numerics::error::{first_few, shown};
 
-/// A body or a marker that moved less than this, metres, stands.
+/// A body or a marker that moved less than this, metres, is at rest.
 const MOVED_M: f64 = 0.02;
-/// One that moved less than this share of what moved farthest stands too: its noise is in another unit than is stated.
+/// A body that moved less than this share of the largest motion is at rest too: its noise is in another unit than stated.
 const MOVED: f64 = 0.05;
-/// Share of the frames at either end of a coordinate that do not say how far something moved, as of a body that was taken for another.
+/// Share of the frames at either end of a coordinate that do not count as motion, such as those of a mistaken body.
 const STRAYED: f64 = 0.01;
 
-/// Of things that moved so far, metres, whether each moves.
+/// True for each item that moves, by their distances of motion, metres.
 pub(crate) fn which_move(moved_m: &[f64]) -> Vec<bool> {
     let farthest = moved_m.iter().copied().fold(0.0, f64::max);
     moved_m.iter().map(|it| *it > MOVED_M.max(MOVED * farthest)).collect()
 }
 
-/// How far something moved: the widest of its coordinates, but for some frames that strayed.
+/// Distance that something moved: the widest range of its coordinates, without some stray frames.
 pub(crate) fn moved_m(places: &[[f64; 3]]) -> f64 {
     let wide = |at: usize| {
         let mut own: Vec<f64> = places.iter().map(|it| it[at]).collect();
@@ -50,7 +50,7 @@ impl Body {
     }
 }
 
-/// What was seen at a time.
+/// Observations at one time.
 pub(crate) struct Frame<'t> {
     pub(crate) line: usize,
     /// Seconds.
@@ -65,15 +65,15 @@ pub(crate) struct Frames<'t> {
     pub(crate) unit: (&'static str, f64),
     /// The line that names the columns.
     pub(crate) header: usize,
-    /// Markers without a name, whose places may be those of others.
+    /// Markers without a name, whose columns may hold those of other markers.
     pub(crate) unnamed: Vec<Body>,
-    /// Whether no marker has a name.
+    /// True if no marker has a name.
     pub(crate) are_unnamed: bool,
 }
 
 impl<'t> Frames<'t> {
-    /// The frames in the lines below the header. `time` of the cells of a line, and of the number and the time of the frame before, is that of its frame,
-    /// or what is wrong with the line.
+    /// The frames in the lines below the header. `time` returns the time of a frame, or the defect of its line. Its arguments are the cells of the
+    /// line, and the number and the time of the frame before.
     pub(crate) fn from_lines(
         text: &'t str,
         (header, unit): (usize, (&'static str, f64)),
@@ -90,7 +90,7 @@ impl<'t> Frames<'t> {
         Ok(Frames { all, unit, header, unnamed: Vec::new(), are_unnamed: false })
     }
 
-    /// The table of the body that moves; of several, of the one that was asked for.
+    /// The table of the body that moves; if several move, of the requested one.
     pub(crate) fn table(&self, bodies: &[Body], what: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         if self.all.is_empty() {
             return At(self.header).refuse("found the names of columns and no frame, expected at least one");
@@ -144,7 +144,7 @@ impl<'t> Frames<'t> {
         Ok(made)
     }
 
-    /// The bodies that are taken, with their numbers; of markers without names those that make a body.
+    /// The bodies that are taken, with their numbers. Without names, they are the markers that form a rigid body.
     fn named<'b>(
         &self,
         taken: &[&'b Body],
@@ -158,7 +158,7 @@ impl<'t> Frames<'t> {
         }
     }
 
-    /// What the distances between markers show of their names, some of which are at the first of these places; `None` if they show nothing.
+    /// Exchanges of names that the distances between markers show; `taken` are the first of `places`. `None` if there are none.
     fn renamed(&self, taken: &[&Body], places: &[&Body]) -> Option<RenamedMarkers> {
         if taken.len() < FEWEST_MARKERS {
             return None;
@@ -216,7 +216,7 @@ impl<'t> Frames<'t> {
         Ok(taken)
     }
 
-    /// How far a body moved, metres.
+    /// Distance that a body moved, metres.
     fn moved_m(&self, body: &Body) -> f64 {
         moved_m(&self.all.iter().filter_map(|it| it.position(body)).collect::<Vec<_>>()) * self.unit.1
     }
@@ -255,7 +255,7 @@ impl<'t> Frame<'t> {
         Some(found)
     }
 
-    /// Where a body is; `None` where it was not seen: cells that are empty, or all zero.
+    /// Position of a body; `None` if it was not seen: cells that are empty, or all zero.
     fn position(&self, body: &Body) -> Option<[f64; 3]> {
         self.numbers(body.position).filter(|it| *it != [0.0; 3])
     }

@@ -18,11 +18,11 @@ pub(crate) const KUKA: Form =
 pub(crate) const ECHO: Form =
     Form { title: "joint states of `ros2 topic echo --csv`", is_it: is_echo, table: of_echo };
 
-/// Lines in which a form is sought.
+/// Number of lines in which a form is sought.
 const FIRST: usize = 60;
-/// Most axes that angles are filled in for.
+/// Largest number of axes for which angles are filled in.
 const MOST_AXES: u8 = 64;
-/// Names of axes, and of what has them.
+/// Names of the axes, and of the records that have them.
 const FANUC_WORDS: Words = Words { own: "J", external: "EXT", all: "configurations" };
 const STAUBLI_WORDS: Words = Words { own: "j", external: "", all: "configurations" };
 const KUKA_WORDS: Words = Words { own: "A", external: "E", all: "telegrams" };
@@ -33,7 +33,7 @@ fn is_fanuc(text: &str, _: &Opening<'_>) -> bool {
     first.any(|(line, it)| it.contains("[*POSREG*]") || line == 1 && it.contains("$POSREG"))
 }
 
-/// `[1,4] = 'name'`, then `J1 = 10.000 deg …`; other registers are poses, of other groups, or not initialized.
+/// Reads `[1,4] = 'name'`, then `J1 = 10.000 deg …`; other registers are poses, of other groups, or not initialised.
 fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let mut listed: Vec<Listed<'_>> = Vec::new();
     let mut poses = 0;
@@ -82,7 +82,7 @@ fn of_fanuc(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     Ok(made)
 }
 
-/// The values of attributes with this letter and a number of an element's text, by their number.
+/// The values of the attributes with this letter and a number in the text of an element, by their number.
 fn numbered(element: &str, letter: char) -> BTreeMap<u8, Axis<'_>> {
     let attributes = element.split_whitespace().filter_map(|it| it.split_once('='));
     attributes
@@ -99,7 +99,7 @@ fn is_staubli(text: &str, _: &Opening<'_>) -> bool {
         && text.contains("type=\"joint")
 }
 
-/// `<Data name="…" type="jointRx"> <Value key="0" j1="…" …/>`; angles that are zero are left out of newer files.
+/// Reads `<Data name="…" type="jointRx"> <Value key="0" j1="…" …/>`; newer files leave out angles that are zero.
 fn of_staubli(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let mut arrays: Vec<(&str, Vec<Listed<'_>>)> = Vec::new();
     let mut is_joints = false;
@@ -143,7 +143,7 @@ fn of_staubli(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     Ok(made)
 }
 
-/// Puts 0 where angles are left out of an array, and counts them.
+/// Fills in 0 for angles that an array leaves out, and counts them.
 fn fill(name: &str, listed: &mut [Listed<'_>]) -> Result<usize, Refused> {
     let last = listed.iter().filter_map(|it| it.own.keys().max()).max().copied().unwrap_or_default();
     let mut count = 0;
@@ -166,7 +166,7 @@ fn is_kuka(text: &str, _: &Opening<'_>) -> bool {
     lines(text).take(FIRST).any(|it| it.1.contains("<AIPos ")) && text.contains("<Rob ")
 }
 
-/// `<AIPos A1="…" …/>`, `<EIPos E1="…" …/>` of external axes, and `<IPOC>` with the controller's time in milliseconds.
+/// Reads `<AIPos A1="…" …/>`, `<EIPos E1="…" …/>` of external axes, and `<IPOC>` with the controller's time in milliseconds.
 fn of_kuka(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let mut listed: Vec<Listed<'_>> = Vec::new();
     let (mut own, mut external) = (BTreeMap::new(), BTreeMap::new());
@@ -219,7 +219,7 @@ fn of_echo(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         let Some(names) = echo_names(&cells) else {
             return At(line).refuse("found a line that is no joint state, expected seconds, nanoseconds, a frame, names of joints and their positions");
         };
-        // Behind the names are positions, and velocities and efforts if there are any.
+        // Positions are behind the names, then velocities and efforts if there are any.
         let beyond = cells.iter().skip(3 + names.len()).filter(|it| !it.is_empty()).count();
         if beyond == 0 || beyond % names.len() != 0 {
             return At(line).refuse(format!(

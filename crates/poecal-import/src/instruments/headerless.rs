@@ -40,7 +40,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         return At(*line)
             .refuse(format!("found {found} cells, expected {width} as in other lines from line {first} on"));
     }
-    // Columns of measurements that this table does not have are of another one.
+    // Columns of measurements that this table does not have belong to another one.
     let is_of_this = |map: &&ColumnMap| {
         map.names_columns() && (map.names_joints() || map.measured_numbers().is_none_or(|it| it <= width))
     };
@@ -73,7 +73,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     }
 }
 
-/// Whether the first numbers become larger from row to row, as times do.
+/// True if the first numbers increase from row to row, as times do.
 fn is_rising(rows: &[Row<'_>]) -> bool {
     let first: Vec<f64> = rows.iter().filter_map(|it| number(it.1.first()?)).collect();
     first.len() > 1 && first.windows(2).all(|it| it[0] < it[1])
@@ -86,7 +86,7 @@ fn made(columns: impl IntoIterator<Item = impl Into<Column>>, rows: Vec<Row<'_>>
     made
 }
 
-/// Joint readings, with what is before them.
+/// Joint readings, with a time or a name before them.
 fn joints(rows: Vec<Row<'_>>, before: Option<&str>, opening: &Opening<'_>) -> Made {
     let names = opening.robot.joint_reading_names();
     let mut made = made(before.into_iter().chain(names.iter().map(String::as_str)), rows);
@@ -95,7 +95,7 @@ fn joints(rows: Vec<Row<'_>>, before: Option<&str>, opening: &Opening<'_>) -> Ma
     made
 }
 
-/// Points; names that come again and again are those of targets.
+/// Points; names that recur are those of targets.
 fn points(rows: Vec<Row<'_>>, is_named: bool) -> Made {
     let first = rows.iter().filter(|_| is_named).filter_map(|it| it.1.first());
     let names: Vec<String> = first.map(|it| (*it).to_owned()).collect();

@@ -1,5 +1,5 @@
-//! Poses and points that Leica's software for trackers writes as CSV: columns with two blanks before their unit, expanded uncertainties `U(95)`, the
-//! quaternion with its real part `Q0` first.
+//! Poses and points in CSV of Leica's software for trackers. Columns have two blanks before their unit, uncertainties are expanded (`U(95)`), and
+//! quaternions begin with their real part `Q0`.
 
 use super::maker::{At, Column, Made, Refused, Value};
 use super::words::{Head, lines, name_and_unit, quoted};
@@ -9,7 +9,7 @@ pub(crate) const FORM: Form = Form { title: "measurements of a Leica tracker", i
 
 /// The factor between the expanded uncertainty (95 %) of a normal distribution and its standard deviation.
 const COVERAGE: f64 = 1.96;
-/// Columns with a meaning, each with ours.
+/// Columns with a meaning, each with its name in our form.
 const COLUMNS: [(&str, &str); 10] = [
     ("X", "x"),
     ("Y", "y"),
@@ -26,7 +26,7 @@ const COLUMNS: [(&str, &str); 10] = [
 /// Names of columns with their units.
 type Names<'t> = Vec<(String, Option<&'t str>)>;
 
-/// The header, and what it names.
+/// The header and the names in it.
 fn head(text: &str) -> Option<(Head<'_>, Names<'_>)> {
     let head = Head::recognised(lines(text).next()?);
     let parts = head.names.iter().map(|it| name_and_unit(it, &[['[', ']']]));
@@ -41,7 +41,7 @@ fn is_it(text: &str, _: &Opening<'_>) -> bool {
     has("X") && has("Y") && has("Z") && (has("U(95)") || has("U(95) X"))
 }
 
-/// A column with a meaning: its place, whether it is an expanded uncertainty, and what it becomes.
+/// A column with a meaning: its index, whether it is an expanded uncertainty, and the column in our form.
 type Used = (usize, bool, Column);
 
 /// Finds the columns with a meaning.

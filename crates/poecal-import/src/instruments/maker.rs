@@ -1,4 +1,4 @@
-//! Makes tables in our form.
+//! Construction of tables in our form.
 
 use std::io;
 use std::path::Path;
@@ -14,7 +14,7 @@ use poecal_storage::numbers::push_number;
 /// A table in our form, made of a file in another one: columns, and rows of cells.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Made {
-    /// What the file is, as in "a workbook".
+    /// Title of the file, as in "a workbook".
     pub(crate) title: &'static str,
     /// Checksum of the file.
     sha256: Option<String>,
@@ -24,15 +24,15 @@ pub(crate) struct Made {
     rows: Arc<Rows>,
     /// The sheet of a workbook.
     pub(crate) sheet: Option<Sheet>,
-    /// The frame that the file says its measurements are in.
+    /// The frame in which the measurements are, as the file states it.
     pub(crate) frame: Option<String>,
-    /// Whether that is an instrument of its own.
+    /// True if that frame is an instrument of its own.
     is_by_frame: bool,
-    /// What was understood, in a few words each.
+    /// Notes on the interpretation, in a few words each.
     pub(crate) said: Vec<String>,
-    /// What should be looked at, a sentence each.
+    /// Warnings, a sentence each.
     pub(crate) warned: Vec<String>,
-    /// Of a file with two sets of coordinates, what this one is called, and the other one.
+    /// The name of this set of coordinates and the other set; for a file with two.
     pub(crate) called: Option<Called>,
     other: Option<Box<Made>>,
 }
@@ -40,14 +40,14 @@ pub(crate) struct Made {
 /// Rows of cells.
 #[derive(Clone, Debug, Default)]
 struct Rows {
-    /// The line of each row, and where its cells end.
+    /// The line of each row, and the end of its cells.
     ends: Vec<(usize, usize)>,
     /// The cells of all rows, one after the other.
     cells: Vec<Held>,
     texts: String,
 }
 
-/// A cell that is held: a text by its end, behind that of the text before.
+/// A cell that is held: a text by its end, behind that of the previous text.
 #[derive(Clone, Copy, Debug)]
 enum Held {
     Text(usize),
@@ -55,14 +55,14 @@ enum Held {
     Empty,
 }
 
-/// The text of rows in our form, which is written while it is read.
+/// The text of rows in our form, which is written while being read.
 struct Text {
     rows: Arc<Rows>,
-    /// What is behind the cells of each row.
+    /// Text behind the cells of each row.
     behind: String,
-    /// The row, the cell and the text that come next.
+    /// Indices of the next row, cell and text.
     next: [usize; 3],
-    /// What was written, and how much of it was read.
+    /// The written text, and the number of its bytes that were read.
     written: String,
     read: usize,
 }
@@ -72,11 +72,11 @@ struct Text {
 pub(crate) struct Column {
     name: String,
     unit: Option<String>,
-    /// What it was made of, where that has another name in the file.
+    /// The name of its source in the file, if that is another.
     source: Option<String>,
 }
 
-/// What a set of coordinates is called.
+/// Name of a set of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Called {
     Nominal,
@@ -88,7 +88,7 @@ pub(crate) enum Called {
 /// A cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Value<'a> {
-    /// As it is in the file.
+    /// Text as in the file.
     Text(&'a str),
     Number(f64),
     Empty,
@@ -111,17 +111,17 @@ impl<'a> Value<'a> {
 }
 
 impl Column {
-    /// The same with its unit.
+    /// Sets the unit.
     pub(crate) fn in_unit(self, unit: &str) -> Self {
         Column { unit: Some(unit.to_owned()), ..self }
     }
 
-    /// The same with what it was made of, by its name.
+    /// Sets the source, made from its name.
     pub(crate) fn made_of(self, source: impl FnOnce(&str) -> String) -> Self {
         Column { source: Some(source(&self.name)), ..self }
     }
 
-    /// As it stands in a header.
+    /// The column's title in a header.
     fn title(&self) -> String {
         self.unit.as_ref().map_or_else(|| self.name.clone(), |unit| format!("{}[{unit}]", self.name))
     }
@@ -149,7 +149,7 @@ impl Made {
         Made { head, columns: columns.into_iter().map(Into::into).collect(), ..Made::default() }
     }
 
-    /// The same with what the file is, and its checksum.
+    /// Sets the title of the file and its checksum.
     pub(crate) fn of_file(self, title: &'static str, sha256: Option<String>) -> Self {
         Made { title, sha256, ..self }
     }
@@ -168,12 +168,12 @@ impl Made {
         ends.push((line, all.len()));
     }
 
-    /// The same with its frame as that of an instrument of this name.
+    /// Makes its frame that of an instrument of this name.
     pub(crate) fn by_frame(self) -> Self {
         Made { is_by_frame: self.frame.is_some(), ..self }
     }
 
-    /// The same as the first of two sets of coordinates, with the other one.
+    /// Makes this the first of two sets of coordinates, with the other one.
     pub(crate) fn with_other(self, [own, called]: [Called; 2], other: Made) -> Self {
         let other = Made { called: Some(called), ..other };
         Made { called: Some(own), other: Some(Box::new(other)), ..self }
@@ -186,12 +186,12 @@ impl Made {
         Some([Made { other: None, ..self.clone() }, other])
     }
 
-    /// Adds what was understood, in a few words.
+    /// Adds a note on the interpretation, in a few words.
     pub(crate) fn say(&mut self, words: impl Into<String>) {
         self.said.push(words.into());
     }
 
-    /// Adds a sentence that should be looked at.
+    /// Adds a warning, a sentence.
     pub(crate) fn warn(&mut self, sentence: impl Into<String>) {
         self.warned.push(sentence.into());
     }
@@ -221,7 +221,7 @@ impl Made {
         }
     }
 
-    /// Its blocks, with where their lines are in the file, and with what was understood.
+    /// Its blocks, with the numbers of their lines in the file, and with the notes and warnings.
     pub(crate) fn blocks<'p>(&self, path: &'p Path, expected: &'p str) -> Blocks<'p> {
         let sources = self.columns.iter().filter_map(|it| Some((it.title(), it.source.clone()?)));
         let places = Places {
@@ -281,7 +281,7 @@ impl io::Read for Text {
 mod tests {
     use super::*;
 
-    /// The text of a table, when so many bytes are read at a time, with the line of the file of each line.
+    /// The text of a table, read in pieces of `size` bytes, with the line of the file for each line.
     fn text(made: &Made, size: usize) -> (String, Vec<usize>) {
         let mut blocks = made.blocks(Path::new("x.txt"), "a table");
         blocks.begin().unwrap();

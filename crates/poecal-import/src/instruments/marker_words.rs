@@ -1,4 +1,4 @@
-//! What is said of markers on one body whose names were exchanged, or that lost theirs.
+//! Messages on markers of one body whose names were exchanged or lost.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::words::quoted;
 use crate::join::join_words::numbered;
 use poecal_fit::start::RenamedMarkers;
 
-/// What is said of it: notes, and what should be looked at. `lines` are those of the frames.
+/// Notes and warnings on renamed markers. `lines` are those of the frames.
 pub(crate) fn words(
     found: &RenamedMarkers,
     names: &[&str],

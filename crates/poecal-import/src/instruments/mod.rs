@@ -1,9 +1,10 @@
-//! Files as instruments, controllers, recorders and spreadsheets write them, as tables in our form. They are recognised by what is in them,
-//! never by their names.
+//! Files of instruments, controllers, recorders and spreadsheets, as tables in our form. They are recognised by their content, never by their
+//! names.
 //!
-//! A module a form, in [`FORMS`]: it makes a `Made` (`maker.rs`), columns and rows of typed cells with the line of each row, which becomes a text in our
-//! form that is read as any other; so units, lost beams, scales and errors are those of one reader. What holds joint readings and measurements at once
-//! (`recording.rs`) is two entries of the plan of files. `marker_words.rs` says which markers their distances tell apart.
+//! Each form in [`FORMS`] has a module. It makes a `Made` (`maker.rs`): columns, and rows of typed cells with the line of each row. This becomes a
+//! text in our form, and is read as any other. So one reader handles units, beam breaks, scales and errors. A file that holds joint readings and
+//! measurements at once (`recording.rs`) is two entries of the plan of files. `marker_words.rs` reports the markers that their distances
+//! distinguish.
 
 mod auto_id;
 mod axes;
@@ -52,16 +53,16 @@ use poecal_storage::source;
 #[cfg(feature = "workbooks")]
 use poecal_storage::source::Input;
 
-/// What a file of measurements is in messages.
+/// Title of a file of measurements in messages.
 pub(crate) const MEASURED: &str = "a measurement file (CSV)";
-/// What a workbook is called, and a bag.
+/// Title of a workbook, and of a bag.
 pub(crate) const WORKBOOK: &str = "a workbook";
 pub(crate) const BAG: &str = "a ROS 2 bag";
 /// Recordings in which several bodies or markers may be.
 pub(crate) const RECORDINGS: [&str; 4] =
     [motive::FORM.title, qualisys::FORM.title, ndi::FORM.title, vicon::FORM.title];
 
-/// What files are opened with.
+/// Settings with which files are opened.
 #[derive(Clone, Copy)]
 pub(crate) struct Opening<'a> {
     pub(crate) robot: &'a Robot,
@@ -70,9 +71,9 @@ pub(crate) struct Opening<'a> {
 
 /// A file that is open.
 pub(crate) enum Opened<'p> {
-    /// One in our form.
+    /// A file in our form.
     Own(Box<Blocks<'p>>),
-    /// The table of one in another form.
+    /// The table of a file in another form.
     Made(Box<Made>),
 }
 
@@ -89,15 +90,15 @@ impl<'p> Opened<'p> {
 /// A form of files.
 #[derive(Clone, Copy)]
 pub(crate) struct Form {
-    /// What files of this form are, as in "points of SpatialAnalyzer".
+    /// Title of the files of this form, as in "points of SpatialAnalyzer".
     pub(crate) title: &'static str,
-    /// Whether a text is of this form, by its beginning.
+    /// Reports whether a text is of this form, by its beginning.
     is_it: fn(&str, &Opening<'_>) -> bool,
     /// The table of a text.
     table: fn(&str, &Opening<'_>) -> std::result::Result<Made, Refused>,
 }
 
-/// All forms of texts; the last one is what is left.
+/// All forms of texts; the last one is the fallback.
 const FORMS: &[Form] = &[
     spatial_analyzer::FORM,
     motive::FORM,
@@ -127,11 +128,11 @@ const LISTS: &[Form] = &[
     headerless::FORM,
 ];
 
-/// Those of them whose axes have names that a mapping may give to joints.
+/// Forms among them whose axes have names that a mapping may assign to joints.
 const NUMBERED: &[Form] =
     &[controller_lists::FANUC, controller_lists::STAUBLI, controller_lists::KUKA, headerless::FORM];
 
-/// Times the columns of a table that a line may have separators: what is no table, such as a program, may have more than that.
+/// Largest number of separators in a line per column of a table: a file that is no table, such as a program, may have more.
 const WIDE: usize = 16;
 
 /// Refuses a text with a line of far too many cells, before forms are sought in it.
@@ -148,14 +149,14 @@ fn refuse_wide(text: &str, path: &Path) -> Result<()> {
 }
 
 impl Opening<'_> {
-    /// Columns of the joints in the robot's order, those that turn in this unit, and slides in metres or millimetres.
+    /// Columns of the joints in the robot's order: rotary joints in this unit, and slides in metres or millimetres.
     fn joint_columns(&self, angle: &str) -> impl Iterator<Item = Column> {
         let length = if angle == "rad" { "m" } else { "mm" };
         let names = self.robot.joint_reading_names().into_iter().zip(self.slides());
         names.map(move |(name, slides)| Column::from(name).in_unit(if slides { length } else { angle }))
     }
 
-    /// Of each joint reading, whether it is a length.
+    /// True for each joint reading that is a length.
     fn slides(&self) -> Vec<bool> {
         let names = self.robot.joint_reading_names();
         names.iter().map(|name| self.robot.reading_kind(name) == ReadingKind::Length).collect()
@@ -191,7 +192,7 @@ impl Opening<'_> {
         Ok(self.opened(path, expected)?.blocks(path, expected))
     }
 
-    /// The same, with the table still to be read.
+    /// The file in our form, or the table of one in another form, not yet read.
     pub(crate) fn opened<'p>(&self, path: &'p Path, expected: &'p str) -> Result<Opened<'p>> {
         if configurations::is_folder(path) {
             return Blocks::open_or_join(path, expected).map(|it| Opened::Own(Box::new(it)));
@@ -220,14 +221,14 @@ impl Opening<'_> {
         Ok(Opened::Made(Box::new(made.of_file(WORKBOOK, Some(input.sha256())))))
     }
 
-    /// A text as it is, or the table that it makes.
+    /// A text in our form as it is, or the table that it makes.
     pub(crate) fn of_text<'p>(&self, path: &'p Path, mut blocks: Blocks<'p>) -> Result<Opened<'p>> {
         blocks.begin()?;
         refuse_wide(blocks.text(), path)?;
         if let Some(message) = refused::found(blocks.text()) {
             return Err(ErrorKind::Measurement.error(message).in_file(path));
         }
-        // A mapping that names columns reads tables as they are; where it says nothing of joints, lists of them are what they are without it.
+        // A mapping that names columns reads tables as they are; if it names no joints, lists of joints are read as without it.
         let forms: &[Form] = match self.options.mapping.as_ref().filter(|it| it.names_columns()) {
             None => FORMS,
             Some(map) if map.names_joints() => NUMBERED,

@@ -11,7 +11,7 @@ pub(crate) const FORM: Form = Form { title: "a take of Motive", is_it, table };
 const UNITS: [(&str, (&str, f64)); 3] =
     [("Meters", ("m", 1.0)), ("Centimeters", ("cm", 1e-2)), ("Millimeters", ("mm", 1e-3))];
 
-/// How the names of markers without a label begin.
+/// Beginning of the names of markers without a label.
 const UNNAMED: &str = "Unlabeled";
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
@@ -104,13 +104,13 @@ impl<'t> Labels<'t> {
         number(text).map(Some).ok_or_else(none)
     }
 
-    /// Whether a row may have so many cells: Motive leaves out those of bodies and markers that it did not see at the end.
+    /// True if a row may have so many cells: Motive leaves out those at the end for bodies and markers that it did not see.
     fn may_end(&self, count: usize) -> bool {
         let of = |at: usize| (self.types.get(at), self.names.get(at));
         count >= self.axes.len() || count > 0 && of(count) != of(count - 1)
     }
 
-    /// The column of an axis of what has a name and a type.
+    /// The column of an axis, by the name and the type of its body or marker.
     fn column(&self, name: &str, of: &str, kind: &str, axis: &str) -> Option<usize> {
         (0..self.axes.len()).find(|&at| {
             let is = |row: &[&str], word: &str| row.get(at).is_some_and(|it| *it == word);
@@ -118,7 +118,7 @@ impl<'t> Labels<'t> {
         })
     }
 
-    /// The names of what has a type, each once.
+    /// The names of one type, each once.
     fn names(&self, of: &str) -> Vec<&'t str> {
         let mut names: Vec<&str> = Vec::new();
         for (kind, name) in self.types.iter().zip(&self.names) {
@@ -129,7 +129,7 @@ impl<'t> Labels<'t> {
         names
     }
 
-    /// Bodies with poses, or without them markers that have names, and those that have none.
+    /// Bodies with poses; or, if there are none, markers with names and markers without.
     fn bodies(&self, rotation: &str) -> Result<(Vec<Body>, Vec<Body>), Refused> {
         let body = |name: &str, of: &str| -> Option<Body> {
             let at = |kind, axis| self.column(name, of, kind, axis);
@@ -150,12 +150,12 @@ impl<'t> Labels<'t> {
         if !bodies.is_empty() {
             return Ok((bodies, Vec::new()));
         }
-        // Those without a label have another number each time they come back.
+        // Markers without a label have another number each time they reappear.
         let markers = of("Marker").into_iter().map(|it| Body { quaternion: None, ..it });
         let (unnamed, named): (Vec<Body>, Vec<Body>) = markers.partition(|it| it.name.starts_with(UNNAMED));
         match (named.is_empty(), unnamed.is_empty()) {
             (false, _) => Ok((named, unnamed)),
-            // Those that are there from the beginning on, if their distances make a body of them.
+            // Markers without a label that are present from the beginning, if their distances form a rigid body.
             (true, false) => Ok((unnamed, named)),
             (true, true) => At(self.line)
                 .refuse("found neither a rigid body nor a marker with a name, expected one on the robot"),

@@ -1,5 +1,5 @@
-//! Tables that NDI's recorders write: the time of day in four columns, and up to 26 tools side by side (`Xa`, `Ya`, `Za`, `qoa`, `qxa`, …), in
-//! millimetres, zeros where a tool was not seen.
+//! Tables that NDI's recorders write: the time of day in four columns, and up to 26 tools side by side (`Xa`, `Ya`, `Za`, `qoa`, `qxa`, …). Lengths
+//! are in millimetres, and all numbers are zero if a tool was not seen.
 
 use super::bodies::{Body, Frames};
 use super::maker::{Made, Refused};
@@ -10,7 +10,7 @@ use crate::Separator;
 pub(crate) const FORM: Form = Form { title: "a recording of an NDI tracker", is_it, table };
 
 const FIRST: usize = 10;
-/// Columns of the time of day, with the seconds of one.
+/// Columns of the time of day, with the number of seconds in each unit.
 const TIME: [(&str, f64); 4] = [("Hour", 3600.0), ("Minutes", 60.0), ("Seconds", 1.0), ("ms", 1e-3)];
 
 fn head(text: &str) -> Option<Head<'_>> {
@@ -41,7 +41,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
         let part =
             |it: Option<(usize, f64)>| it.and_then(|(at, seconds)| Some(seconds * number(cells.get(at)?)?));
         let time: Option<f64> = time.into_iter().map(part).sum();
-        // The time of day begins anew at midnight.
+        // The time of day restarts at midnight.
         if let (Some(time), Some(before)) = (time, before)
             && time + days + 43_200.0 < before
         {

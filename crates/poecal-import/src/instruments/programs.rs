@@ -8,9 +8,9 @@ use poecal_programs::{Language, joint_targets};
 
 pub(crate) const FORM: Form = Form { title: "a robot program", is_it, table };
 
-/// Lines in which a language is sought.
+/// Number of lines in which a language is sought.
 const FIRST: usize = 200;
-/// How Rokae writes joint targets.
+/// Beginning of joint targets in Rokae's programs.
 const ROKAE: &str = "= j:{";
 
 fn is_it(text: &str, _: &Opening<'_>) -> bool {
@@ -91,7 +91,7 @@ fn begun(opening: &Opening<'_>, is_named: bool, line: usize) -> Made {
     Made::new(line, id.into_iter().chain(opening.joint_columns("rad")))
 }
 
-/// Rokae's dialect: `LOCAL VAR jointtarget j1 = j:{63.68,…,0}{EJ 0,…}`, degrees.
+/// Reads Rokae's dialect: `LOCAL VAR jointtarget j1 = j:{63.68,…,0}{EJ 0,…}`, degrees.
 fn of_rokae(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let names = opening.robot.joint_reading_names();
     let mut made = begun(opening, true, 1);

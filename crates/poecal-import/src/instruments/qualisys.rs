@@ -10,7 +10,7 @@ use poecal_arm::lie::{Pose, rotation};
 
 pub(crate) const FORM: Form = Form { title: "an export of Qualisys Track Manager", is_it, table };
 
-/// Largest difference of the matrix and the angles, which have two to five digits, radians.
+/// Largest difference between the matrix and the angles, which have two to five digits, radians.
 const AGREE_RAD: f64 = 0.01;
 /// Columns of a body with a pose: x, y, z, three angles, the residual and the matrix, column by column.
 const POSED: usize = 16;
@@ -39,7 +39,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     let header = cells(header, '\t');
     let at = |name: &str| header.iter().position(|it| *it == name);
     let (frame, time, expected) = (at("Frame"), at("Time"), header.len());
-    // Where the place of the first body is, and how many columns later that of the next.
+    // The column of the position of the first body, and the number of columns from there to the next body.
     let place = |of: usize| names.get(of).and_then(|name| at(&format!("{name} X")));
     let (first, step) = if is_posed {
         let Some(first) = place(0) else {
@@ -74,7 +74,7 @@ fn table(text: &str, opening: &Opening<'_>) -> Result<Made, Refused> {
     Ok(made)
 }
 
-/// Adds the orientations of bodies behind the cells of the frames, of which so many are in the header.
+/// Adds the orientations of bodies behind the cells of the frames; the header has `width` cells.
 fn add_orientations(frames: &mut Frames<'_>, bodies: &mut [Body], width: usize) -> Result<(), Refused> {
     for it in bodies.iter() {
         let start = it.position[0];
@@ -89,7 +89,7 @@ fn add_orientations(frames: &mut Frames<'_>, bodies: &mut [Body], width: usize) 
     Ok(())
 }
 
-/// Adds the quaternion of each body behind the cells of a frame, of which so many are in the header.
+/// Adds the quaternion of each body behind the cells of a frame; the header has `width` cells.
 fn add_quaternions(frame: &mut Frame<'_>, bodies: &[Body], width: usize) -> Result<(), Refused> {
     let mut more = Vec::with_capacity(4 * bodies.len());
     for body in bodies {

@@ -5,24 +5,24 @@ use std::path::Path;
 use super::maker::Made;
 use poecal_numerics::error::{Error, ErrorKind};
 
-/// Why a file has no table of a kind.
+/// Reason why a file has no table of a kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Missing {
     pub(crate) why: String,
-    /// Whether there is nothing of the kind in it, and not too much.
+    /// True if the file has nothing of the kind; false if it has too much.
     pub(crate) is_nothing: bool,
 }
 
-/// A file that may hold both.
+/// A file that may hold joint readings and measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Recording {
     pub(crate) joints: Result<Made, Missing>,
     pub(crate) measured: Result<Made, Missing>,
-    /// What is in it, in words.
+    /// Its contents, in words.
     pub(crate) contents: String,
-    /// Of the topics that were asked for those that it has, each with whether it is read.
+    /// Requested topics that the file has, each with whether it is read.
     pub(crate) has_topic: Vec<Option<bool>>,
-    /// Whether it names the bodies that were measured.
+    /// True if it names the bodies that were measured.
     pub(crate) names_bodies: bool,
 }
 
@@ -44,7 +44,7 @@ impl Recording {
         ErrorKind::Measurement.error(message).in_file(path)
     }
 
-    /// Its tables, each with whether it has joint readings; one that is left out is named with the other.
+    /// Its tables, each with whether it has joint readings; a table that is left out is named with the other.
     pub(crate) fn tables(&self) -> Vec<(bool, Made)> {
         let mut found = Vec::new();
         for (is_joints, own, other) in

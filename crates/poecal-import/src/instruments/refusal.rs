@@ -1,10 +1,10 @@
-//! Why a file of a known form is not read.
+//! Reasons why a file of a known form is not read.
 
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind};
 
-/// Why a file of a known form is not read, and in which line.
+/// Reason why a file of a known form is not read, and its line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Refused {
     line: Option<usize>,
@@ -22,19 +22,19 @@ impl<T: Into<String>> From<T> for Refused {
 pub(crate) struct At(pub(crate) usize);
 
 impl At {
-    /// A file that is not read because of the line.
+    /// Refuses a file because of the line.
     pub(crate) fn refuse<T>(self, message: impl Into<String>) -> Result<T, Refused> {
         Err(Refused { line: Some(self.0), message: message.into() })
     }
 }
 
 impl Refused {
-    /// A file that is not read as a whole.
+    /// Refuses a file as a whole.
     pub(crate) fn whole<T>(message: impl Into<String>) -> Result<T, Self> {
         Err(message.into().into())
     }
 
-    /// Of an error without a file.
+    /// The refusal of an error without a file.
     pub(crate) fn from_error(error: &Error) -> Self {
         Refused { line: error.place().and_then(|it| it.line), message: error.message().to_owned() }
     }

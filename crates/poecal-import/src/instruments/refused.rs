@@ -1,11 +1,11 @@
-//! Texts of known forms that have nothing that could be read here, with what to write instead.
+//! Texts of known forms that contain nothing to be read here, with a remedy.
 
 use super::words::{lines, number};
 
-/// Lines by which a form is recognised.
+/// Number of lines by which a form is recognised.
 const FIRST: usize = 12;
 
-/// The beginnings of texts of a kind, of XML any of the first lines; and why they are not read.
+/// The beginnings of texts of a kind, for XML any of the first lines, and the reason why they are not read.
 const KINDS: [(&str, &str); 2] = [
     (
         "PathFileType",
@@ -18,7 +18,7 @@ const KINDS: [(&str, &str); 2] = [
     ),
 ];
 
-/// Why a text is not read, by its beginning.
+/// The reason why a text is not read, by its beginning.
 pub(crate) fn found(text: &str) -> Option<&'static str> {
     let first = lines(text).next()?.1.trim();
     if first == "/JOB" || first.starts_with("/JOB ") {
@@ -53,7 +53,7 @@ pub(crate) fn found(text: &str) -> Option<&'static str> {
     )
 }
 
-/// Whether a text is a tuple of HALCON: the number of elements, then a type and a value in each line.
+/// True if a text is a tuple of HALCON: the number of elements, then a type and a value in each line.
 fn is_tuple(text: &str) -> bool {
     let mut all = lines(text).map(|it| it.1.split_whitespace().collect::<Vec<_>>());
     let is_count = |it: &[&str]| matches!(it, [count] if count.parse::<usize>().is_ok());

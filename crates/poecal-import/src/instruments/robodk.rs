@@ -1,5 +1,5 @@
-//! The table of measurements that RoboDK's script for calibration writes: joints in degrees, poses of the target in millimetres with angles about
-//! x, then the new y, then the newest z, in radians, and the tool.
+//! The table of measurements that RoboDK's script for calibration writes: joints in degrees, poses of the target, and the tool. Poses are in
+//! millimetres, with intrinsic xyz angles in radians.
 
 use super::maker::{At, Made, Refused, Value, place, quaternion};
 use super::words::{Head, lines, number};

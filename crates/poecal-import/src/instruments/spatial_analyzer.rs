@@ -1,5 +1,5 @@
-//! Points that SpatialAnalyzer exported as text, in every layout that its dialogue offers: collection, group and name, index, coordinates, offsets,
-//! uncertainties and time, separated by commas or blanks (manual, *Exporting ASCII formatted points*).
+//! Points that SpatialAnalyzer exported as text, in every layout of its dialogue (manual, *Exporting ASCII formatted points*). Columns are
+//! collection, group and name, index, coordinates, offsets, uncertainties and time, separated by commas or blanks.
 
 use std::collections::BTreeSet;
 
@@ -10,36 +10,36 @@ use crate::Separator;
 
 pub(crate) const FORM: Form = Form { title: "points of SpatialAnalyzer", is_it, table };
 
-/// Lines in which the comments are sought.
+/// Number of lines in which the comments are sought.
 const FIRST: usize = 20;
 
-/// What the comments say.
+/// Statements of the comments.
 struct Comments<'t> {
     frame: Option<&'t str>,
     is_cylindrical: bool,
     unit: &'t str,
 }
 
-/// A line as it is written.
+/// A line, split into its parts.
 struct Point<'t> {
     line: usize,
     names: Vec<&'t str>,
     numbers: Vec<&'t str>,
-    /// Whether a time is behind them.
+    /// True if a time is behind the numbers.
     has_time: bool,
 }
 
-/// What the numbers of a line are.
+/// Meaning of the numbers of a line.
 struct Layout {
-    /// Numbers before the coordinates: a name that is one, and the index of a point in its group.
+    /// Numbers before the coordinates: a name that is a number, and the index of a point in its group.
     first: usize,
-    /// Whether the first of these is the name.
+    /// True if the first of these is the name.
     is_named_by_number: bool,
     has_offsets: bool,
     has_uncertainties: bool,
 }
 
-/// What is in a comment.
+/// The text of a comment.
 fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
@@ -107,7 +107,7 @@ fn different(names: &[String]) -> usize {
     names.iter().collect::<BTreeSet<_>>().len()
 }
 
-/// Refuses points whose lines are not alike.
+/// Refuses points whose lines differ in form.
 fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused> {
     let counts = |it: &Point<'_>| (it.names.len(), it.numbers.len());
     let (words, count) = counts(first);
@@ -118,7 +118,7 @@ fn refuse_unlike(first: &Point<'_>, points: &[Point<'_>]) -> Result<(), Refused>
             first.line
         ));
     }
-    // A line that was cut has no time, and its last number may have been cut.
+    // A line that was cut has no time, and its last number may be incomplete.
     let timed = points.iter().filter(|it| it.has_time).count();
     match points.iter().find(|it| 2 * timed > points.len() && !it.has_time) {
         Some(other) => At(other.line).refuse("found no time behind the numbers of a point, expected one as in the other lines: the line was cut, export the points again, or leave it out"),
@@ -159,7 +159,7 @@ impl<'t> Comments<'t> {
     }
 }
 
-/// What the comments state behind a word, with its line. Points of several frames or units in one file are not told apart by a table.
+/// The word that the comments state behind a key, with its line. A table cannot separate points of several frames or units.
 fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t str)>, Refused> {
     let mut all = lines(text).filter_map(|(line, content)| {
         let behind = comment(content)?.split_once(key)?.1.trim_matches([' ', '=', '\'', '"']);
@@ -176,7 +176,7 @@ fn stated<'t>(text: &'t str, key: &str, what: &str) -> Result<Option<(usize, &'t
 }
 
 impl<'t> Point<'t> {
-    /// The point of a line, or what is wrong with it.
+    /// The point of a line, or the defect of the line.
     fn from_line(line: usize, content: &'t str) -> Result<Self, String> {
         let content = content.trim();
         if content.contains(';') {
@@ -188,7 +188,7 @@ impl<'t> Point<'t> {
         } else {
             content.split_whitespace().collect()
         };
-        // The time, `02/12/25 16:52:45`, which is one cell or two.
+        // The time, `02/12/25 16:52:45`, is one cell or two.
         let is_time = |it: &&str| {
             it.contains('/') || it.contains(':') && !it.contains("::") || matches!(*it, "AM" | "PM")
         };
@@ -207,7 +207,7 @@ impl<'t> Point<'t> {
             ));
         }
         let numbers = parts.split_off(parts.len() - count);
-        // A name may have blanks in it.
+        // A name may contain blanks.
         if let ([first, .., last], false) = (parts.as_slice(), is_by_commas) {
             let of = |part: &str| part.as_ptr() as usize - content.as_ptr() as usize;
             parts = content.get(of(first)..of(last) + last.len()).into_iter().collect();
@@ -217,7 +217,7 @@ impl<'t> Point<'t> {
 }
 
 impl Layout {
-    /// What the numbers of points are, of which this is the first one.
+    /// The meaning of the numbers of points, of which this is the first one.
     fn from_points(first: &Point<'_>, points: &[Point<'_>]) -> Result<Self, String> {
         let is_digits = |it: &str| it.bytes().all(|it| it.is_ascii_digit());
         let is_whole = |at: usize| points.iter().all(|it| it.numbers.get(at).is_some_and(|it| is_digits(it)));
@@ -249,7 +249,7 @@ impl Layout {
         Ok(Layout { first, is_named_by_number, has_offsets, has_uncertainties })
     }
 
-    /// The points' names, and whether they are those of targets, since they come again and again.
+    /// The points' names, and whether they are those of targets, since they recur.
     fn names(&self, points: &[Point<'_>]) -> (Vec<String>, bool) {
         let parts = |point: &Point<'_>| -> Vec<String> {
             let words = point.names.iter().flat_map(|it| it.split("::")).map(str::trim);

@@ -1,5 +1,5 @@
-//! Reports with two sets of coordinates in a row, nominal and measured, as robot makers write them: a table for each set, of which the robot
-//! decides.
+//! Reports of robot makers with two sets of coordinates in a row, nominal and measured. Each set is a table, and the robot decides which one is
+//! taken.
 
 use super::maker::{At, Called, Column, Made, Refused, Value};
 use super::words::{Head, lines, name_and_unit, number};
@@ -8,16 +8,16 @@ use crate::table::roles::{Role, plain};
 
 pub(crate) const FORM: Form = Form { title: "a report with two sets of coordinates", is_it, table };
 
-/// Lines in which the header is sought.
+/// Number of lines in which the header is sought.
 const FIRST: usize = 20;
-/// Coordinates; the angles behind them have as many conventions as makers.
+/// Names of coordinates; the conventions of the angles behind them differ by maker.
 const PLACE: [&str; 3] = ["x", "y", "z"];
 const ANGLES: [&str; 12] = ["a", "b", "c", "rx", "ry", "rz", "w", "p", "r", "roll", "pitch", "yaw"];
 
-/// A column of a table.
+/// Role of a column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
-    /// Of no set.
+    /// Column of no set.
     Other,
     /// A coordinate of a set.
     Place(usize, &'static str),
@@ -37,7 +37,7 @@ fn called(word: &str) -> Option<Called> {
     of.into_iter().find(|it| it.0.has(word)).map(|it| it.1)
 }
 
-/// A name of a column as a coordinate, with what its set is called.
+/// The coordinate that the name of a column states, with the name of its set.
 fn coordinate(name: &str) -> Option<(&'static str, Option<Called>)> {
     let all = || PLACE.into_iter().chain(ANGLES);
     if let Some(known) = all().find(|it| *it == name) {
@@ -56,7 +56,7 @@ fn parts(cell: &str) -> (&str, Option<&str>) {
     name_and_unit(cell, &[['[', ']'], ['(', ')']])
 }
 
-/// The columns of two sets by their names and by the words above them, which stand over all columns up to the next one.
+/// The columns of two sets by their names and by the words above them; such a word applies to all columns up to the next one.
 fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<Part>, [Called; 2])> {
     let mut word = None;
     let mut found: Vec<Option<(&str, Option<Called>)>> = Vec::with_capacity(names.len());
@@ -92,7 +92,7 @@ fn sort(names: &[&str], over: &[&str]) -> Option<(Vec<Part>, [Called; 2])> {
     (seen.iter().all(has_all) && seen[0].len() == seen[1].len()).then_some((of_sets, called))
 }
 
-/// The columns of a set with what they are called, and of none.
+/// The columns of a set and of no set, with their names.
 fn columns(names: &[&str], of: &[Part], set: usize) -> Vec<(usize, Column)> {
     let column = |(at, part): (usize, &Part)| {
         let cell = *names.get(at)?;
@@ -113,7 +113,7 @@ fn columns(names: &[&str], of: &[Part], set: usize) -> Vec<(usize, Column)> {
 #[cfg(feature = "workbooks")]
 type SetColumns = [Vec<(usize, Column)>; 2];
 
-/// The columns of each of two sets that names say, with what they are called.
+/// The columns of each of two sets, by their names, with the names of the sets.
 #[cfg(feature = "workbooks")]
 pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
     let (parts, called) = sort(names, &[])?;
@@ -121,7 +121,7 @@ pub(super) fn split(names: &[&str]) -> Option<(SetColumns, [Called; 2])> {
 }
 
 impl<'t> Sets<'t> {
-    /// The sets that a line names, below another one that may name what they are.
+    /// The sets in a line with their names, which may be in the line above.
     fn from_line(line: (usize, &'t str), above: Option<(usize, &'t str)>) -> Option<Self> {
         let head = Head::recognised(line);
         if head.names.iter().any(|it| number(it).is_some()) {
@@ -158,7 +158,7 @@ impl<'t> Sets<'t> {
     }
 }
 
-/// Not of a table in which one of the sets is what the robot reads, as of a test of commanded poses.
+/// True if a text has two sets of coordinates and the robot reads neither, unlike in a test of commanded poses.
 fn is_it(text: &str, opening: &Opening<'_>) -> bool {
     let names = opening.robot.reading_names();
     let is_of_set = |name: &String| coordinate(&plain(name)).is_some_and(|it| it.1.is_some());

@@ -67,7 +67,7 @@ impl Head<'_> {
         Ok(units.first().copied())
     }
 
-    /// Bodies or markers: each begins where it is named.
+    /// Bodies or markers: each begins at the column with its name.
     fn bodies(&self) -> Vec<(Body, Option<Vec<usize>>)> {
         let starts: Vec<usize> = (0..self.columns.len())
             .filter(|at| self.names.get(*at).is_some_and(|it| !it.is_empty()))

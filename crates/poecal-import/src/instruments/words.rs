@@ -25,7 +25,7 @@ pub(crate) fn cells(line: &str, separator: Separator) -> Vec<&str> {
     found.into_iter().take(filled).map(|it| it.raw).collect()
 }
 
-/// A name of a column and its unit, which is in one of these pairs of brackets.
+/// The name of a column and its unit, which is in one of these pairs of brackets.
 pub(crate) fn name_and_unit<'c>(cell: &'c str, brackets: &[[char; 2]]) -> (&'c str, Option<&'c str>) {
     let found = brackets.iter().find_map(|[open, close]| bracketed(cell, *open, *close));
     found.map_or((cell.trim(), None), |(name, unit)| (name.trim(), Some(unit.trim())))
@@ -44,7 +44,7 @@ impl<'t> Head<'t> {
         Head { line, by, names: cells(text, by) }
     }
 
-    /// The same, by the separator that is recognised.
+    /// The line with its names, by the separator that is recognised.
     pub(crate) fn recognised(line: (usize, &'t str)) -> Self {
         Head::from_line(line, Separator::recognised(line.1))
     }
@@ -54,7 +54,7 @@ impl<'t> Head<'t> {
         self.names.iter().position(|it| *it == name)
     }
 
-    /// Whether all these are names of columns.
+    /// True if all these are names of columns.
     pub(crate) fn has(&self, names: &[&str]) -> bool {
         names.iter().all(|it| self.names.contains(it))
     }
@@ -65,7 +65,7 @@ impl<'t> Head<'t> {
         below.map(|(line, content)| (line, cells(content, self.by)))
     }
 
-    /// Refuses a line of more cells.
+    /// Refuses a line with more cells than the header.
     pub(crate) fn refuse_longer(&self, line: usize, found: &[&str], header: &str) -> Result<(), Refused> {
         match (found.len(), self.names.len()) {
             (found, expected) if found > expected => {
@@ -81,12 +81,12 @@ pub(crate) fn quoted<T: std::fmt::Display>(names: impl IntoIterator<Item = T>) -
     first_few(&names.into_iter().map(|it| format!("`{it}`")).collect::<Vec<_>>())
 }
 
-/// Whether names are those of targets: each comes again and again.
+/// True if names are those of targets: each recurs.
 pub(crate) fn are_targets(names: &[String]) -> bool {
     names.len() >= 2 * by_name(names).len()
 }
 
-/// The warning of names that come again, of others than targets; `lines` are those of the names.
+/// The warning of names that recur and are not those of targets; `lines` are those of the names.
 pub(crate) fn repeats(names: &[String], lines: &[usize]) -> Option<String> {
     let again: Vec<String> = by_name(names)
         .into_iter()
@@ -109,7 +109,7 @@ fn by_name(names: &[String]) -> BTreeMap<&str, Vec<usize>> {
     found
 }
 
-/// Whether a cell has a word that stands for no number, such as `NaN`.
+/// True if a cell has a word that means no number, such as `NaN`.
 pub(crate) fn is_no_number(text: &str) -> bool {
     ["nan", "-nan", "inf", "-inf", "+inf", "null", "none", "n/a"]
         .contains(&text.trim().to_ascii_lowercase().as_str())

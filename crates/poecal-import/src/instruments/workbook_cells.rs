@@ -1,4 +1,4 @@
-//! Cells of workbooks: their numbers and texts, formulas that no program computed, and numbers that are shown as dates or times.
+//! Cells of workbooks: their numbers and texts, formulas that no program computed, and numbers displayed as dates or times.
 
 use std::collections::BTreeMap;
 
@@ -11,11 +11,11 @@ use crate::table::times::seconds_of;
 
 /// Seconds of a day, the unit of times in workbooks.
 const DAY_S: f64 = 86_400.0;
-/// What is to be done about formulas without results.
+/// Remedy for formulas without results.
 const REMEDY: &str = "open the workbook in a spreadsheet program and save it, so that formulas are computed, or paste the numbers";
 
-/// Refuses formulas of a table that have no result, or 0 in the whole column, as programs write them that do not compute: its rows, and its
-/// columns with their names. A form of workbook whose formulas cannot be read has results.
+/// Refuses formulas of a table without a result, or with 0 in the whole column: some programs do not compute them. The pair is the rows, and the
+/// columns with their names. A form of workbook whose formulas cannot be read always has results.
 pub(crate) fn refuse_uncomputed(
     formulas: &BTreeMap<(u32, u32), String>,
     range: &Range<Data>,
@@ -51,7 +51,7 @@ pub(crate) fn refuse_uncomputed(
     Ok(())
 }
 
-/// The text of a cell that is shown as a date or a time, in a column that is none of times: its number counts days, and is no length or angle.
+/// The text of a cell that is displayed as a date or a time, in a column of other quantities. Its number counts days, and is no length or angle.
 pub(crate) fn no_number(cell: &Data, column: &str) -> Option<String> {
     let name = column.split(['[', '(']).next().unwrap_or_default();
     let is_time = seconds_of(name, None).is_some() || seconds_of(column, None).is_some();
@@ -77,7 +77,7 @@ pub(crate) fn value(cell: &Data) -> Option<f64> {
     }
 }
 
-/// True of a cell without content.
+/// True for a cell without content.
 pub(crate) fn is_empty(cell: &Data) -> bool {
     matches!(cell, Data::Empty) || matches!(cell, Data::String(text) if text.trim().is_empty())
 }
@@ -90,7 +90,7 @@ pub(crate) fn text(cell: &Data) -> String {
     if is_empty(cell) { String::new() } else { cell.to_string() }
 }
 
-/// Seconds of a duration as ODS has it, such as `PT01H02M03.5S`.
+/// Seconds of a duration in the form of ODS, such as `PT01H02M03.5S`.
 fn duration_s(text: &str) -> Option<f64> {
     let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
     let (days, time) = rest.strip_prefix('P')?.split_once('T')?;

@@ -1,4 +1,4 @@
-//! What files that are read together are to each other.
+//! Roles of files that are read together.
 
 use std::path::Path;
 
@@ -14,13 +14,13 @@ use crate::table::text::Blocks;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{Error, ErrorKind, MissingColumn};
 
-/// Whether a file has readings of joints by picture. One that cannot be read is named when it is read.
+/// True if a file has joint readings by picture. A file that cannot be read is refused when it is read.
 pub(crate) fn has_readings_of_pictures(path: &Path, robot: &Robot, map: &ColumnMap) -> bool {
     let table = Blocks::open_or_join(path, MEASURED).and_then(|blocks| Table::open(path, blocks, map));
     table.is_ok_and(|table| are_readings_of_pictures(&table.header, &robot.reading_names(), map))
 }
 
-/// The error of a file that has joint readings alone, or measurements alone, and no other beside it.
+/// The error of a file with joint readings only, or measurements only, without a counterpart.
 pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &ColumnMap) -> Error {
     let Some(missing) = error.missing() else { return error };
     let (is_lone, found, other) = match part(path, *opening, map).map(|it| it.part) {
@@ -30,7 +30,7 @@ pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
     };
     let table = opening.blocks(path, MEASURED).and_then(|it| Table::open(path, it, map));
     let Ok(table) = table else { return error };
-    // Of a file in our form, a column may have another name.
+    // In a file in our form, a column may have another name.
     let names = opening.robot.reading_names();
     let is_all = is_lone && table.header.cells.iter().all(|it| names.contains(&it.name) || it.name == "id");
     if table.is_made() || is_all {
@@ -38,7 +38,7 @@ pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
             format!("found {found}, expected both: name the file of the {other} beside it{}", advice(path));
         return Error::new(ErrorKind::Measurement, message).in_file(path);
     }
-    // A column that looks like one of those that are missing may be one, under another name.
+    // A column with a name like a missing one may be it under another name.
     let header = || table.header.cells.iter();
     let is_axis = |it: &HeaderCell| {
         let mut letters = it.name.chars().map(|it| it.to_ascii_lowercase());
@@ -56,14 +56,14 @@ pub(crate) fn alone(error: Error, path: &Path, opening: &Opening<'_>, map: &Colu
     error.with_more(&format!("or name the file of the {other} beside it"))
 }
 
-/// The error of readings of pictures that are read without a camera, where another file has their corners.
+/// The error of joint readings by picture that are read without a camera, if another file has the corners.
 pub(crate) fn beside(
     error: Error,
     path: &Path,
     paths: &[&Path],
     (robot, map, without_camera): (&Robot, &ColumnMap, bool),
 ) -> Error {
-    // Readings of pictures without a camera are taken for measurements.
+    // Joint readings by picture without a camera are taken for measurements.
     let has_corners = |other: &&&Path| {
         let blocks = Blocks::open(other, MEASURED);
         let table = blocks.and_then(|blocks| Table::open(other, blocks, map));

@@ -1,4 +1,4 @@
-//! What is kept of files and of how they were joined.
+//! Record of files and of their join.
 
 use std::collections::BTreeMap;
 
@@ -9,49 +9,49 @@ use crate::table::understanding::FileUnderstanding;
 use crate::{Join, MeasurementFile};
 use poecal_fit::start::MotionEntry;
 
-/// Most pairs that are listed, and most rows without partner.
+/// Largest number of pairs in a list, and of rows without partner.
 pub(crate) const MOST_PAIRS: usize = 2000;
 pub(crate) const MOST_ALONE: usize = 1000;
 
-/// A file as it was read.
+/// A file that was read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InputEntry {
     /// Its name, as in `measurements`.
     pub file: String,
-    /// What the file is; absent of a table in our form.
+    /// Form of the file; absent for a table in our form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<String>,
-    /// What was understood of one in another form, in a few words: sheet, frame, body, topic, unit.
+    /// Interpretation of a file in another form, in a few words: sheet, frame, body, topic, unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub understood: Option<String>,
-    /// Its rows, those of lost beams included.
+    /// Number of its rows, with those of beam breaks.
     pub rows: usize,
-    /// What was taken of it, a number for each quantity: `joint readings`, `points`, `poses` and other measurements.
+    /// Number of items that were taken, by quantity: `joint readings`, `points`, `poses` and other measurements.
     pub taken: BTreeMap<String, usize>,
     /// Units of its columns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub units: Vec<String>,
-    /// Lost beams: measurements without a position, which were left out.
+    /// Number of beam breaks: measurements without a position, which were left out.
     #[serde(default, skip_serializing_if = "is_none")]
     pub lost: usize,
 }
 
-/// How a file of measurements was joined with one of joint readings.
+/// Join of a file of measurements with one of joint readings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JoinEntry {
     /// The file of joint readings.
     pub joints: String,
     /// The file of measurements.
     pub measurements: String,
-    /// How rows found each other.
+    /// Method by which rows were matched.
     pub join: Join,
-    /// Rows of joint readings, or stands of their stream.
+    /// Number of rows of joint readings, or of static intervals of their stream.
     pub joint_rows: usize,
-    /// Configurations in which was measured, or stands of the stream of measurements.
+    /// Number of measured configurations, or of static intervals of the stream of measurements.
     pub measured_rows: usize,
     /// Number of pairs.
     pub paired: usize,
-    /// By how much the nominal robot misses the pairs (median), millimetres; absent where they are too few to say.
+    /// Median error of the nominal robot at the pairs, millimetres; absent if there are too few pairs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub missed_mm: Option<f64>,
     /// Time of the measurements less that of the joint readings, seconds; absent without clocks.
@@ -59,19 +59,19 @@ pub struct JoinEntry {
     pub lag_s: Option<f64>,
     /// Pairs: number of the row of joint readings, and of the measured configuration, each from 1; at most 2,000.
     pub pairs: Vec<[usize; 2]>,
-    /// Joint readings at which nothing was measured; at most 1,000, as of the next two.
+    /// Joint readings without a measurement; at most 1,000, as in the next two lists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unmeasured: Vec<RowEntry>,
-    /// Joint readings at which more than once was measured.
+    /// Joint readings with more than one measurement.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repeated: Vec<RowEntry>,
-    /// Measured configurations that were left out: they have no joint readings.
+    /// Measured configurations that were left out, because they have no joint readings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unread: Vec<RowEntry>,
-    /// The robot's motion, of a stream of joint readings.
+    /// The robot's motion, for a stream of joint readings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot_motion: Option<MotionEntry>,
-    /// The target's motion, of a stream of measurements, or of single points with times.
+    /// The target's motion, for a stream of measurements, or for single points with times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured_motion: Option<MotionEntry>,
 }
@@ -79,9 +79,9 @@ pub struct JoinEntry {
 /// A row of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct RowEntry {
-    /// Its number among the rows or stands, from 1.
+    /// Its number among the rows or static intervals, from 1.
     pub number: usize,
-    /// Its line, row of a sheet or message; of a stand that of its first row.
+    /// Its line, row of a sheet or message; that of its first row for a static interval.
     pub line: usize,
 }
 
@@ -117,7 +117,7 @@ impl InputEntry {
 }
 
 impl MeasurementFile {
-    /// What `calibration.json` says of each file: one that has joint readings and measurements has two entries.
+    /// Entries of the files in `calibration.json`; a file with joint readings and measurements has two.
     #[must_use]
     pub fn inputs(&self) -> Vec<InputEntry> {
         self.understood.iter().map(InputEntry::from_understanding).collect()

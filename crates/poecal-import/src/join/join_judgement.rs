@@ -1,4 +1,4 @@
-//! Whether the nominal robot agrees with pairs of joint readings and measurements, and what is said of it.
+//! Agreement of the nominal robot with pairs of joint readings and measurements, and the messages on it.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use poecal_fit::start::{Agreement, Order, Pair};
 use poecal_numerics::error::Result;
 
 impl Pairing<'_> {
-    /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` where the user said that they are right.
+    /// Pairs of one order, if the nominal robot agrees with them and with no other order; `is_stated` if the user confirmed them.
     pub(crate) fn judged(&self, pairs: &[Pair], how: Join, is_stated: bool) -> Result<Joined> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, _) = join_names(how);
@@ -37,7 +37,7 @@ impl Pairing<'_> {
         Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
     }
 
-    /// Warns of pairs of one order that nothing or little speaks for; refuses those that another order fits better.
+    /// Warns of pairs of one order without or with little evidence; refuses those that another order fits better.
     fn warn_of_order(
         &self,
         found: Option<Agreement>,
@@ -91,7 +91,7 @@ impl Pairing<'_> {
         Ok(warnings)
     }
 
-    /// Warns of pairs that another order fits as well, which must be stated.
+    /// Warns of pairs that another order fits as well; refuses them if the order is not stated.
     fn warn_of_alike(
         &self,
         (missed_m, order, other_m): (f64, Order, f64),
@@ -115,7 +115,7 @@ impl Pairing<'_> {
         Ok(format!("{joints}, {path}: {message}"))
     }
 
-    /// Warns of pairs that fit no better than by chance, which must be stated.
+    /// Warns of pairs that fit no better than by chance; refuses them if the order is not stated.
     fn warn_of_chance(&self, missed_m: f64, pairs: &[Pair], how: Join, is_stated: bool) -> Result<String> {
         let (joints, path) = (self.joints.path.display(), self.path.display());
         let (by_name, _) = join_names(how);
@@ -124,7 +124,7 @@ impl Pairing<'_> {
             mm(missed_m),
             joined::reason(self.robot, &self.rows.session_of(pairs))
         );
-        // A robot that moves little misses little in any order.
+        // The errors of a robot that moves little are small in any order.
         if !is_stated || joined::is_doubtful(self.robot, missed_m) {
             return self.refuse(format!("found measurements that do not fit the joint readings: {message}"));
         }
@@ -147,7 +147,7 @@ impl Pairing<'_> {
     }
 }
 
-/// How a join is named: in words, and by its option.
+/// Names of a join: in words, and its option.
 fn join_names(how: Join) -> (&'static str, &'static str) {
     match how {
         Join::Name => ("by name", "name"),

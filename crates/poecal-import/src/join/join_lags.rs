@@ -1,4 +1,4 @@
-//! Stands of two recordings, each with a clock of its own: at which lag they are the same.
+//! Static intervals of two recordings with clocks of their own, and the lag at which they are the same.
 
 use super::join_pairs::{Joined, Pairing};
 use super::join_words::{mm, several_lags};
@@ -7,11 +7,11 @@ use poecal_fit::input_doubts::joined::{is_doubtful, reason};
 use poecal_fit::start::{EVIDENT, FEWEST_PAIRS, Lagged, Motion};
 use poecal_numerics::error::Result;
 
-/// How far a lag by stands may be off, seconds.
+/// Largest error of a lag that was found by static intervals, seconds.
 const NEAR_STANDS_S: f64 = 0.3;
 
 impl Pairing<'_> {
-    /// So many stands of two streams, each with its clock, at the lags at which some are the same.
+    /// The join at the best of the lags at which static intervals of two streams agree, of which there are `joints` and `shots`.
     pub(crate) fn by_lag(&self, found: &[Lagged], (joints, shots): (usize, usize)) -> Result<Joined> {
         let stated = if self.lag.is_some() { " near the stated one" } else { "" };
         let Some(best) = found.first() else {
@@ -20,7 +20,7 @@ impl Pairing<'_> {
             ));
         };
         let alike: Vec<&Lagged> = found.iter().filter(|it| it.missed_m < EVIDENT * best.missed_m).collect();
-        // The lag at which most stands are the same says why none fits.
+        // The lag at which most static intervals agree explains why none fits.
         let most = found.iter().max_by_key(|it| it.pairs.len()).unwrap_or(best);
         let is_one = alike.len() == 1 && 2 * most.pairs.len() <= 3 * best.pairs.len();
         if is_doubtful(self.robot, best.missed_m) && !is_one {
@@ -52,7 +52,8 @@ impl Pairing<'_> {
         Ok(joined)
     }
 
-    /// The lag near one by stands at which the measurements between these fit too, seconds; stands need none.
+    /// The lag near that of the static intervals at which the measurements between them fit too, seconds; the static intervals alone do not need
+    /// it.
     fn lag_between(&self, near_s: f64) -> Option<f64> {
         let (joints, (data, times)) = (self.joints.stream.as_ref()?, self.stream?);
         let motion = Motion::new(self.robot, joints, data, times).ok()?;

@@ -1,4 +1,4 @@
-//! Measurements of a robot in motion with the joint readings of another clock, and what is said of them.
+//! Measurements of a moving robot with the joint readings of another clock, and the messages on them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,10 +14,10 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Smaller error of smoothed stamps, over that of the stamps as they are, that shows that these are late irregularly.
+/// Ratio of the errors with smoothed and with original stamps below which the original stamps are irregularly late.
 const SMOOTHER: f64 = 0.8;
 
-/// What a search finds by some stamps.
+/// Result of a search with some stamps.
 type Found = std::result::Result<InMotion, NoLag>;
 
 /// Times of the rows of both, as stamped or smoothed.
@@ -30,7 +30,7 @@ struct Stamps {
 /// The readings of each line at the lag at which the nominal robot, registered, fits.
 ///
 /// # Errors
-/// [`ErrorKind::Measurement`] without times, places and motion, or where no lag or several fit.
+/// [`ErrorKind::Measurement`] without times, positions and motion, and if no lag or several lags fit.
 pub(crate) fn in_motion(
     joints: &JointRows,
     (path, data, times): (&Path, &Dataset, &[f64]),
@@ -97,7 +97,7 @@ fn refuse_pair<T>(joints: &JointRows, path: &Path, message: String) -> Result<T>
     Err(ErrorKind::Measurement.error(words).in_file(path))
 }
 
-/// What is found by the stamps of both, as they are or smoothed: the best of these.
+/// The best result with the stamps of both, original or smoothed.
 fn search(
     joints: &JointRows,
     (path, data, times): (&Path, &Dataset, &[f64]),
@@ -125,9 +125,9 @@ fn search(
     Ok(chosen(found))
 }
 
-/// What was found by stamps as they are, or by smoothed ones where these fit evidently better.
+/// The result with original stamps, or with smoothed ones if these fit evidently better.
 fn chosen(mut found: Vec<(Stamps, Found)>) -> Option<(Stamps, Found)> {
-    // Stamps as they are come first.
+    // The original stamps come first.
     let usual_m = match found.first()? {
         (_, Ok(it)) => it.fitted_m,
         (_, Err(_)) => f64::INFINITY,
@@ -201,5 +201,5 @@ fn joined(
     Joined { entry, readings, unmeasured: Vec::new(), notes, warnings }
 }
 
-/// Scatter of single stamps that is said, seconds.
+/// Smallest scatter of single stamps that is reported, seconds.
 const LARGE_JITTER_S: f64 = 5e-4;

@@ -1,4 +1,4 @@
-//! Lists of unequal length, and what is said of rows that fit badly or not at all.
+//! Lists of unequal length, and messages on rows that fit badly or not at all.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,9 +10,9 @@ use poecal_fit::input_doubts::joined;
 use poecal_fit::start::{Agreement, Aligned, Pair};
 use poecal_numerics::error::Result;
 
-/// Times as many rows as the other list that a recording has, which is no list.
+/// Ratio of the numbers of rows beyond which the longer one is a recording, not a list.
 const LONGER: usize = 3;
-/// Error of a pair that is never called wrong, metres.
+/// Largest error of a pair that is never reported as wrong, metres.
 const LEAST_WRONG_M: f64 = 1e-3;
 
 impl Pairing<'_> {
@@ -38,7 +38,7 @@ impl Pairing<'_> {
         self.aligned(self.rows.aligned())
     }
 
-    /// Such lists, with what was found of them.
+    /// Joins such lists by the alignment that was found.
     pub(crate) fn aligned(&self, found: Option<Aligned>) -> Result<Joined> {
         let (joints, shots) = (self.rows.joint_rows(), self.rows.shots().len());
         let counts = format!("found {shots} measured configurations and {joints} rows of joint readings");
@@ -83,10 +83,10 @@ impl Pairing<'_> {
         Ok(Joined { entry, readings: self.readings(pairs), unmeasured, notes: vec![note], warnings })
     }
 
-    /// The warning of an error that is larger than usual and explained.
+    /// The warning of an error that is larger than usual and has an explanation.
     ///
     /// # Errors
-    /// Of one that is not, where it is larger than that of any robot.
+    /// The error is larger than that of any robot, and has no explanation.
     pub(crate) fn refuse_doubtful(&self, missed_m: f64, pairs: &[Pair], how: &str) -> Result<Option<String>> {
         let joined = || self.rows.session_of(pairs);
         match joined::warning(self.robot, missed_m, joined, how) {
@@ -98,7 +98,7 @@ impl Pairing<'_> {
         }
     }
 
-    /// The warning of pairs that fit far worse than the others, if they are some.
+    /// The warning of pairs that fit far worse than the others, if there are a few.
     pub(crate) fn wrong_pairs(&self, pairs: &[Pair]) -> Option<String> {
         let (mut wrong, usual_m) = self.rows.wrong(pairs);
         wrong.retain(|it| it.1 > LEAST_WRONG_M);
@@ -122,7 +122,7 @@ impl Pairing<'_> {
         ))
     }
 
-    /// Rows of joint readings at which nothing was measured.
+    /// Rows of joint readings without a measurement.
     pub(crate) fn unmeasured(&self, pairs: &[Pair]) -> Vec<usize> {
         let joints: BTreeSet<usize> = pairs.iter().map(|it| it.0).collect();
         (0..self.rows.joint_rows()).filter(|it| !joints.contains(it)).collect()
@@ -143,7 +143,7 @@ impl Pairing<'_> {
         repeated.into_iter().collect()
     }
 
-    /// What was measured twice, and what has no partner.
+    /// Messages on joint readings with several measurements, and on measurements without partner.
     pub(crate) fn without_partner(&self, pairs: &[Pair]) -> Vec<String> {
         let repeated = self.repeated_rows(pairs);
         let shots: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();

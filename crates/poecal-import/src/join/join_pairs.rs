@@ -1,4 +1,4 @@
-//! Which joint readings of one file belong to which measurements of another, and what is said of it.
+//! Pairs of joint readings of one file and measurements of another, and the messages on them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -14,9 +14,9 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::{Controller, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// Fewest pairs that fit badly which show that rows were lost and taken twice.
+/// Smallest number of badly fitting pairs that indicates lost and repeated rows.
 const FEW_WRONG: usize = 2;
-/// Share of the pairs up to which those that fit badly are named one by one.
+/// Share of the pairs up to which badly fitting ones are listed one by one.
 pub(crate) const SOME_WRONG: f64 = 0.25;
 
 /// Joint readings of a file.
@@ -26,27 +26,27 @@ pub(crate) struct JointRows {
     pub(crate) readings: Vec<f64>,
     pub(crate) ids: Vec<String>,
     pub(crate) lines: Vec<usize>,
-    /// Whether they are in a sheet of a workbook.
+    /// True if they are in a sheet of a workbook.
     pub(crate) is_sheet: bool,
-    /// Whether no column of an angle states its unit.
+    /// True if no column of an angle states its unit.
     pub(crate) is_without_unit: bool,
-    /// Of each reading of a row, whether it is an angle.
+    /// True for each reading of a row that is an angle.
     pub(crate) turns: Vec<bool>,
-    /// The time of each, seconds, NaN where it has none.
+    /// The time of each row, seconds; NaN if it has none.
     pub(crate) times: Vec<f64>,
-    /// When each begins and ends, seconds, where they are stands of a stream.
+    /// Beginning and end of each row, seconds, if the rows are static intervals of a stream.
     pub(crate) spans: Option<Vec<Span>>,
-    /// The stream of which they are stands.
+    /// The stream of which they are static intervals.
     pub(crate) stream: Option<JointStream>,
-    /// Why they are no stream.
+    /// Reason why they are no stream.
     pub(crate) no_stands: NoStands,
-    /// Readings of that stream at times of equal distance.
+    /// Readings of that stream at equidistant times.
     pub(crate) sampled: Option<Sampled>,
     pub(crate) controller: Option<Controller>,
 }
 
 impl JointRows {
-    /// The lines of rows; of stands those at which they begin, with their times.
+    /// The lines of rows; for static intervals, their first lines with the times.
     pub(crate) fn lines_of(&self, rows: &[usize]) -> String {
         let line = |row: &usize| {
             let line = self.lines.get(*row)?;
@@ -64,7 +64,7 @@ impl JointRows {
         }
     }
 
-    /// The same with its angles in degrees.
+    /// The rows with the angles in degrees.
     pub(crate) fn in_degrees(&self) -> Self {
         let of = |(value, turns): (&f64, &bool)| if *turns { value.to_radians() } else { *value };
         JointRows {
@@ -89,29 +89,29 @@ pub(crate) struct Pairing<'a> {
     pub(crate) data: &'a Dataset,
     pub(crate) rows: Unpaired<'a>,
     pub(crate) robot: &'a Robot,
-    /// When each configuration in which was measured begins and ends, seconds, if that is known.
+    /// Beginning and end of each measured configuration, seconds, if known.
     pub(crate) spans: Option<&'a [Span]>,
-    /// The lag that was stated, and how far it may be off, seconds.
+    /// The stated lag and its largest error, seconds.
     pub(crate) lag: Option<Lag>,
-    /// Why the measurements are no stream; absent of those whose stands these are.
+    /// Reason why the measurements are no stream; absent if they are static intervals of one.
     pub(crate) no_stands: Option<&'a NoStands>,
-    /// The stream of measurements whose stands these are, with its times, seconds.
+    /// The stream of measurements whose static intervals these are, with its times, seconds.
     pub(crate) stream: Option<(&'a Dataset, &'a [f64])>,
 }
 
-/// Readings by line, and what is said of them.
+/// Readings by line, and the messages on them.
 pub(crate) struct Joined {
-    /// What is kept of it.
+    /// Record of the join.
     pub(crate) entry: JoinEntry,
     pub(crate) readings: ReadingsByLine,
-    /// Rows of joint readings at which nothing was measured.
+    /// Rows of joint readings without a measurement.
     pub(crate) unmeasured: Vec<usize>,
     pub(crate) notes: Vec<String>,
     pub(crate) warnings: Vec<String>,
 }
 
 impl<'a> Pairing<'a> {
-    /// Of lists, without clocks.
+    /// A pairing of lists, without clocks.
     pub(crate) fn of_lists(
         joints: &'a JointRows,
         path: &'a Path,
@@ -122,7 +122,7 @@ impl<'a> Pairing<'a> {
         Pairing { joints, path, data, rows, robot, spans: None, lag: None, no_stands: None, stream: None }
     }
 
-    /// The readings of each line, by names or by the order.
+    /// The readings of each line, by names, order or time.
     pub(crate) fn found(&self, join: Option<Join>) -> Result<Joined> {
         let by_names = if matches!(join, Some(Join::Rows | Join::Time)) { None } else { self.by_names() };
         let clocks = self.joints.spans.as_deref().zip(self.spans);
@@ -130,7 +130,7 @@ impl<'a> Pairing<'a> {
             (Some(Join::Time), _) | (None, None) if let Some((joints, shots)) = clocks => {
                 let lags = self.rows.lagged(joints, shots, self.lag.map(|it| (it.lag_s, it.off_s)));
                 let found = self.by_lag(&lags, (joints.len(), shots.len()));
-                // Without stands at the same times, their order may do.
+                // Without static intervals at the same times, their order may suffice.
                 let is_open = join.is_none() && self.lag.is_none() && lags.is_empty();
                 found.or_else(|error| if is_open { self.by_rows(false).map_err(|_| error) } else { Err(error) })
             }
@@ -142,7 +142,7 @@ impl<'a> Pairing<'a> {
                     .to_owned(),
             ),
             (_, Some(pairs)) => match self.judged(&pairs, Join::Name, join.is_some()) {
-                // Numbers may count the points only.
+                // The numbers may count only the points.
                 Err(error) if join.is_none() => match self.by_rows(false) {
                     Ok(mut joined) => {
                         joined.warnings.push(format!(
@@ -167,7 +167,7 @@ impl<'a> Pairing<'a> {
             return self.by_alignment();
         }
         let pairs: Vec<Pair> = (0..joints).map(|row| (row, row)).collect();
-        // As many rows may hide that one was lost and another one taken twice.
+        // Equal numbers of rows may hide that one row was lost and another one taken twice.
         let wrong = self.rows.wrong(&pairs).0.len();
         if wrong >= FEW_WRONG
             && let Some(found) =
@@ -191,7 +191,7 @@ impl<'a> Pairing<'a> {
         let seen: Vec<Option<&String>> = self.rows.shots().iter().map(name_of).collect();
         let own: BTreeSet<&String> = seen.iter().flatten().copied().filter(|it| !it.is_empty()).collect();
         let others: BTreeSet<&String> = self.joints.ids.iter().filter(|it| !it.is_empty()).collect();
-        // A name that comes twice names no row.
+        // A name that occurs twice identifies no row.
         if others.len() != self.joints.ids.iter().filter(|it| !it.is_empty()).count() {
             return None;
         }
@@ -206,7 +206,7 @@ impl<'a> Pairing<'a> {
         (2 * pairs.len() >= seen.len() && !pairs.is_empty()).then_some(pairs)
     }
 
-    /// What is kept of pairs.
+    /// The record of the pairs.
     pub(crate) fn entry(&self, join: Join, pairs: &[Pair], missed_m: Option<f64>) -> JoinEntry {
         let paired: BTreeSet<usize> = pairs.iter().map(|it| it.1).collect();
         let of_joints = |rows: Vec<usize>| {
@@ -252,7 +252,7 @@ impl<'a> Pairing<'a> {
         self.joints.lines_of(rows)
     }
 
-    /// The line at which a configuration was measured first.
+    /// The line of the first measurement at a configuration.
     fn shot_line(&self, shot: usize) -> Option<usize> {
         let row = *self.rows.shots().get(shot)?.first()?;
         Some(self.data.observations.get(row as usize)?.source.line as usize)

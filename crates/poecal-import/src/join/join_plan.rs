@@ -1,4 +1,4 @@
-//! Which of the files that are read together have joint readings alone, and which measurements alone.
+//! Plan of the files that are read together: files with joint readings only, and files with measurements only.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -18,14 +18,14 @@ use poecal_model::measurement::{Clock, Measurement};
 use poecal_model::robot::{Controller, ReadingKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result, shown};
 
-/// What a file has.
+/// Content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// Joint readings and nothing that was measured.
+    /// Joint readings, no measurements.
     Joints,
-    /// What was measured, without joint readings; whether it names its targets.
+    /// Measurements without joint readings; `is_named` if it names its targets.
     Measured { is_named: bool },
-    /// All that belongs together, or something else.
+    /// Joint readings and measurements, or something else.
     Whole,
 }
 
@@ -33,11 +33,11 @@ pub(crate) enum Part {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ReadingsByLine {
     pub(crate) lines: BTreeMap<usize, Vec<f64>>,
-    /// What was measured on an average of a line's stand, where lines are those of a stream.
+    /// Mean measurements of a line's static interval, if the lines are those of a stream.
     pub(crate) means: BTreeMap<usize, Vec<Measurement>>,
-    /// How fast they changed, and when, of lines that were measured in motion.
+    /// Rates of the readings, and times, for lines that were measured in motion.
     pub(crate) moving: Option<MotionByLine>,
-    /// How they are made of columns.
+    /// Conversion of columns into the readings.
     pub(crate) controller: Option<Controller>,
 }
 
@@ -49,18 +49,18 @@ pub(crate) struct MotionByLine {
     pub(crate) clock: Clock,
 }
 
-/// Files of which some have the joint readings of others.
+/// Files of which some hold the joint readings of others.
 pub(crate) struct Plan<'p> {
     pub(crate) files: Vec<Planned<'p>>,
 }
 
-/// A file, and what it has.
+/// A file and its content.
 pub(crate) struct Planned<'p> {
     pub(crate) path: &'p Path,
     pub(crate) part: Part,
-    /// How one without readings is read.
+    /// Mapping by which a file without readings is read.
     pub(crate) map: ColumnMap,
-    /// The table, of a file in another form.
+    /// The table of a file in another form.
     table: Option<Made>,
 }
 
@@ -70,7 +70,7 @@ impl<'p> Planned<'p> {
         self.table.as_ref()?.sets()
     }
 
-    /// The same with another table.
+    /// Replaces its table.
     pub(crate) fn with_table(&mut self, table: Made) {
         self.table = Some(table);
     }
@@ -113,7 +113,7 @@ impl<'p> Plan<'p> {
                 return Err(recording.error(path, joints == 0));
             }
         }
-        // Beside a file that has one of both, the error is that of the first that has neither.
+        // If another file has joint readings or measurements, the first file without either is reported.
         if let Some(Neither { as_joints, as_measured }) = neither.into_iter().next()
             && joints + measured > 0
         {
@@ -123,7 +123,7 @@ impl<'p> Plan<'p> {
             return Ok(None);
         }
         let several = joints == 1 && measured > 1;
-        // Files whose frames differ are of several places of the instrument.
+        // Files with different frames are from several stations of the instrument.
         let frames: BTreeSet<&str> = (files.iter())
             .filter(|it| several && matches!(it.1, Part::Measured { .. }))
             .filter_map(|it| it.2.as_ref()?.frame.as_deref())
@@ -143,7 +143,7 @@ impl<'p> Plan<'p> {
     }
 }
 
-/// Refuses a topic that was asked for and that no file has.
+/// Refuses a requested topic that no file has.
 fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &ReadOptions) -> Result<()> {
     for (at, name) in options.topics.iter().enumerate() {
         let found =
@@ -165,15 +165,15 @@ fn refuse_other_topics(path: &Path, recordings: &[Option<Recording>], options: &
     Ok(())
 }
 
-/// What a file has, with its table if it is in another form.
+/// Content of a file, with its table if it is in another form.
 pub(crate) struct Found {
     pub(crate) part: Part,
     table: Option<Made>,
-    /// Why it has neither joint readings nor measurements.
+    /// Reason why it has neither joint readings nor measurements.
     why: Option<Neither>,
 }
 
-/// Why a file has no joint readings, and no measurements.
+/// Reasons why a file has no joint readings, and no measurements.
 struct Neither {
     as_joints: Error,
     as_measured: Error,
@@ -184,16 +184,17 @@ impl Found {
         Found { part: Part::Whole, table: None, why: None }
     }
 
-    /// Of a file that cannot be read.
+    /// The reasons for a file that cannot be read.
     fn unreadable(error: &Error) -> Self {
         Found { why: Some(Neither { as_joints: error.clone(), as_measured: error.clone() }), ..Self::whole() }
     }
 }
 
-/// What a file has; one that is no table is named when it is read, or where another has joint readings or measurements alone.
+/// Determines the content of a file. A file that is no table is refused later: when it is read, or beside a file with joint readings or
+/// measurements only.
 ///
 /// # Errors
-/// Of a file in another form that cannot be one.
+/// Those of a file in another form that cannot be one of these.
 pub(crate) fn part(path: &Path, opening: Opening<'_>, map: &ColumnMap) -> Result<Found> {
     if is_folder(path) {
         let error = opening.opened(path, MEASURED).err();
@@ -235,14 +236,14 @@ fn part_of<'p>(
             (Part::Measured { is_named }, None)
         }
         (Err(as_joints), Err(as_measured)) => (Part::Whole, Some(Neither { as_joints, as_measured })),
-        // Columns by their numbers are those of the file that has no joints.
+        // Columns by number are those of the file without joint readings.
         (Ok(_), Ok(_)) if !map.names_joints() && map.measured_numbers().is_some() => (Part::Joints, None),
         (Ok(_), Ok(_)) => (Part::Whole, None),
     };
     Ok(Found { part, table: None, why })
 }
 
-/// A mapping of a file that has no readings: those of joints are numbers that mean nothing.
+/// A mapping for a file without readings: those of joints are numbers without meaning.
 fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
     let names = robot.reading_names();
     let joints = names.into_iter().filter(|name| robot.reading_kind(name) != ReadingKind::Factor);
@@ -252,10 +253,10 @@ fn without_joints(map: &ColumnMap, robot: &Robot) -> ColumnMap {
     own
 }
 
-/// A file with what it has, and its table if it is in another form.
+/// A file with its content, and its table if it is in another form.
 type FilePart<'p> = (&'p Path, Part, Option<Made>);
 
-/// Sorts files by what they have; with why some have neither joint readings nor measurements.
+/// Sorts files by content, with the reasons why some have neither joint readings nor measurements.
 fn sort_parts<'p, 'r>(
     paths: impl Iterator<Item = (&'p Path, &'r Option<Recording>)>,
     opening: Opening<'_>,

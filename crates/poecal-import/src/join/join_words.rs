@@ -1,10 +1,10 @@
-//! What is said of pairs.
+//! Messages on pairs.
 
 use poecal_fit::start::Order;
 pub(crate) use poecal_fit::start::{mm, numbered, numbered_as};
 use poecal_numerics::error::first_few;
 
-/// What is said of lags at which measurements fit alike, the best first.
+/// Message on lags at which measurements fit equally well, the best first.
 pub(crate) fn several_lags(listed: &[String], best_s: f64) -> String {
     format!(
         "found measurements that fit the joint readings at several lags of the clocks alike, {}, as of a program that repeats itself, expected one: state it by --lag, like --lag {best_s:.1}s+-0.5s",
@@ -31,7 +31,7 @@ pub(crate) fn words(order: Order) -> String {
     }
 }
 
-/// What to do where an order fits better.
+/// Remedy if an order fits better.
 pub(crate) fn advice(order: Order) -> String {
     let rows = |by: usize| if by == 1 { "the first row".to_owned() } else { format!("the first {by} rows") };
     match order {

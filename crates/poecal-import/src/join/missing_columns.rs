@@ -1,4 +1,4 @@
-//! What is said of a header in which a column or its unit is missing.
+//! Errors of a header in which a column or its unit is missing.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +21,7 @@ impl Header<'_> {
         self.error(ErrorKind::Unit, index, message)
     }
 
-    /// As [`Header::find`] for a required column; `is_known` recognises names that cannot be misspellings of another column's, and `advice`
+    /// Works like [`Header::find`] for a required column. `is_known` recognises names that cannot be misspellings of another column's, and `advice`
     /// is for the message.
     pub(crate) fn require(
         &self,
@@ -45,7 +45,7 @@ impl Header<'_> {
         Err(error.of_missing(MissingColumn::Other))
     }
 
-    /// Message if this line is no header.
+    /// The message if this line is no header.
     fn no_header(&self, name: &str) -> Option<String> {
         let has_name = |(_, text): &&(usize, String)| {
             let mut cells = Vec::new();
@@ -74,7 +74,7 @@ impl Header<'_> {
         }
     }
 
-    /// Another column that may be meant.
+    /// Names of other columns that may be meant.
     fn other_names(&self, name: &str, is_known: impl Fn(&str) -> bool) -> String {
         let names = || {
             let named = self.cells.iter().filter(|cell| !cell.name.is_empty());

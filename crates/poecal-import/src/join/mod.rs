@@ -1,10 +1,11 @@
-//! Two files as one session: which line belongs to which, by names, order, time or motion.
+//! Two files as one session: pairs of lines, by names, order, time or motion.
 //!
-//! `join_plan.rs` sees which files have joint readings alone and which measurements alone; `read/joining.rs` reads the measurements twice, first
-//! without readings; `join_pairs.rs` pairs them by names or by their order, and says so. Recordings in time are reduced to the robot's stands before
-//! (`streams.rs`). Whether pairs are right the robot decides (`poecal-fit`'s `start/pairing`). Each line of the measurements then has its readings,
-//! and all else goes on as if one file had both. `set_choice.rs` and `shifted_header.rs` ask the robot which of two sets was measured, and whether
-//! names stand beside their values; `join_entry.rs` and `motions.rs` keep what `calibration.json` and the report show of it.
+//! `join_plan.rs` finds the files with joint readings only and those with measurements only. `read/joining.rs` reads the measurements twice, first
+//! without readings. `join_pairs.rs` pairs them by names or by their order, and reports it. Recordings in time are first reduced to the robot's
+//! static intervals (`streams.rs`). The robot decides whether pairs are right (`poecal-fit`'s `start/pairing`). Each line of the measurements then
+//! has its readings, and all else proceeds as if one file had both. `set_choice.rs` and `shifted_header.rs` use the robot to determine which of two
+//! sets was measured, and whether names are above their values. `join_entry.rs` and `motions.rs` keep the record for `calibration.json` and the
+//! report.
 
 pub(crate) mod beside;
 pub(crate) mod join_entry;

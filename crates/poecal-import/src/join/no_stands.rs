@@ -1,18 +1,19 @@
-//! Why rows that follow each other as in a recording have no stands.
+//! Reasons why rows that follow each other as in a recording have no static intervals.
 
 use poecal_fit::start::NoStream;
 
-/// Why rows have no stands.
+/// Reason why rows have no static intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum NoStands {
-    /// They are a list, or have other measurements than places.
+    /// They are a list, or have other measurements than positions.
     Listed,
-    /// They follow each other as in a recording, whose times cannot be used: what is wrong with these, and the line whose time is before the one above it.
+    /// They follow each other as in a recording, but their times cannot be used. `why` is the reason, and `back` the line whose time is before that
+    /// of the line above.
     Recorded { why: String, back: Option<usize> },
 }
 
 impl NoStands {
-    /// Of what is wrong with the times of rows, if they are none of a list, with their lines.
+    /// The reason by the defect of the rows' times, with their lines; a list if there is none.
     pub(crate) fn from_times(why: Option<NoStream>, times: &[f64], line: impl Fn(usize) -> Option<usize>) -> Self {
         let Some(why) = why else { return NoStands::Listed };
         let line = |row: usize| line(row).unwrap_or_default();

@@ -1,4 +1,6 @@
-//! Which of two sets of coordinates in a row was measured, by the robot: the nominal one misses it a little, and not at all what was computed.
+//! Choice between two sets of coordinates in a row, by the nominal robot. Its errors are small at the measured set and nil at a set that it
+//! computed.
+//! computed.
 
 use std::path::Path;
 
@@ -12,13 +14,13 @@ use crate::table::text::Blocks;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// What the nominal robot misses by less was computed by it, metres: the last digits of a report.
+/// Largest error of the nominal robot at coordinates that it computed, metres: the last digits of a report.
 const COMPUTED_M: f64 = 5e-5;
-/// How many times more the other set must then be missed.
+/// Ratio by which the error at the other set must then be larger.
 const MORE: f64 = 5.0;
 
 impl Plan<'_> {
-    /// Chooses the set that was measured, of each file that has two.
+    /// Chooses the measured set of each file with two sets.
     pub(crate) fn settle_sets(
         &mut self,
         robot: &Robot,
@@ -49,7 +51,7 @@ impl Plan<'_> {
 }
 
 impl Reader<'_> {
-    /// A file's blocks, of one with two sets of coordinates those of the set that was measured.
+    /// A file's blocks; if it has two sets of coordinates, those of the set that was measured.
     pub(crate) fn blocks_of_set<'p>(&self, path: &'p Path) -> Result<Blocks<'p>> {
         let mut opened = self.opening().opened(path, MEASURED)?;
         if let Opened::Made(table) = &opened
@@ -60,7 +62,7 @@ impl Reader<'_> {
         Ok(opened.blocks(path, MEASURED))
     }
 
-    /// The set that was measured, of a file with joint readings of another.
+    /// The set that was measured, in a file whose joint readings are in another.
     fn measured_set(&self, planned: &Planned<'_>, sets: [Made; 2], joints: &JointRows) -> Result<Made> {
         let path = planned.path;
         let missed = |table: &Made, joints: &JointRows| -> Result<Option<f64>> {
@@ -79,7 +81,7 @@ impl Reader<'_> {
         chosen(path, sets, errors)
     }
 
-    /// The set that was measured, of a file that has its joint readings.
+    /// The measured set of a file that has its joint readings.
     fn measured_set_of_whole(&self, path: &Path, sets: [Made; 2]) -> Result<Made> {
         let missed = |table: &Made| -> Result<Option<f64>> {
             let mut reader = Reader { map: self.map, ..Reader::new(self.robot, self.options, self.map) };
@@ -91,7 +93,7 @@ impl Reader<'_> {
     }
 }
 
-/// The set that was measured, by the errors of the nominal robot, metres; none of one that it does not fit.
+/// The set that was measured, by the errors of the nominal robot, metres; `None` if it does not fit a set.
 fn chosen(path: &Path, sets: [Made; 2], errors: [Option<f64>; 2]) -> Result<Made> {
     let is_named = sets[1].called == Some(Called::Measured);
     let names = if is_named { ["nominal", "measured"] } else { ["first", "second"] };

@@ -1,4 +1,4 @@
-//! Headers whose names stand one column beside their values: found by the robot, which then fits the values of neighbouring columns.
+//! Headers whose names are shifted by one column from their values: found by the robot, which then fits the values of neighbouring columns.
 
 use std::path::Path;
 
@@ -18,13 +18,13 @@ use poecal_fit::start::{Agreement, Pair, Unpaired};
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::{Error, ErrorKind};
 
-/// Most rows by which a header is judged.
+/// Largest number of rows by which a header is judged.
 const SOME: usize = 600;
-/// Columns by which values may stand beside their names.
+/// Columns by which values may be shifted from their names.
 const SHIFTS: [isize; 2] = [1, -1];
 
 impl ColumnLayout {
-    /// The same with every number taken from so many columns further to the right, if there is a measured number there, no count.
+    /// The layout with every number taken from `by` columns further to the right, if a measured number is there, not a count.
     pub(crate) fn shifted(mut self, by: isize, header: &Header<'_>, separator: Separator) -> Option<Self> {
         let row = header.first_row()?;
         let mut cells = Vec::new();
@@ -47,11 +47,11 @@ impl ColumnLayout {
     }
 }
 
-/// Most rows of lists whose order is compared with shifted headers.
+/// Largest number of rows of lists whose order is compared with shifted headers.
 const MOST_ROWS: usize = 2000;
 
 impl Reader<'_> {
-    /// A layout as the values stand, where the header is taken for shifted.
+    /// The layout of the shifted values, if the header is judged to be shifted.
     pub(crate) fn as_shifted(
         &self,
         layout: ColumnLayout,
@@ -65,13 +65,13 @@ impl Reader<'_> {
             .ok_or_else(|| ErrorKind::Measurement.error("found no columns beside").in_file(table.header.path))
     }
 
-    /// By how much the nominal robot misses rows with the readings that they have, metres, if it evidently fits them.
+    /// Error of the nominal robot at rows with their own readings, metres, if it evidently fits them.
     pub(crate) fn fit_m(&self, data: &Dataset) -> Option<f64> {
         let rows: Vec<u32> = data.all_rows().into_iter().step_by(data.len().div_ceil(SOME).max(1)).collect();
         let data = &data.only(&rows);
         let readings: Vec<f64> = (0..data.len()).flat_map(|row| data.readings(row).to_vec()).collect();
         let rows = Unpaired::new(self.robot, &readings, data);
-        // Targets that are seen in one configuration are in rows of their own.
+        // Targets that are seen in one configuration have separate rows.
         let pairs: Vec<Pair> = (rows.shots().iter().enumerate())
             .filter_map(|(shot, of)| Some((*of.first()? as usize, shot)))
             .collect();
@@ -117,7 +117,7 @@ impl Reader<'_> {
         None
     }
 
-    /// The error of two files that do not fit, where the header of one is shifted.
+    /// The error of two files that do not fit, if the header of one is shifted.
     pub(crate) fn or_shifted(
         &self,
         error: Error,

@@ -1,4 +1,4 @@
-//! Options that concern forms of files.
+//! Check of options that concern forms of files.
 
 use super::no_file_for::{BODIES, unused};
 use crate::Join;
@@ -7,7 +7,7 @@ use crate::read::Reader;
 use poecal_numerics::error::Result;
 
 impl Reader<'_> {
-    /// Refuses options that concern forms of files of which there is none.
+    /// Refuses options for forms of files that are absent.
     pub(crate) fn refuse_unused(&self) -> Result<()> {
         let forms = || self.found.understood.iter().filter_map(|it| it.form);
         let is_of = |options: &[&str]| forms().any(|it| options.contains(&it));

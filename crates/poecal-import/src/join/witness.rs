@@ -5,8 +5,8 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// Rows of some measurements without what was measured, as a file to fill in: their configurations, in order and to four decimals, with `id`, target and
-/// instrument where they have names, and empty columns for the numbers.
+/// A file to fill in, with the configurations of some measurements, in order and to four decimals. It has `id`, target and instrument if they have
+/// names, and empty columns for the measured numbers.
 ///
 /// # Errors
 /// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if a reading has a name that no column can have.

@@ -1,4 +1,4 @@
-//! Which observations of messages are pixels, and which are the points of a board on the robot.
+//! Separation of the observations in messages into pixels and points of a board on the robot.
 
 use nalgebra::Vector3;
 
@@ -7,9 +7,9 @@ use crate::pictures::boards::FARTHEST_M;
 use poecal_model::camera::Board;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Distance up to which two places are one point of a board, metres.
+/// Distance up to which two positions are one point of a board, metres.
 const SAME_M: f64 = 1e-6;
-/// How many times as many places as points in a message are those of something that moves.
+/// Ratio of the number of positions to that of points in a message beyond which the points move.
 const MOVES: f64 = 1.5;
 
 /// A message, sorted.
@@ -17,16 +17,16 @@ pub(crate) struct Picture<'a> {
     pub(crate) message: &'a Message<'a>,
     /// Observations in pixels.
     pub(crate) pixels: Vec<&'a Observation<'a>>,
-    /// Of observations of points in the frame of a link, the body and which of its points they are.
+    /// Observations of points in the frame of a link: the body, and the indices of its points.
     points: Vec<(usize, Vec<usize>)>,
 }
 
 /// Points on a link that a sensor states, metres.
 pub(crate) struct Body {
     pub(crate) sensor: String,
-    /// By the frame of the points.
+    /// The points, under the name of their frame.
     pub(crate) board: Board,
-    /// Most points in a message.
+    /// Largest number of points in a message.
     most: usize,
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Body {
 #[derive(Default)]
 pub(crate) struct Bodies(pub(crate) Vec<Body>);
 
-/// Whether an observation is one of pixels; one of a camera that sees points in space is refused by name.
+/// True if an observation is one of pixels; an observation of points in space by a camera is refused by name.
 fn are_pixels(observation: &Observation<'_>) -> Result<bool> {
     let Observation { node, sensor, features, .. } = observation;
     let deep = features.iter().find(|it| it.at[2] != 0.0);
@@ -55,7 +55,7 @@ fn are_pixels(observation: &Observation<'_>) -> Result<bool> {
 }
 
 impl Body {
-    /// Index of a point, which is new or was there in a message before.
+    /// Index of a point, which is added if no message had it before.
     fn index(&mut self, at: [f64; 3]) -> usize {
         let place = Vector3::from(at);
         let Board { names, points, .. } = &mut self.board;
@@ -91,7 +91,7 @@ impl Bodies {
         Ok(Picture { message, pixels, points })
     }
 
-    /// Refuses points that are at other places in each message: those are what a camera saw in space.
+    /// Refuses points whose positions differ from message to message: a camera saw them in space.
     pub(crate) fn refuse_moving(&self) -> Result<()> {
         let moves = |body: &&Body| body.board.points.len() as f64 > MOVES * body.most as f64;
         let Some(Body { sensor, board, .. }) = self.0.iter().find(moves) else { return Ok(()) };
@@ -104,7 +104,7 @@ impl Bodies {
 }
 
 impl Picture<'_> {
-    /// The points of the message that an observation of pixels sees: those of as many features.
+    /// The points of the message that an observation of pixels sees: the ones with the same number of features.
     pub(crate) fn partner(&self, observation: &Observation<'_>) -> Result<&(usize, Vec<usize>)> {
         let (count, sensor) = (observation.features.len(), observation.sensor);
         let alike: Vec<_> = self.points.iter().filter(|it| it.1.len() == count).collect();

@@ -1,4 +1,4 @@
-//! Messages of robot_calibration (`CalibrationData`), as `ros2 topic echo` prints them or as JSON: each is a picture of each camera in it, with the
+//! Messages of robot_calibration (`CalibrationData`), as printed by `ros2 topic echo` or as JSON. Each is a picture of each camera in it, with the
 //! readings of the joints by name. They become rows of corners, which are read as those of a table.
 
 mod bodies;
@@ -22,7 +22,7 @@ use poecal_model::camera::{Board, Camera, Lens, size_of_pictures};
 use poecal_model::robot::ReadingKind;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
-/// What readings are made of: joints as the messages name them, each with whether it is a length.
+/// The joints of the readings, by their names in the messages, each with whether it is a length.
 type Joints = Vec<(String, bool)>;
 
 impl Reader<'_> {
@@ -32,7 +32,7 @@ impl Reader<'_> {
         let made = self.corners_of_messages(&text).map_err(|error| error.with_path(path).in_file(path))?;
         let mut rows = made.blocks(path, "messages");
         let warned = rows.said().warnings;
-        // A column of the header is none of the file.
+        // A column of the header is not one of the file.
         let column = |error: &Error| error.place().and_then(|place| place.column);
         Table::open(path, rows, &ColumnMap::default())
             .and_then(|table| self.corners(path, table))
@@ -42,7 +42,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The rows of corners that messages say; errors name no file.
+    /// The rows of corners of the messages; errors name no file.
     fn corners_of_messages(&mut self, text: &str) -> Result<Made> {
         let nodes = parsed::nodes(text)?;
         let messages: Vec<Message<'_>> = nodes.iter().map(parsed::message).collect::<Result<_>>()?;
@@ -100,7 +100,7 @@ impl Reader<'_> {
         Ok(made)
     }
 
-    /// The joints that the readings need, all of which the first message must have.
+    /// The joints that the readings need; the first message must have all of them.
     fn joints_of(&self, first: &Message<'_>) -> Result<Joints> {
         let mut joints: Joints = Vec::new();
         for name in self.found.data.reading_names() {
@@ -119,12 +119,12 @@ impl Reader<'_> {
                 }
             }
         }
-        // With the error of one that is missing.
+        // Reports the error of a joint that is missing.
         readings(first, &joints)?;
         Ok(joints)
     }
 
-    /// The cameras that the messages state, unless there are stated ones. Says which.
+    /// Takes the cameras of the messages, unless the user stated cameras. Returns a sentence on them.
     fn take_cameras(&mut self, messages: &[Message<'_>]) -> Result<Option<String>> {
         let mut infos: BTreeMap<&str, &CameraInfo> = BTreeMap::new();
         for observation in messages.iter().flat_map(|it| &it.observations) {
@@ -163,7 +163,7 @@ impl Reader<'_> {
         Ok(Some(format!("took ext_camera_info for the lens of {}{regions}", first_few(&names))))
     }
 
-    /// The boards that the messages state, unless there are stated ones. Says which.
+    /// Takes the boards of the messages, unless the user stated boards. Returns a sentence on them.
     fn take_boards(&mut self, bodies: &Bodies) -> Result<Option<String>> {
         if bodies.0.is_empty() {
             return Ok(None);
@@ -197,7 +197,7 @@ impl Reader<'_> {
         Ok(Some(format!("took the board {}", names.join(", "))))
     }
 
-    /// The board of an observation of pixels, empty if there is one, and the names of its features.
+    /// The board of an observation of pixels, empty if there is only one, and the names of its features.
     fn names(
         &self,
         picture: &Picture<'_>,
@@ -247,7 +247,7 @@ fn readings(message: &Message<'_>, joints: &Joints) -> Result<Vec<f64>> {
     Ok(readings)
 }
 
-/// The lens of the pictures, and what its region changed in words.
+/// The lens of the pictures, and the effect of its region in words.
 fn lens(info: &CameraInfo) -> Result<(Lens, Option<String>)> {
     let CameraInfo { size_px, k, d, model, region } = info;
     let [fx, skew, cx, _, fy, cy, ..] = *k;

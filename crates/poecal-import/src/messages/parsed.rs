@@ -1,4 +1,4 @@
-//! Messages of robot_calibration as they stand in a file.
+//! Messages of robot_calibration, parsed from a file.
 
 use std::path::Path;
 
@@ -7,11 +7,11 @@ use poecal_numerics::error::{Result, first_few};
 use poecal_storage::numbers::LARGEST_NUMBER;
 use poecal_storage::yaml_tree::{Node, NodeKind, documents};
 
-/// What such a file is.
+/// Description of such a file in errors.
 pub(crate) const EXPECTED: &str =
     "messages of robot_calibration (CalibrationData) as YAML or JSON, with joint_states and observations";
 
-/// A message: one configuration, and what sensors observed in it.
+/// A message: one configuration, and the observations of the sensors there.
 pub(crate) struct Message<'a> {
     pub(crate) node: &'a Node,
     /// Names and readings of the joints.
@@ -19,14 +19,14 @@ pub(crate) struct Message<'a> {
     pub(crate) observations: Vec<Observation<'a>>,
 }
 
-/// What a sensor observed.
+/// An observation of a sensor.
 pub(crate) struct Observation<'a> {
     pub(crate) node: &'a Node,
     pub(crate) sensor: &'a str,
     /// The frame of the features.
     pub(crate) frame: &'a str,
     pub(crate) features: Vec<Feature<'a>>,
-    /// The camera, where the message states its lens.
+    /// The camera, if the message states its lens.
     pub(crate) camera: Option<CameraInfo>,
 }
 
@@ -36,18 +36,18 @@ pub(crate) struct Feature<'a> {
     pub(crate) at: [f64; 3],
 }
 
-/// The lens of a camera as ROS has it.
+/// The lens of a camera in the form of ROS.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CameraInfo {
     pub(crate) size_px: [f64; 2],
     pub(crate) k: [f64; 9],
     pub(crate) d: Vec<f64>,
     pub(crate) model: String,
-    /// The part of the sensor that the pictures show.
+    /// The region of the sensor that the pictures show.
     pub(crate) region: Region,
 }
 
-/// In place of the path in errors, which who reads the file puts there.
+/// Placeholder of the path in errors; the reader of the file replaces it.
 pub(crate) const NO_PATH: &str = "";
 
 /// Refuses a part of a file.
@@ -62,13 +62,13 @@ impl Refuse for Node {
     }
 }
 
-/// The messages of a file: each a document, or in a list.
+/// The messages of a file: each is a document, or an entry of a list.
 pub(crate) fn nodes(text: &str) -> Result<Vec<Node>> {
     let mut found = Vec::new();
     for document in documents(text, Path::new(NO_PATH), EXPECTED)? {
         match document.kind {
             NodeKind::List(entries) => found.extend(entries),
-            // Behind the last `---`.
+            // An empty document is behind the last `---`.
             NodeKind::Text(text) if text.trim().is_empty() || text == "~" || text == "null" => {}
             kind @ (NodeKind::Map(_) | NodeKind::Text(_)) => found.push(Node { kind, ..document }),
         }
@@ -134,7 +134,7 @@ fn word<'a>(node: &'a Node, of: &str) -> Result<&'a str> {
     name(node).map_or_else(|| node.refuse(format!("found no name of {of}, expected one")), Ok)
 }
 
-/// The lens; `None` of an empty message.
+/// The lens; `None` if the message is empty.
 fn camera_info(node: &Node) -> Result<Option<CameraInfo>> {
     let either = |small: &str, large: &str| node.get(small).or_else(|| node.get(large));
     let numbers = |node: &Node, name: &str| -> Result<Vec<f64>> {
@@ -183,7 +183,7 @@ fn list<'a>(node: &'a Node, what: &str) -> Result<&'a [Node]> {
     node.list().map_or_else(|| node.refuse(format!("found no list of {what}, expected {EXPECTED}")), Ok)
 }
 
-/// What stands for the rest of a list that was printed in part.
+/// Mark in place of the rest of a list that was printed in part.
 const CUT: &str = "...";
 
 fn refuse_cut<T>(node: &Node) -> Result<T> {

@@ -1,4 +1,4 @@
-//! Which files are messages, and what is said of other files of YAML.
+//! Recognition of messages, and errors of other files of YAML.
 
 use std::path::Path;
 
@@ -7,13 +7,13 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use super::parsed::EXPECTED;
 use crate::table::configurations::advice;
 
-/// How messages begin.
+/// Beginnings of messages.
 const BEGINNINGS: [&str; 6] =
     ["---", "header:", "joint_states:", "- header:", "- joint_states:", "observations:"];
-/// What says that a file of YAML or JSON has joints.
+/// Key of joints in a file of YAML or JSON.
 const JOINTS: &str = "joint_states";
 
-/// Whether the beginning of a file is that of messages; other YAML, which is no table either, is refused.
+/// True if the beginning of a file is that of messages; other YAML, which is no table either, is refused.
 pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
     let begin = head.trim_start();
     let is_json = begin.starts_with(['{', '[']);
@@ -39,11 +39,11 @@ pub(crate) fn are_messages(path: &Path, head: &str) -> Result<bool> {
     Ok(false)
 }
 
-/// Lines by which YAML is known.
+/// Number of lines by which YAML is recognised.
 const LOOKED_AT: usize = 200;
 
-/// Whether the first lines that are no comments are keys of YAML, entries of its lists, or further in than these and no cells of a table: a table may
-/// have titles above it.
+/// True if the first lines, except comments, are keys of YAML, entries of its lists, or indented lines. Cells of a table are not: it may have
+/// titles above it.
 fn begins_with_keys(head: &str) -> bool {
     let is_content = |it: &&str| !it.trim().is_empty() && !it.starts_with(['#', '%']) && *it != "---";
     let is_word = |it: char| it.is_alphanumeric() || matches!(it, '_' | '-' | '.' | '/' | '"' | '\'');

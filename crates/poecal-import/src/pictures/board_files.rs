@@ -1,4 +1,4 @@
-//! Boards as Kalibr, industrial_calibration and OpenCV state them, in YAML or XML, in the words of `poecal detect`.
+//! Boards in files of Kalibr, industrial_calibration and OpenCV (YAML or XML), as words of `poecal detect`.
 
 use std::path::Path;
 
@@ -9,28 +9,28 @@ use poecal_storage::other_keys::KeysOf;
 use poecal_storage::source_text::read_up_to;
 use poecal_storage::yaml::{Leaf, leaves};
 
-/// What such a file is.
+/// Description of such a file in errors.
 const EXPECTED: &str = "a board: YAML of Kalibr (target_type, …) or industrial_calibration (target_finder), or settings of OpenCV's calibration \
                         (BoardSize_Width, …)";
 /// Endings of such files.
 const ENDINGS: [&str; 3] = ["yaml", "yml", "xml"];
-/// Sides below this are metres in OpenCV's settings, which state no unit, others millimetres.
+/// Smallest side in millimetres: smaller sides in OpenCV's settings, which state no unit, are metres.
 const LEAST_MM: f64 = 1.0;
-/// Markers of industrial_calibration where it states none.
+/// Markers of industrial_calibration if its file states none.
 const USUAL_MARKERS: &str = "DICT_6X6_250";
 /// Sets of markers in the order in which OpenCV numbers them.
 const DICTIONARIES: &str = "DICT_4X4_50 DICT_4X4_100 DICT_4X4_250 DICT_4X4_1000 DICT_5X5_50 DICT_5X5_100 DICT_5X5_250 DICT_5X5_1000 DICT_6X6_50 \
                             DICT_6X6_100 DICT_6X6_250 DICT_6X6_1000 DICT_7X7_50 DICT_7X7_100 DICT_7X7_250 DICT_7X7_1000 DICT_ARUCO_ORIGINAL \
                             DICT_APRILTAG_16h5 DICT_APRILTAG_25h9 DICT_APRILTAG_36h10 DICT_APRILTAG_36h11";
 
-/// Whose files have boards.
+/// A program whose files have boards.
 struct Maker {
     name: &'static str,
-    /// What only its files have.
+    /// A key that only its files have.
     mark: &'static str,
-    /// Where the board is in the file.
+    /// The section of the file with the board.
     section: &'static str,
-    /// Keys, or the beginnings of keys that end with a star, which are read, or change no board; in small letters.
+    /// Keys that are read or do not change the board, in small letters; a key that ends with a star is a beginning.
     known: &'static str,
     words: fn(&Stated<'_>) -> Result<String>,
 }
@@ -47,14 +47,14 @@ const MAKERS: [Maker; 3] = [
         name: "industrial_calibration",
         mark: "target_finder.type",
         section: "target_finder",
-        // The last ones say how its circles are sought.
+        // The last keys state how its circles are found.
         known: "type cols rows spacing chessboard_dim aruco_marker_dim dictionary circle_diameter circle_detector_params",
         words: |it| it.industrial(),
     },
     Maker {
         name: "OpenCV's settings",
         mark: "BoardSize_Width",
-        // Or at the top. Beside the board they say how pictures are taken and what is written.
+        // The board may also be at the top level. Keys beside it state how pictures are taken and which results are written.
         section: "Settings",
         known: "boardsize_* square_size* marker_size* aruco_* calibrate_* input* write_* show_* fix_* grid_width*",
         words: |it| it.opencv(),
@@ -66,14 +66,14 @@ const MAKERS: [Maker; 3] = [
 pub struct BoardOfFile {
     /// The words, such as `aprilgrid:6x6:88mm:0.3`.
     pub words: String,
-    /// What was read, a sentence.
+    /// The file and the board that was read, a sentence.
     pub said: String,
 }
 
-/// The board of a file of Kalibr, industrial_calibration or OpenCV (`.yaml`, `.yml`, `.xml`); `None` of what ends otherwise.
+/// The board of a file of Kalibr, industrial_calibration or OpenCV (`.yaml`, `.yml`, `.xml`); `None` for other endings.
 ///
 /// # Errors
-/// A file that cannot be read, or has no such board.
+/// The file cannot be read, or has no such board.
 pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
     let path = Path::new(typed);
     let ending = path.extension().and_then(|it| it.to_str()).map(str::to_ascii_lowercase);
@@ -92,7 +92,7 @@ pub fn board_of_file(typed: &str) -> Result<Option<BoardOfFile>> {
 }
 
 impl Stated<'_> {
-    /// The value behind keys that are joined by dots, alone or below others.
+    /// The value behind keys that are joined by dots, at the top level or below others.
     fn find(&self, keys: &str) -> Option<&Leaf> {
         let count = keys.split('.').count();
         self.leaves.iter().find(|leaf| leaf.path.iter().rev().take(count).eq(keys.rsplit('.')))
@@ -117,7 +117,7 @@ impl Stated<'_> {
         number.ok_or_else(|| self.refuse(leaf, "a number above 0"))
     }
 
-    /// A length in millimetres, as words of boards have it.
+    /// A length in millimetres, for the words of boards.
     fn length(&self, keys: &str) -> Result<String> {
         self.above_0(keys).map(millimetres)
     }
@@ -132,7 +132,7 @@ impl Stated<'_> {
         Ok([count(columns)?, count(rows)?])
     }
 
-    /// Whether a key that may be missing says so.
+    /// The value of an optional boolean key; false if it is missing.
     fn is_true(&self, keys: &str) -> Result<bool> {
         let Some(leaf) = self.find(keys) else { return Ok(false) };
         match leaf.text.to_ascii_lowercase().as_str() {
@@ -236,7 +236,7 @@ impl Stated<'_> {
     }
 }
 
-/// A length in millimetres, as words of boards have it.
+/// A length in millimetres, for the words of boards.
 fn millimetres(length_m: f64) -> String {
     format!("{}mm", (length_m * 1e9).round() / 1e6)
 }

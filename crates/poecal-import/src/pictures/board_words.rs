@@ -1,16 +1,16 @@
-//! Boards in words, as `poecal detect` has them: what moves the points of a board. Which markers it has, or in which pattern, does not.
+//! Boards in the words of `poecal detect`, as far as they determine the points of a board. The markers and their pattern do not.
 
 use poecal_model::camera::Board;
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::positive_length_m;
 
-/// The board of all corners where no column names it.
+/// Name of the board of all corners if no column names it.
 pub(crate) const BOARD: &str = "board";
 
 const SQUARES: &str =
     "squares along x and y and their side, as chessboard:10x7:27mm or charuco:5x7:36mm:18mm:DICT_6X6_250";
 
-/// Kinds of boards, and what is expected of each.
+/// Kinds of boards, and the expected form of each.
 const KINDS: [(&str, &str); 5] = [
     ("chessboard", SQUARES),
     ("charuco", SQUARES),
@@ -25,7 +25,7 @@ const KINDS: [(&str, &str); 5] = [
     ("tags", "a family and the side of a tag with its black border, as tags:36h11:50mm"),
 ];
 
-/// The board of a specification; `None` of what is none, such as the name of a file.
+/// The board of a specification; `None` if the words are none, such as the name of a file.
 pub(crate) fn in_words(typed: &str) -> Option<Result<Board>> {
     let (name, rest) = typed.trim().split_once(':')?;
     let (_, expected) = KINDS.iter().find(|it| it.0 == name)?;
@@ -34,13 +34,13 @@ pub(crate) fn in_words(typed: &str) -> Option<Result<Board>> {
     Some(board(name, &parts).and_then(|board| board.ok_or_else(refuse)))
 }
 
-/// `COLSxROWS`.
+/// Parses `COLSxROWS`.
 fn size(text: &str) -> Option<[usize; 2]> {
     let (columns, rows) = text.split_once(['x', 'X', '×'])?;
     Some([columns.trim().parse().ok()?, rows.trim().parse().ok()?])
 }
 
-/// The board of a kind; `None` of parts that are none of it.
+/// The board of a kind; `None` if the parts do not belong to it.
 fn board(kind: &str, parts: &[&str]) -> Result<Option<Board>> {
     let sized = |counts: &str, length: &str| Ok(size(counts).zip(positive_length_m(length)?));
     let circles = |dots: &str, pitch: &str, is_asymmetric| match sized(dots, pitch)? {
@@ -55,7 +55,7 @@ fn board(kind: &str, parts: &[&str]) -> Result<Option<Board>> {
         },
         ("circles", [dots, pitch]) => circles(dots, pitch, false),
         ("circles", [dots, pitch, "asymmetric"]) => circles(dots, pitch, true),
-        // Nor does the family of tags.
+        // The family of tags does not either.
         ("aprilgrid", [tags, side, spacing] | [tags, side, spacing, _]) => {
             match (sized(tags, side)?, spacing.trim().parse()) {
                 (Some((tags, side_m)), Ok(spacing)) => {
@@ -64,7 +64,7 @@ fn board(kind: &str, parts: &[&str]) -> Result<Option<Board>> {
                 _ => Ok(None),
             }
         }
-        // One tag, of which there are as many as the corners name: each is a board at a place of its own.
+        // One tag; there are as many as the corners name, and each is a board with a pose of its own.
         ("tags", [_, side]) => positive_length_m(side)?.map(|side_m| Board::tag(BOARD, side_m)).transpose(),
         _ => Ok(None),
     }

@@ -1,4 +1,4 @@
-//! Boards and solids whose points cameras see: CSV, or in words.
+//! Boards and solids whose points cameras see: from CSV, or in words.
 
 use std::path::Path;
 
@@ -18,12 +18,12 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 
-/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side); the others are
-/// `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, as `poecal detect` has them. Files of Kalibr, industrial_calibration and OpenCV's settings
-/// (YAML, XML) do as well, and a `calibration.json` with what it found.
+/// The boards of a file of points, or of a specification such as `chessboard:10x7:27mm` (squares along x and y, and their side). Other
+/// specifications are `charuco:…`, `circles:…`, `aprilgrid:…` and `tags:…`, in the words of `poecal detect`. Files of Kalibr,
+/// industrial_calibration and OpenCV's settings (YAML, XML) are accepted too, and a `calibration.json` with its calibrated boards.
 ///
 /// # Errors
-/// A file that cannot be read or has no points, or a specification that is none.
+/// A file cannot be read or has no points, or a specification is not valid.
 pub fn read_boards(typed: &str) -> Result<Vec<Board>> {
     let of_file = board_of_file(typed)?;
     match in_words(of_file.as_ref().map_or(typed, |it| &it.words)) {
@@ -79,7 +79,7 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
             boards.len() - 1
         });
         let Some(board) = boards.get_mut(at) else { return Ok(()) };
-        // Points that are only numbered are named by their column too.
+        // Points that only have numbers are named by their column too.
         let word = row.word(Some(name_at));
         let is_number = word.bytes().all(|it| it.is_ascii_digit());
         let point_name = if is_number { format!("{name}{word}") } else { word };
@@ -97,7 +97,7 @@ fn of_table(path: &Path) -> Result<Vec<Board>> {
 /// Largest coordinate of a point of a board, metres.
 pub(crate) const FARTHEST_M: f64 = 10.0;
 
-/// A coordinate of a point of a board in a cell, metres; `of` says of what, and `axis` how its column is called.
+/// A coordinate of a point of a board in a cell, metres. In errors, `of` is the owner of the point, and `axis` the name of its column.
 pub(crate) fn length_on_board(
     row: &Row<'_>,
     (at, unit): Coordinate,

@@ -17,9 +17,9 @@ use poecal_storage::yaml::Leaf;
 /// The columns of a table of cameras.
 struct CameraColumns {
     name: Option<usize>,
-    /// Of the numbers of a lens.
+    /// Columns of the numbers of a lens.
     numbers: [Option<usize>; LENS_NAMES.len()],
-    /// Width and height of its pictures.
+    /// Columns of width and height of its pictures.
     size: [Option<usize>; 2],
     model: Option<usize>,
     version: Option<usize>,
@@ -30,7 +30,7 @@ struct CameraColumns {
 /// A camera of a table with its version and its line.
 type CameraRow = (Camera, String, usize);
 
-/// The cameras of a table, of the version that is named, and a sentence on columns that were not read.
+/// The cameras of a table, of the named version, and a sentence on columns that were not read.
 pub(crate) fn read_table(path: &Path, version: Option<&str>) -> Result<(Vec<Camera>, Vec<String>)> {
     let map = ColumnMap::default();
     let mut table = Table::open(path, Blocks::open(path, "a camera (CSV)")?, &map)?;
@@ -95,7 +95,7 @@ impl CameraColumns {
         let size_px =
             size_of_pictures(size).map_err(|error| row.error(self.size[0].unwrap_or(0), error.message()))?;
         let is_fisheye = ["fisheye", "equidistant"].contains(&row.word(self.model).to_lowercase().as_str());
-        // The only one needs no name.
+        // A single camera needs no name.
         let name = self.name.map_or_else(|| "camera".to_owned(), |at| row.word(Some(at)));
         Ok((Camera::new(name, lens_of(numbers, is_fisheye, size_px)), row.word(self.version), row.line))
     }
@@ -128,7 +128,7 @@ fn refuse_twice(header: &Header<'_>, is_named: bool, cameras: &[CameraRow]) -> R
 fn lens_of(numbers: [f64; LENS_NAMES.len()], is_fisheye: bool, size_px: Option<[u32; 2]>) -> Lens {
     let [fx, fy, cx, cy, k1, k2, p1, p2, k3, k4, k5, k6] = numbers;
     let distortion = if is_fisheye {
-        // A table names them k1 to k4, a list has them in this order.
+        // A table names them k1 to k4; a list has them in this order.
         Distortion::Fisheye(if p1 == 0.0 && p2 == 0.0 { [k1, k2, k3, k4] } else { [k1, k2, p1, p2] })
     } else {
         Distortion::Brown([k1, k2, p1, p2, k3, k4, k5, k6])

@@ -1,4 +1,4 @@
-//! Cameras as OpenCV, ROS, Kalibr, mrcal, makers of cameras and scripts write them: numbers below keys (YAML, JSON, XML).
+//! Cameras in files of OpenCV, ROS, Kalibr, mrcal, makers of cameras and scripts: numbers below keys (YAML, JSON, XML).
 
 use std::path::Path;
 
@@ -10,9 +10,9 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::other_keys::KeysOf;
 use poecal_storage::yaml::Leaf;
 
-/// Keys of Kalibr's cameras that are read, or say nothing of a lens.
+/// Keys of Kalibr's cameras that are read, or do not describe a lens.
 const OF_KALIBR: &str = "camera_model intrinsics distortion_model distortion_coeffs resolution t_cn_cnm1 t_cam_imu cam_overlaps timeshift_cam_imu";
-/// Keys of the matrix, row by row or, as Open3D has it, column by column.
+/// Keys of the matrix, row by row or, in Open3D's form, column by column.
 const MATRIX: &str = "camera_matrix.data cameraMatrix.data Camera_Matrix.data K.data M1.data K k camera_matrix cameraMatrix intrinsicMatrix \
                       intrinsic_matrix intrinsics mtx camera_intrinsics";
 /// Focal lengths and centre by their names.
@@ -20,23 +20,23 @@ const FOCAL: [&str; 4] = ["fx", "fy", "cx ppx", "cy ppy"];
 /// Keys of the coefficients of the distortion.
 const COEFFICIENTS: &str = "distortion_coefficients.data dist_coeffs.data distCoeffs.data Distortion_Coefficients.data distortion_coeffs.data D.data D1.data D \
                             d distortion_coefficients dist_coeffs dist_coeff distCoeffs distortionCoeff distortion_coeffs distortion dist coeffs";
-/// The same by their names, in OpenCV's order, and where they may be.
+/// Keys of the coefficients by name, in OpenCV's order, in all their variants.
 const NAMED: [&str; 8] = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
 const BENT: [&str; 2] = ["distortion", "Distortion"];
 const MODEL: &str = "distortion_model distortionModel";
-/// The same, or that of the device.
+/// Keys of the model of the distortion, or of the device.
 const MODEL_OF_ANY: &str = "model";
-/// OAK's type of a camera is 1 for a fisheye.
+/// Keys that mark a fisheye; OAK's type of a camera is then 1.
 const IS_FISHEYE: &str = "fisheye_model fisheye cameraType";
 /// Width and height of pictures.
 const SIZE: [&str; 2] = ["image_width image_Width width", "image_height image_Height height"];
-/// Other keys, in small letters, which say nothing of the lens: how it was calibrated, how pictures would be rectified, where the camera is.
+/// Other keys, in small letters, which do not describe the lens: its calibration, the rectification of pictures, the pose of the camera.
 const BESIDE: &str = "distortion header image_size r p rectification_matrix projection_matrix binning_x binning_y roi board_width board_height \
                       board_size boardsize_width boardsize_height square_size marker_size pattern calibrate_pattern aspectratio fix_aspect_ratio \
                       fixaspectratio nframes nr_of_frames extrinsic_parameters image_points grid_points per_view_errors std_deviations rvecs tvecs \
                       rms seq frame_id extrinsics lensposition spechfovdeg";
 
-/// Cameras with what was understood, a sentence each.
+/// Cameras with sentences on their interpretation.
 type Read = (Vec<Camera>, Vec<String>);
 
 /// The cameras of the documents of a text, which must be the same in all of them.
@@ -97,7 +97,7 @@ fn read_tree(stated: &Stated<'_>) -> Result<Read> {
     Ok((cameras, said))
 }
 
-/// Refuses keys beside those that lead to a lens if they scale or shift pictures; other keys there are not about it.
+/// Refuses keys beside those that lead to a lens if they scale or shift pictures; other keys there do not concern it.
 fn refuse_changes_above(stated: &Stated<'_>, place: &[String]) -> Result<()> {
     for depth in 0..place.len() {
         let beside = |leaf: &Leaf| {
@@ -112,7 +112,7 @@ fn refuse_changes_above(stated: &Stated<'_>, place: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// The keys below which a matrix or focal lengths are stated, in the order of the file; none of what is at the top.
+/// The keys below which a matrix or focal lengths are stated, in the order of the file; empty keys if they are at the top level.
 fn places<'a>(stated: &'a Stated<'_>) -> Vec<&'a [String]> {
     let is_matrix = |keys: &[String], list: &str| {
         let count = list.split('.').count();
@@ -130,11 +130,11 @@ fn places<'a>(stated: &'a Stated<'_>) -> Vec<&'a [String]> {
             found.push(place);
         }
     }
-    // Without one, what is missing is told of the top.
+    // Without a lens, the missing keys are reported for the top level.
     if found.is_empty() || found.iter().any(|it| it.is_empty()) { vec![&[]] } else { found }
 }
 
-/// The cameras of Kalibr, which names them by keys; none of another form.
+/// The cameras of Kalibr, which names them by keys; empty for another form.
 fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
     let path = stated.path;
     let is_lens = |leaf: &&Leaf| {
@@ -168,7 +168,7 @@ fn read_chain(stated: &Stated<'_>) -> Result<Vec<Camera>> {
 /// Words of lenses that are not OpenCV's usual one.
 const OTHER_LENSES: [&str; 6] = ["fisheye", "kannala", "equidistant", "mei", "omni", "division"];
 
-/// The word of another lens, wherever a document with one camera has it.
+/// The word of another lens, anywhere in a document with one camera.
 fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
     let is_one = |text: &str| {
         let mut words = text.split(|it: char| !it.is_alphanumeric());
@@ -177,7 +177,7 @@ fn other_lens<'s>(all: &'s Stated<'_>) -> Option<&'s str> {
     all.leaves.iter().map(|leaf| leaf.text.as_str()).find(|text| is_one(text))
 }
 
-/// Refuses a distortion that is of no lens of the document's.
+/// Refuses a distortion that belongs to no lens of the document.
 fn refuse_far_distortion(all: &Stated<'_>, places: &[&[String]]) -> Result<()> {
     let is_far = |leaf: &&Leaf| {
         leaf.path.iter().any(|key| key.to_lowercase().contains("dist"))
@@ -192,13 +192,13 @@ fn refuse_far_distortion(all: &Stated<'_>, places: &[&[String]]) -> Result<()> {
     Err(ErrorKind::Measurement.error(message).at_line(all.path, leaf.line))
 }
 
-/// The camera below these keys, and what its region changed in words.
+/// The camera below these keys, and the effect of its region in words.
 fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Result<(Camera, Option<String>)> {
     let path = all.path;
     let in_file = |error: Error| error.in_file(path);
     let refused = |found: String| ErrorKind::Measurement.error(found).in_file(path);
     let own = all.below(place);
-    // Coefficients and sizes may stand beside the numbers of the lens.
+    // Coefficients and sizes may be beside the numbers of the lens.
     let beside = all.below(place.split_last().map_or(place, |it| it.1));
     let near = || [&own, &beside].into_iter();
     let word = |keys: &str| near().find_map(|it| it.word(keys));
@@ -229,7 +229,7 @@ fn read_single(all: &Stated<'_>, place: &[String], places: &[&[String]]) -> Resu
     Ok((Camera::new(word("camera_name").unwrap_or_default().to_owned(), lens), said))
 }
 
-/// Focal lengths and centre, by their names or of a matrix.
+/// Focal lengths and centre, by their names or from a matrix.
 fn focal(own: &Stated<'_>) -> Result<([f64; 2], [f64; 2])> {
     let [fx, fy, cx, cy] = FOCAL.map(|keys| own.number_called(keys));
     if let [Some(fx), Some(fy), Some(cx), Some(cy)] = [fx?, fy?, cx?, cy?] {
@@ -237,13 +237,13 @@ fn focal(own: &Stated<'_>) -> Result<([f64; 2], [f64; 2])> {
     }
     match exact::<9>(own.list(MATRIX)?, "camera_matrix", own.path)? {
         [fx, 0.0, cx, _, fy, cy, ..] if cx != 0.0 || cy != 0.0 => Ok(([fx, fy], [cx, cy])),
-        // Column by column.
+        // The matrix is column by column.
         [fx, 0.0, 0.0, 0.0, fy, 0.0, cx, cy, _] => Ok(([fx, fy], [cx, cy])),
         [_, skew, ..] => refuse(own.path, format!("found a skew of {skew} in `camera_matrix`, expected 0")),
     }
 }
 
-/// The distortion that is stated here, if one is.
+/// The distortion that is stated here, if any.
 fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
     let numbers = own.list(COEFFICIENTS)?;
     if !numbers.is_empty() {
@@ -260,7 +260,7 @@ fn bent(own: &Stated<'_>, kind: &str) -> Result<Option<Distortion>> {
         }
         let [k1, k2, p1, p2, k3, k4, ..] = numbers;
         if is_stated {
-            // A fisheye's are all of the angle.
+            // All coefficients of a fisheye belong to the angle.
             let is_fisheye =
                 matches!(distortion(kind, &[], own.path)?, Distortion::Fisheye(_)) && p1 == 0.0 && p2 == 0.0;
             let numbers = if is_fisheye { vec![k1, k2, k3, k4] } else { numbers.to_vec() };

@@ -1,4 +1,4 @@
-//! Files of cameras: CSV, and what OpenCV, ROS, Kalibr, ViSP, HALCON and makers of cameras write.
+//! Files of cameras: CSV, and the forms of OpenCV, ROS, Kalibr, ViSP, HALCON and makers of cameras.
 
 use std::path::Path;
 
@@ -20,21 +20,21 @@ use poecal_storage::text_of;
 use poecal_storage::xml::{parsed, root_name};
 use poecal_storage::yaml::trees;
 
-/// Cameras of a file, and what was understood of it, a sentence each.
+/// Cameras of a file, and sentences on its interpretation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CameraFile {
     /// The cameras.
     pub cameras: Vec<Camera>,
-    /// Regions of the sensor that were taken into account, and keys that were not read.
+    /// Regions of the sensor that were applied, and unread keys.
     pub said: Vec<String>,
 }
 
 /// A key of calibration.json, and of no other file of a camera.
 const OF_CALIBRATION: [&str; 2] = ["\"pictures\"", "\"poecal-calibration-"];
-/// What begins the words of a camera whose lens is unknown.
+/// Beginning of the words of a camera whose lens is unknown.
 const UNKNOWN: &str = "unknown:";
 
-/// A camera whose lens is to be found from its pictures, of which the size is known.
+/// A camera with an unknown lens and known size of pictures; its lens is to be found from its pictures.
 fn unknown(size: &str, typed: &str) -> Result<Camera> {
     let number = |text: &str| text.trim().parse::<u32>().ok().filter(|it| (1..=LARGEST_SIDE).contains(it));
     let found = size.split_once(['x', 'X']).and_then(|(x, y)| Some([number(x)?, number(y)?]));
@@ -43,16 +43,16 @@ fn unknown(size: &str, typed: &str) -> Result<Camera> {
             "found the camera `{typed}`, expected the size of its pictures, as unknown:1920x1080"
         ));
     };
-    // Any lens until the pictures say which.
+    // Any lens will do until the pictures determine it.
     let [width, height] = size_px.map(f64::from);
     let lens = Lens { size_px: Some(size_px), ..Lens::pinhole([width; 2], [0.5 * width, 0.5 * height]) };
     Ok(Camera { is_guessed: true, ..Camera::new("camera".to_owned(), lens) })
 }
 
-/// Reads the cameras of a file; of one that has a camera in several versions, those of the version that is named, as in `FILE#VERSION`.
+/// Reads the cameras of a file. If it has a camera in several versions, the version named as in `FILE#VERSION` is read.
 ///
 /// # Errors
-/// A file that cannot be read, or has no camera, a camera twice, or numbers that are none of a lens.
+/// A file cannot be read, or has no camera, a camera twice, or numbers that belong to no lens.
 pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     if let Some(size) = typed.strip_prefix(UNKNOWN) {
         return Ok(CameraFile { cameras: vec![unknown(size, typed)?], said: Vec::new() });
@@ -92,7 +92,7 @@ pub fn read_cameras(typed: &str) -> Result<CameraFile> {
     Ok(CameraFile { cameras, said })
 }
 
-/// The file of cameras that was typed, and the version behind `#`, if that is no part of its name; `None` of words that are no file.
+/// The file of cameras that was typed, and the version behind `#`, unless this is part of the file's name; `None` if the words are no file.
 #[must_use]
 pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
     (!typed.starts_with(UNKNOWN)).then(|| match typed.rsplit_once('#') {
@@ -104,7 +104,7 @@ pub fn camera_file(typed: &str) -> Option<(&Path, Option<&str>)> {
 /// Models of ViSP that are read: without distortion, and with one coefficient.
 const VISP_MODELS: [&str; 2] = ["perspectiveProjWithoutDistortion", "perspectiveProjWithDistortion"];
 
-/// ViSP: `u = u0 + px x (1 + kud r²)`.
+/// Reads ViSP's form: `u = u0 + px x (1 + kud r²)`.
 fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
     let document = parsed(text, path, EXPECTED)?;
     let mut cameras: Vec<Camera> = Vec::new();
@@ -122,7 +122,7 @@ fn read_visp(text: &str, path: &Path) -> Result<Vec<Camera>> {
     Ok(cameras)
 }
 
-/// The camera of an element; `None` without a model. An error has its place in the text.
+/// The camera of an element; `None` without a model. An error has its position in the text.
 fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize, String)> {
     let text = |of: Node<'_, '_>, name: &str| {
         let child = of.children().find(|child| child.has_tag_name(name));
@@ -134,7 +134,7 @@ fn visp_camera(node: Node<'_, '_>) -> std::result::Result<Option<Camera>, (usize
         let kind = text(*model, "type");
         kind.is_empty() || VISP_MODELS.contains(&kind.as_str())
     };
-    // The model with distortion, where both are there.
+    // The model with distortion, if there are both.
     let chosen = models().filter(is_read).max_by_key(|model| number(*model, "kud").is_some());
     let Some(model) = chosen else {
         let Some(other) = models().next() else { return Ok(None) };

@@ -1,4 +1,4 @@
-//! The columns of files of pictures: what each means, and what HALCON, OpenCV and scripts around them call it.
+//! Columns of files of pictures: their meanings, and their names in HALCON, OpenCV and scripts around them.
 
 use super::boards::Coordinate;
 use crate::table::header::Header;
@@ -20,7 +20,7 @@ pub(crate) struct CornerColumns {
     pub(crate) sigma: Option<usize>,
     /// The name of the corner.
     pub(crate) name: Option<usize>,
-    /// Its place on the board.
+    /// Its position on the board.
     pub(crate) place: Option<[Coordinate; 3]>,
     pub(crate) camera: Option<usize>,
     pub(crate) board: Option<usize>,
@@ -35,7 +35,7 @@ fn key(cell: &HeaderCell) -> String {
     if cell.units().any(is_pixel) && !name.ends_with("px") { format!("{name}px") } else { name }
 }
 
-/// The column that has the first of some names which is there, and is no joint's; a second one of that name is an error.
+/// The column with the first name of a list, unless it is a joint's; a second column of this name is an error.
 fn column(
     header: &Header<'_>,
     names: impl IntoIterator<Item = &'static str>,
@@ -59,7 +59,7 @@ fn column(
     Ok(None)
 }
 
-/// Whether a file has columns of what other devices measure, or a mapping says where.
+/// True if a file has columns with measurements of other devices, or a mapping names them.
 fn is_measured(header: &Header<'_>, map: &ColumnMap) -> bool {
     let has = |name: &str| header.cells.iter().any(|cell| cell.name == name && !key(cell).ends_with("px"));
     let position = ["x", "y", "z"].iter().all(|name| has(name));
@@ -69,7 +69,7 @@ fn is_measured(header: &Header<'_>, map: &ColumnMap) -> bool {
     position || is_vector || is_other || map.position.is_some() || !map.targets.is_empty()
 }
 
-/// The columns of the pixel; those of another name than ours only where nothing else is measured.
+/// The columns of the pixel; those with another name than ours only if nothing else is measured.
 fn pixels(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<Option<[usize; 2]>> {
     if header.count("u") > 0 && header.count("v") > 0 {
         return Ok(header.find("u")?.zip(header.find("v")?).map(<[usize; 2]>::from));
@@ -93,12 +93,12 @@ fn pixels(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<Opt
     Ok(found)
 }
 
-/// Whether the columns of a file are those of corners.
+/// True if the columns of a file are those of corners.
 pub(crate) fn are_corners(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> Result<bool> {
     pixels(header, joints, map).map(|found| found.is_some())
 }
 
-/// Whether a file has readings of joints by picture, and nothing that was measured.
+/// True if a file has joint readings by picture, and no measurements.
 pub(crate) fn are_readings_of_pictures(header: &Header<'_>, joints: &[String], map: &ColumnMap) -> bool {
     let without = |names: &[&str]| names.iter().all(|name| header.count(name) == 0);
     let has_picture = header.count("image") > 0
@@ -113,7 +113,7 @@ pub(crate) fn picture(header: &Header<'_>, joints: &[String]) -> Result<Option<u
     column(header, Role::Picture.words().chain(Role::Frame.words()), joints)
 }
 
-/// The columns of the place on the board.
+/// The columns of the position on the board.
 fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
     let before = Role::OnBoard.words().flat_map(|word| [format!("{word}_"), word.to_owned()]);
     let found = std::iter::once(String::new()).chain(before).find_map(|before| {
@@ -125,7 +125,7 @@ fn place(header: &Header<'_>) -> Result<Option<[Coordinate; 3]>> {
     Ok(Some([x?, y?, z?]))
 }
 
-/// A column of a length whose name is this one but for its case and unit.
+/// A column of a length with this name, except for its case and unit.
 fn of_length(header: &Header<'_>, name: &str) -> Option<Result<Coordinate>> {
     let named = |cell: &HeaderCell| {
         let is_it = cell.name.eq_ignore_ascii_case(name) && !key(cell).ends_with("px");
@@ -137,18 +137,18 @@ fn of_length(header: &Header<'_>, name: &str) -> Option<Result<Coordinate>> {
     Some(stated.map(|stated| (at, stated.map_or(unit, |(unit, _)| unit))))
 }
 
-/// Whether a column may as well count rows.
+/// True if a column may equally count rows.
 fn is_count(header: &Header<'_>, at: usize) -> bool {
     header.cells.get(at).is_some_and(|cell| ["id", "index"].contains(&key(cell).as_str()))
 }
 
-/// Whether a unit is that of pixels.
+/// True if a unit is that of pixels.
 fn is_pixel(unit: &str) -> bool {
     ["px", "pixel", "pixels"].contains(&unit.to_lowercase().as_str())
 }
 
 impl CornerColumns {
-    /// The columns of a file of corners; `has_boards` says whether boards are stated, whose points have names.
+    /// The columns of a file of corners; `has_boards` is true if boards are stated, whose points have names.
     pub(crate) fn new(
         header: &Header<'_>,
         joints: &[String],
@@ -163,7 +163,7 @@ impl CornerColumns {
         }
         let place = place(header)?;
         let name = match column(header, Role::Corner.words(), joints)? {
-            // What counts rows, where the file says where the corner is.
+            // A column that counts rows, if the file states the positions of the corners.
             Some(at) if place.is_some() && is_count(header, at) => None,
             name => name,
         };
@@ -201,12 +201,12 @@ impl CornerColumns {
         all
     }
 
-    /// Whether the column of the picture has our name, so that its rows have one configuration.
+    /// True if the column of the picture has our name, so that its rows have one configuration.
     pub(crate) fn names_pictures(&self, header: &Header<'_>) -> bool {
         self.image.and_then(|at| header.cells.get(at)).is_some_and(|cell| cell.name == "image")
     }
 
-    /// What was taken for what, of columns whose name is not ours; `None` if all are ours.
+    /// The meaning of columns whose name is not ours, in words; `None` if all are ours.
     pub(crate) fn words(&self, header: &Header<'_>) -> Option<String> {
         let is_foreign =
             |(name, at): &(&str, usize)| header.cells.get(*at).is_some_and(|cell| cell.name != *name);
@@ -216,7 +216,7 @@ impl CornerColumns {
         (!words.is_empty()).then(|| format!("took {}", words.join(", ")))
     }
 
-    /// How they were read, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
+    /// Interpretation of the columns, for `poecal check`; `seen` are smallest and largest u, v and standard deviation.
     pub(crate) fn understood(&self, header: &Header<'_>, seen: &[Range; 3]) -> Vec<ColumnUnderstanding> {
         let of = |(name, at): (&'static str, usize)| {
             let pixel = ["u", "v", "sigma"].into_iter().zip(seen).find(|it| it.0 == name).map(|it| it.1);

@@ -1,4 +1,4 @@
-//! Which board and which of its points a row of corners means.
+//! The board and the point of a row of corners, by its names.
 
 use nalgebra::Vector3;
 
@@ -12,16 +12,16 @@ use crate::table::number::Numbers;
 use poecal_model::camera::Board;
 use poecal_numerics::error::{Error, Result, first_few};
 
-/// Distance up to which two places are one point of a board, metres.
+/// Distance up to which two positions are one point of a board, metres.
 const SAME_M: f64 = 1e-6;
 
-/// The point of a board that a name means: its own, or with the board's name before it, as `tag12.0` of the board `tag12`.
+/// The point of a board by its name, or with the board's name before it, as `tag12.0` of the board `tag12`.
 fn point_of(board: &Board, name: &str) -> Option<usize> {
     let own = || name.strip_prefix(board.name.as_str())?.strip_prefix('.');
     board.find(name).or_else(|| board.find(own()?))
 }
 
-/// The board that stands before a point in its name, if the point alone is one of these.
+/// The board before a point in its name, if the point alone is one of these.
 fn board_before<'a>(board: &Board, name: &'a str) -> Option<&'a str> {
     let (before, point) = name.rsplit_once('.')?;
     (board.find(name).is_none() && board.find(point).is_some()).then_some(before)
@@ -33,13 +33,13 @@ impl Reader<'_> {
         let only = self.options.boards.first().filter(|_| self.options.boards.len() == 1);
         let stated = Some(row.word(columns.board)).filter(|name| !name.is_empty());
         let name = stated.or_else(|| Some(board_before(only?, &row.word(columns.name))?.to_owned()));
-        // Boards that the rows themselves state are named, or there is one.
+        // Boards from the rows themselves are named, or there is only one.
         let is_of_file = self.options.boards.is_empty() && columns.place.is_some();
         let Some(name) = name.or_else(|| is_of_file.then(|| BOARD.to_owned())) else { return Ok(0) };
         if let Some(at) = self.boards.iter().position(|it| it.name == name) {
             return Ok(at);
         }
-        // One board that is at several places, by its names there.
+        // One board with several poses, by its names there.
         let Some(again) = only.cloned().or_else(|| is_of_file.then(Board::default)) else {
             let names: Vec<&str> = self.boards.iter().map(|it| it.name.as_str()).collect();
             let message = format!("found the board `{name}`, expected one of {}", first_few(&names));
@@ -49,7 +49,7 @@ impl Reader<'_> {
         Ok(self.boards.len() - 1)
     }
 
-    /// Index of the row's corner on its board; of one that is numbered, the number.
+    /// Index of the row's corner on its board; its number if it is numbered.
     pub(crate) fn point(
         &mut self,
         row: &Row<'_>,
@@ -77,7 +77,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Index of the point at the row's place on its board; of a board that the file states, a new one where there is none yet.
+    /// Index of the point at the row's position on its board; a board from the file gets a new point if it has none there.
     fn point_at(
         &mut self,
         row: &Row<'_>,
@@ -91,7 +91,7 @@ impl Reader<'_> {
         let at = columns[0].0;
         let is_stated = !self.options.boards.is_empty();
         let Some(own) = self.boards.get_mut(board) else { return Ok(0) };
-        // A point without a name is called by its place, which stays its name where the board is bent by a calibration.
+        // The position names a point without a name; this stays its name if a calibration bends the board.
         let [x, y, z] = [place.x, place.y, place.z].map(|it| (1e6 * it).round() / 1e3 + 0.0);
         let called = if name.is_some() { row.word(name) } else { format!("{x}/{y}/{z}") };
         let near = |at: &usize| own.points.get(*at).is_some_and(|it| (it - place).norm() <= SAME_M);
@@ -117,7 +117,7 @@ impl Reader<'_> {
         Ok(u32::try_from(found).unwrap_or(u32::MAX))
     }
 
-    /// What boards a file stated by the places of its corners, in words.
+    /// Boards that a file stated by the positions of its corners, in words.
     pub(crate) fn board_of_file(&self, columns: &CornerColumns, has_boards: bool) -> Option<String> {
         if has_boards || columns.place.is_none() {
             return None;
@@ -140,7 +140,7 @@ fn millimetres(point: &Vector3<f64>) -> String {
     format!("({x}, {y}, {z}) mm")
 }
 
-/// The error of a place at which a board has no point.
+/// The error of a position at which a board has no point.
 fn far_from(row: &Row<'_>, at: usize, place: &Vector3<f64>, board: &Board) -> Error {
     let distance = |index: &usize| board.points.get(*index).map_or(f64::MAX, |it| (it - place).norm());
     let nearest = (0..board.points.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);

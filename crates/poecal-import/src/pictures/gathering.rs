@@ -8,7 +8,7 @@ use crate::table::picture_names::Partners;
 use poecal_model::camera::{Board, Corner};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
-/// A board in a picture, as its corners were read.
+/// A board in a picture, with the corners that were read.
 pub(crate) struct Sight {
     /// The readings of the joints, unless another file has them.
     pub(crate) taken: Option<Taken>,
@@ -26,14 +26,14 @@ type Place = (usize, usize);
 pub(crate) struct Gathering {
     pub(crate) pictures: Vec<Sight>,
     pub(crate) known: BTreeMap<(String, usize, usize), usize>,
-    /// Of each board the numbers by which its points are called, and where each stands first.
+    /// The numbers of the points of each board, with the first occurrence of each number.
     pub(crate) numbers: BTreeMap<usize, BTreeMap<u32, Place>>,
-    /// Of each board the first point that is called by its name.
+    /// The first point of each board that has a name.
     pub(crate) named: BTreeMap<usize, (String, Place)>,
 }
 
 impl Gathering {
-    /// The points that numbers mean: as the names of the board count, or from 1 where the file does. Says which.
+    /// Assigns points to numbers: by the numbers in the names of the board, or from 1 if the file counts so. Returns a sentence on it.
     pub(crate) fn settle_numbers(&mut self, path: &Path, boards: &[Board]) -> Result<Option<String>> {
         let Gathering { pictures, numbers, named, .. } = self;
         let own: Vec<BTreeMap<u32, u32>> = boards.iter().map(Board::numbered).collect();
@@ -76,8 +76,8 @@ impl Gathering {
         )))
     }
 
-    /// Gives the pictures the readings of their joints, which another file, of `what`, has by picture: those of the same name, and of the others those
-    /// that end in the same number, if no other picture does. Says what was left out.
+    /// Assigns joint readings of another file, which has `what` by picture, to the pictures. Names are equal, or have equal numbers at their end
+    /// that no other picture has. Returns sentences on the pictures that were left out.
     pub(crate) fn join(&mut self, path: &Path, (others, what): (&TakenByImage, &str)) -> Result<Vec<String>> {
         let seen: BTreeSet<&String> = self.pictures.iter().filter_map(|it| it.image.as_ref()).collect();
         let partners = Partners::new(&seen, others.keys().collect());

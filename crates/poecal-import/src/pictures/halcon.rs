@@ -11,10 +11,10 @@ use poecal_numerics::error::{ErrorKind, Result};
 const MARK: &str = "ParGroup:";
 /// Parameters that are read.
 const READ: [&str; 8] = ["Focus", "Kappa", "Sx", "Sy", "Cx", "Cy", "ImageWidth", "ImageHeight"];
-/// Largest product of Kappa and the square of a place on the sensor for which the fractions below are exact to 0.001 px.
+/// Largest product of Kappa and the squared distance on the sensor for which the fractions below are exact to 0.001 px.
 const MOST_BENT: f64 = 0.1;
 
-/// The camera of a text of HALCON; `None` of another one.
+/// The camera of a text of HALCON; `None` if the text is another.
 pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>, Vec<String>)>> {
     if !text.lines().any(|line| line.trim_start().starts_with(MARK)) {
         return Ok(None);
@@ -40,7 +40,7 @@ pub(crate) fn read_halcon(text: &str, path: &Path) -> Result<Option<(Vec<Camera>
     };
     let size_px = size_of_pictures([width, height]).map_err(|error| error.in_file(path))?;
     let focal_px = [focus / sx, focus / sy];
-    // u = 2 u' / (1 + sqrt(1 - 4 Kappa r'²)) of places u' without distortion, as the continued fraction of this function: OpenCV's rational model.
+    // u = 2 u' / (1 + sqrt(1 - 4 Kappa r'²)) at positions u' without distortion, as a continued fraction: OpenCV's rational model.
     let bent = kappa * focus * focus;
     let far = [(cx, width, focal_px[0]), (cy, height, focal_px[1])];
     let far = far.map(|(centre, size, focal)| centre.max(size.unwrap_or(2.0 * centre) - centre) / focal);
@@ -76,7 +76,7 @@ fn parameter(line: &str) -> std::result::Result<Option<(&str, f64)>, String> {
     let (Some(key), Some(short), Some(value)) = (parts.next(), parts.next(), parts.next()) else {
         return Ok(None);
     };
-    // Below a parameter are its type with bounds, and words.
+    // Lines below a parameter are its type with bounds, and words.
     if !short.starts_with(|it: char| it.is_ascii_alphabetic()) || key.starts_with(['#', '"']) {
         return Ok(None);
     }

@@ -1,4 +1,4 @@
-//! What files of cameras may say of a lens.
+//! Checks of the lenses in files of cameras.
 
 use std::path::Path;
 
@@ -6,13 +6,13 @@ use poecal_model::camera::{Distortion, LENS_NAMES, Lens};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::numbers::LARGEST_NUMBER;
 
-/// What a file of cameras is expected to be.
+/// Expected form of a file of cameras, for errors.
 pub(crate) const EXPECTED: &str = "a camera: CSV with name, fx, fy, cx, cy, k1, … in OpenCV's order, YAML, JSON or XML with a `camera_matrix`, or with fx, fy, \
                         cx, cy (OpenCV, ROS, RealSense, OAK), Kalibr's camchain, or a camera of ViSP, HALCON (.dat) or mrcal";
-/// Advice for a lens of another model.
+/// Remedy for a lens of another model.
 pub(crate) const OTHERWISE: &str = "or find the lens by the pictures: --camera unknown:WIDTHxHEIGHT";
 
-/// Refuses numbers that are no lens's.
+/// Refuses numbers that belong to no lens.
 pub(crate) fn check(name: &str, lens: &Lens) -> Result<()> {
     let of = || if name.is_empty() { String::new() } else { format!(" of camera `{name}`") };
     let [fx, fy] = lens.focal_px;
@@ -57,7 +57,7 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
     };
     let small = kind.to_ascii_lowercase();
     match small.strip_prefix("distortion.").unwrap_or(&small) {
-        // RealSense's inverse model bends as the plain one, to some hundredths of a pixel: realsense_lenses_by_name of the findings.
+        // RealSense's inverse model distorts like the plain one, to some hundredths of a pixel: realsense_lenses_by_name of the findings.
         ""
         | "none"
         | "plumb_bob"
@@ -81,7 +81,7 @@ pub(crate) fn distortion(kind: &str, numbers: &[f64], path: &Path) -> Result<Dis
             [] => Ok(Distortion::Fisheye([0.0; 4])),
             _ => refuse("4"),
         },
-        // No model bends anything by zeros.
+        // No model distorts anything if its coefficients are zero.
         _ if !numbers.is_empty() && numbers.iter().all(|it| *it == 0.0) => Ok(Distortion::Brown([0.0; 8])),
         _ => refuse(&format!(
             "plumb_bob, radtan, rational_polynomial, equidistant, fisheye or none: calibrate it with one of these, {OTHERWISE}"

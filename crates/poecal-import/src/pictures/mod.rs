@@ -1,7 +1,7 @@
 //! Pictures and corners as rows, cameras and boards of files.
 //!
-//! `corner_columns.rs` finds the columns of corners, `stated.rs` the values of a file of cameras or boards by their keys; `board_files.rs` has boards of other
-//! programs in words.
+//! `corner_columns.rs` finds the columns of corners, `stated.rs` the values of a file of cameras or boards by their keys. `board_files.rs` converts
+//! boards of other programs into words.
 
 pub(crate) mod board_files;
 pub(crate) mod board_words;

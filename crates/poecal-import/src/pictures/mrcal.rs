@@ -1,4 +1,4 @@
-//! Cameras of mrcal (`.cameramodel`): a literal of Python, which is YAML but for the inputs of its optimization.
+//! Cameras of mrcal (`.cameramodel`): a Python literal, which is YAML except for the inputs of its optimisation.
 
 use std::borrow::Cow;
 
@@ -7,10 +7,10 @@ use super::stated::{Stated, exact, listed_size, refuse};
 use poecal_model::camera::{Camera, Lens};
 use poecal_numerics::error::Result;
 
-/// Keys of mrcal that are read, or say nothing of a lens.
+/// Keys of mrcal that are read, or do not describe a lens.
 pub(super) const OF_MRCAL: &str = "lensmodel intrinsics imagersize rt_cam_ref rt_fromref extrinsics valid_intrinsics_region optimization_inputs \
                         icam_intrinsics";
-/// Models of mrcal that are OpenCV's, in its order of coefficients, each with the count of them.
+/// Models of mrcal that are OpenCV's, in its order of coefficients, each with their number.
 const MRCAL_MODELS: [(&str, usize); 4] = [("PINHOLE", 0), ("OPENCV4", 4), ("OPENCV5", 5), ("OPENCV8", 8)];
 
 /// The camera of mrcal: fx, fy, cx, cy, and coefficients in OpenCV's order.
@@ -42,7 +42,7 @@ pub(super) fn of_mrcal(stated: &Stated<'_>) -> Result<Option<Camera>> {
     )))
 }
 
-/// The text of a camera of mrcal without the inputs of its optimization, which are bytes as Python writes them and no YAML.
+/// The text of a camera of mrcal without the inputs of its optimisation, which are Python bytes and no YAML.
 pub(super) fn without_inputs(text: &str) -> Cow<'_, str> {
     let cut = || {
         let (before, rest) = text.split_once("optimization_inputs")?;

@@ -1,11 +1,11 @@
-//! Files that are of pictures: of corners, or of the joint readings of each picture.
+//! Files of pictures: with corners, or with the joint readings of each picture.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use poecal_model::measurement::Set;
 
-/// What is said of corners where no camera is stated.
+/// Error of corners without a stated camera.
 pub(crate) const NO_CAMERA: &str =
     "found corners in pixels and no camera, expected --camera FILE with its focal lengths and centre";
 

@@ -1,5 +1,5 @@
-//! Files of corners as cameras saw them: a row a corner, `u` and `v` in pixels, with the readings of the joints in each row, or in another file
-//! that has them by picture (docs/file-formats.md, "Pixels").
+//! Files of corners that cameras saw: a row for each corner, with `u` and `v` in pixels. The readings of the joints are in each row, or in another
+//! file by picture (docs/file-formats.md, "Pixels").
 
 use std::path::Path;
 
@@ -102,7 +102,7 @@ impl Reader<'_> {
         self.understand_pictures(&table, &inputs, (first, rows, own))
     }
 
-    /// The columns of the joints beside those of the corners, and what is ignored.
+    /// The columns of the joints beside those of the corners, and the ignored columns.
     fn layout_of_corners(
         &self,
         header: &Header<'_>,
@@ -118,7 +118,7 @@ impl Reader<'_> {
         if !has_joints && columns.image.is_none() {
             header.require("image", "for the name of the picture", |_| false, "")?;
         }
-        // What counts corners is no id of their picture.
+        // A column that counts corners is no id of their picture.
         if let Some(id) =
             layout.id.filter(|id| columns.place.is_some() || columns.all().iter().any(|(_, at)| at == id))
         {
@@ -151,7 +151,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Puts a corner to its picture.
+    /// Adds a corner to its picture.
     fn gather(
         &mut self,
         row: &Row<'_>,
@@ -216,7 +216,7 @@ impl Reader<'_> {
         if name.is_empty() {
             return refuse("no name of a camera", " in a column `camera`");
         }
-        // One of which the name is a word of the other: `left` for `left_eye`.
+        // Two cameras are alike if the name of one is a word of the other: `left` for `left_eye`.
         let is_like = |own: &str| {
             let word = |whole: &str, part: &str| whole.split(['_', '-', ' ', '/']).any(|it| it == part);
             word(&name, own) || word(own, &name)
@@ -233,7 +233,7 @@ impl Reader<'_> {
     }
 }
 
-/// The corner of a row; `None` where it was not seen.
+/// The corner of a row; `None` if it was not seen.
 fn corner(row: &Row<'_>, columns: &CornerColumns, numbers: &mut Numbers) -> Result<Option<Corner>> {
     let mut number = |column: usize, name: &str| {
         let raw = row.raw(column);

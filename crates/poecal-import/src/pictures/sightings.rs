@@ -13,7 +13,7 @@ use poecal_model::measurement::Source;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 
 impl Reader<'_> {
-    /// Adds pictures as rows, each with the poses that fit its corners; those without one are left out, and named.
+    /// Adds pictures as rows, each with the poses that fit its corners; pictures without such a pose are left out, and reported.
     pub(crate) fn take_pictures(&mut self, path: &Path, gathered: Vec<Sight>) -> Result<()> {
         let file = u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
         let (mut left_out, mut found) = (Vec::new(), 0);
@@ -57,7 +57,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Finds the lenses that are unknown from the corners of flat boards.
+    /// Estimates unknown lenses from the corners of flat boards.
     fn guess_lenses(&mut self, gathered: &[Sight]) -> Result<()> {
         let pictures = &mut self.found.data.pictures;
         for (at, camera) in pictures.cameras.iter_mut().enumerate().filter(|(_, it)| it.is_guessed) {
@@ -76,7 +76,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Says how a file of corners was understood.
+    /// Records the interpretation of a file of corners.
     pub(crate) fn understand_pictures(
         &mut self,
         table: &Table<'_>,

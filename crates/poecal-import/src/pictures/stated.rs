@@ -1,4 +1,4 @@
-//! What a file of cameras or boards states, by its keys.
+//! Values of a file of cameras or boards, by their keys.
 
 use std::path::Path;
 
@@ -9,15 +9,15 @@ use poecal_storage::other_keys::{KeysOf, other_keys};
 use poecal_storage::xml::parsed;
 use poecal_storage::yaml::Leaf;
 
-/// True if keys are numbers of places in lists.
+/// True if keys are indices of lists.
 pub(crate) fn are_places(keys: &[String]) -> bool {
     keys.iter().all(|key| !key.is_empty() && key.bytes().all(|it| it.is_ascii_digit()))
 }
 
-/// The words of an XML text below the names of their elements, but for that of the first; of several in an element each with its place.
+/// The words of an XML text below the names of their elements, without that of the root. Several words in an element have an index each.
 pub(crate) fn of_xml(text: &str, path: &Path, expected: &str) -> Result<Vec<Leaf>> {
     let document = parsed(text, path, expected)?;
-    // Elements are in their order: each begins so many lines after the one before.
+    // Elements are in the order of the text, so that newlines are counted from one to the next.
     let (mut line, mut at) = (1, 0);
     let mut found = Vec::new();
     for node in document.descendants().filter(|node| node.is_element()) {
@@ -50,7 +50,7 @@ pub(crate) struct Stated<'a> {
 }
 
 impl Stated<'_> {
-    /// The same of what stands below keys.
+    /// The values below these keys.
     pub(crate) fn below(&self, keys: &[String]) -> Self {
         let own = |leaf: &Leaf| {
             let path = leaf.path.strip_prefix(keys)?.to_vec();
@@ -59,13 +59,13 @@ impl Stated<'_> {
         Stated { leaves: self.leaves.iter().filter_map(own).collect(), path: self.path }
     }
 
-    /// The first word of the file that one of these keys has; blanks are between them.
+    /// The word at the first of these keys that the file has; blanks separate the keys.
     pub(crate) fn word(&self, keys: &str) -> Option<&str> {
         let own = |leaf: &&Leaf| matches!(leaf.path.as_slice(), [key] if keys.split(' ').any(|it| it == key));
         self.leaves.iter().find(own).map(|leaf| leaf.text.as_str())
     }
 
-    /// The number of the first of these keys, with blanks between them, in letters of any size.
+    /// The number at the first of these keys, which blanks separate; case does not matter.
     pub(crate) fn number_called(&self, keys: &str) -> Result<Option<f64>> {
         let is = |leaf: &&Leaf, key: &str| {
             leaf.path.len() == 1 && leaf.path.iter().all(|it| it.eq_ignore_ascii_case(key))
@@ -74,16 +74,16 @@ impl Stated<'_> {
         keys.split(' ').find_map(own).map(|(leaf, key)| self.number_of(leaf, &key)).transpose()
     }
 
-    /// The number that keys lead to, with dots between them.
+    /// The number at these keys, which dots join.
     pub(crate) fn number(&self, keys: &str) -> Result<Option<f64>> {
         let own = |leaf: &&Leaf| leaf.path.iter().eq(keys.split('.'));
         self.leaves.iter().find(own).map(|leaf| self.number_of(leaf, keys)).transpose()
     }
 
-    /// The numbers of the first list that is there of those to which keys lead, with dots between them and blanks between the lists.
+    /// The numbers of the first list that exists; dots join the keys of a list, and blanks separate the lists.
     pub(crate) fn list(&self, lists: &str) -> Result<Vec<f64>> {
         for keys in lists.split(' ') {
-            // In lists of lists too.
+            // Numbers in nested lists count too.
             let own = |leaf: &&Leaf| {
                 let (list, places) = leaf.path.split_at(keys.split('.').count().min(leaf.path.len()));
                 !places.is_empty() && are_places(places) && list.iter().eq(keys.split('.'))
@@ -105,8 +105,8 @@ impl Stated<'_> {
         })
     }
 
-    /// The keys at the place `at` that were not read, of the leaves that are `own`, in words; [`other_keys`] says which are refused. Known are lists of
-    /// keys with blanks between them: of one with dots the first part, and all that begin with one with a star, unless they flip something.
+    /// The unread keys at depth `at`, among the leaves that are `own`, in words; [`other_keys`] decides which are refused. Blanks separate the
+    /// known keys. The first part counts if dots join several. A star at the end matches any end, unless the key contains `flip`.
     pub(crate) fn others(
         &self,
         of: KeysOf,
@@ -136,7 +136,7 @@ pub(crate) fn listed_size(stated: &Stated<'_>, key: &str) -> Result<Option<[u32;
     size_px.map_err(|error| error.in_file(stated.path))
 }
 
-/// As many numbers as a key must have.
+/// The numbers of a key, which must be `N`.
 pub(crate) fn exact<const N: usize>(numbers: Vec<f64>, key: &str, path: &Path) -> Result<[f64; N]> {
     numbers.try_into().or_else(|numbers: Vec<f64>| {
         refuse(path, format!("found {} numbers of `{key}`, expected {N}: {EXPECTED}", numbers.len()))

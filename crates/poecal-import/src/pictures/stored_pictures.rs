@@ -1,4 +1,4 @@
-//! Cameras and boards of a `calibration.json`, as they were found.
+//! Calibrated cameras and boards of a `calibration.json`.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use poecal_model::camera::{Board, BoardEntry, Camera, CameraEntry};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::text_of;
 
-/// What a `calibration.json` holds of its pictures.
+/// Pictures of a `calibration.json`.
 #[derive(Deserialize)]
 struct Stored {
     pictures: Option<StoredPictures>,
@@ -38,7 +38,7 @@ fn stored(path: &Path) -> Result<StoredPictures> {
 /// Its cameras.
 ///
 /// # Errors
-/// A file that is none, or has no cameras.
+/// The file is none, or has no cameras.
 pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
     let cameras: Result<_> = stored(path)?.cameras.iter().map(CameraEntry::camera).collect();
     cameras.map_err(|error| error.in_file(path))
@@ -47,7 +47,7 @@ pub(crate) fn stored_cameras(path: &Path) -> Result<Vec<Camera>> {
 /// Its boards.
 ///
 /// # Errors
-/// A file that is none, or has no boards.
+/// The file is none, or has no boards.
 pub(crate) fn stored_boards(path: &Path) -> Result<Vec<Board>> {
     let boards: Vec<Board> = stored(path)?.boards.iter().map(BoardEntry::board).collect();
     if boards.is_empty() {

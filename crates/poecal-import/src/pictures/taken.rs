@@ -1,4 +1,4 @@
-//! Measurements of a row, taken into the session.
+//! Addition of the measurements of a row to the session.
 
 use std::borrow::Cow;
 
@@ -49,7 +49,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Whether a row is the first one of a pair, the configuration from which the second is seen.
+    /// True if a row is the first one of a pair, the configuration from which the second is seen.
     pub(crate) fn begins_pair(&mut self, row: &Row<'_>, inputs: &Cursor<'_>) -> Result<bool> {
         let pair = inputs.layout.pair;
         let Some((column, name)) = pair.zip(row.cell(pair).filter(|it| !it.is_empty())) else {
@@ -87,7 +87,7 @@ impl Reader<'_> {
             stated,
             set,
             source: Source {
-                // A file of joint readings alone has no rows.
+                // A file with joint readings only has no rows.
                 file: u32::try_from(self.found.data.files.len().saturating_sub(1)).unwrap_or(u32::MAX),
                 line: u32::try_from(row.line).unwrap_or(u32::MAX),
             },
@@ -130,8 +130,8 @@ impl Reader<'_> {
         Ok(index)
     }
 
-    /// Index of the row's station: of its instrument, or of the place from which it was measured. Either all rows that are measured alike name
-    /// theirs or none does.
+    /// Index of the row's station: of its instrument, or of the position from which it was measured. Either all rows of one kind of measurement
+    /// name theirs, or none does.
     fn station(
         &mut self,
         row: &Row<'_>,
@@ -176,7 +176,7 @@ impl Reader<'_> {
                 check_name(&name.replace('/', "_"), what)
                     .map_err(|error| row.error(column.unwrap_or(0), error.message()))?;
             }
-            // An unnamed instrument before the first name.
+            // An unnamed instrument precedes the first name.
             known.resize(index, None);
             known.push(name.map(str::to_owned));
             if what == "socket" {
@@ -188,7 +188,7 @@ impl Reader<'_> {
         Ok(index)
     }
 
-    /// Refuses a name that places of two kinds share. An anchor may be an instrument that measures positions too.
+    /// Refuses a name that positions of two kinds share. An anchor may be an instrument that measures positions too.
     fn refuse_other_place(
         &mut self,
         row: &Row<'_>,

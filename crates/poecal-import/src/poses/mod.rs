@@ -1,7 +1,8 @@
-//! Poses of the flange and of what it holds, as lists and as pairs.
+//! Poses of the flange and of the target that it carries, as lists and as pairs.
 //!
-//! `pose_columns.rs` is from names of columns to forms, `pose_file.rs` one file, with joint readings too, `pose_lists.rs` one file or two,
-//! `samples.rs` lists of other programs, `sixteen.rs` matrices in columns, `picture_poses.rs` the target by corners, `pose_readings.rs` how else the numbers could be read.
+//! `pose_columns.rs` converts names of columns to forms, `pose_file.rs` reads one file, with joint readings too, `pose_lists.rs` one file or two.
+//! `samples.rs` reads lists of other programs, `sixteen.rs` matrices in columns, `picture_poses.rs` the target by corners. `pose_readings.rs` finds
+//! other interpretations of the numbers.
 
 pub(crate) mod paired_readings;
 pub(crate) mod picture_poses;

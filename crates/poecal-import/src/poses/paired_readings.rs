@@ -1,4 +1,4 @@
-//! What rows take of the readings that they were paired with: means of stands, and how fast the robot moved.
+//! Data from paired recordings: means of static intervals, and rates of the readings.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use poecal_model::measurement::{Clock, Observation};
 use poecal_numerics::error::{ErrorKind, Result};
 
 impl Reader<'_> {
-    /// Takes what was measured on an average in place of the rows that stand for a stand.
+    /// Replaces each row that represents a static interval by the mean measurement of the interval.
     pub(crate) fn take_means(&mut self, first: usize) {
         let Some(by_line) = self.readings.as_ref().filter(|it| !it.means.is_empty()) else { return };
         let (mut line, mut at) = (0, 0);
@@ -19,7 +19,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Says of rows that were measured in motion how fast their readings changed, and by which clock.
+    /// Adds the rates of the readings and the clock to rows that were measured in motion.
     pub(crate) fn take_motion(&mut self, path: &Path, first: usize) -> Result<()> {
         let Some(motion) = self.readings.as_ref().and_then(|it| it.moving.as_ref()) else { return Ok(()) };
         let data = &mut self.found.data;

@@ -22,7 +22,7 @@ use poecal_numerics::error::{ErrorKind, Result, first_few};
 
 /// Poses of the target by pictures.
 pub(crate) struct PicturePoses {
-    /// The row of the arm's poses at which each picture was taken.
+    /// The row of the arm's poses for each picture.
     pub(crate) rows: Vec<usize>,
     pub(crate) poses: PoseList,
     pub(crate) words: String,
@@ -30,7 +30,7 @@ pub(crate) struct PicturePoses {
     pub(crate) sha256: BTreeMap<String, String>,
 }
 
-/// Whether a file has corners in pixels; one that cannot be read has none, and is named where it is read for what it should be.
+/// True if a file has corners in pixels. A file that cannot be read has none here, and is refused later by its expected form.
 pub(crate) fn are_corners_of(path: &Path) -> bool {
     let map = ColumnMap::default();
     let table =
@@ -38,7 +38,7 @@ pub(crate) fn are_corners_of(path: &Path) -> bool {
     table.is_ok_and(|table| are_corners(&table.header, &[], &map).unwrap_or(false))
 }
 
-/// Reads a file of corners, whose pictures were taken at poses of an arm by their names.
+/// Reads a file of corners, whose pictures belong to poses of an arm by their names.
 pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptions) -> Result<PicturePoses> {
     if options.cameras.is_empty() {
         let message = "found corners in pixels and no lens, expected --lens FILE with the focal lengths and the centre of the camera, or \
@@ -49,7 +49,7 @@ pub(crate) fn poses_of_pictures(path: &Path, arm: &PoseFile, options: &ReadOptio
         let message = "found no names of pictures, expected a column `image` in the file of the arm's poses, as in that of the corners";
         return Err(ErrorKind::Measurement.error(message).in_file(&arm.path));
     };
-    // The row of the arm's pose in the place of its joint readings.
+    // The row of the arm's pose replaces its joint readings.
     let stand_in = Robot::new(
         "arm",
         vec![Joint::prismatic("row of the arm's poses", Screw::prismatic(&Vector3::z()))],

@@ -1,4 +1,4 @@
-//! What the columns of a list of poses are called: controllers', robots', cameras' and ROS's names.
+//! Names of the columns of a list of poses, in controllers, robots, cameras and ROS.
 
 use super::sixteen::matrices;
 pub(crate) use super::whose::Whose;
@@ -23,14 +23,14 @@ pub(crate) struct PoseColumns {
     pub(crate) position: Vec<NumberColumn>,
     pub(crate) orientation: Vec<NumberColumn>,
     pub(crate) form: OrientationForm,
-    /// Whether stated units are of its angles: OpenCV's are radians.
+    /// True if stated units apply to its angles: OpenCV's are radians.
     pub(crate) takes_angle_unit: bool,
-    /// How it was understood.
+    /// Interpretation of the columns, in words.
     pub(crate) words: String,
     pub(crate) whose: Whose,
 }
 
-/// A column that belongs to a pose: whose it is if its name says so, and which part of the pose, as conventions call it.
+/// A column of a pose: its list, if the name states it, and the part of the pose, by its name in conventions.
 struct Part {
     at: usize,
     whose: Option<Whose>,
@@ -38,18 +38,18 @@ struct Part {
 }
 
 const PLACE: [&str; 3] = ["x", "y", "z"];
-/// Advice for places of a target that has no orientation.
+/// Remedy for positions of a target without orientation.
 const PLACES_ALONE: &str = "; places alone, as of a ball or a depth camera, locate the camera by the joint readings beside them: \
                             `poecal calibrate MODEL FILE --fix joints`, for a camera in the hand with --instrument NAME=LINK and --target NAME=LINK";
-/// The place in the last column of a matrix.
+/// The position in the last column of a matrix.
 const IN_MATRIX: [&str; 3] = ["r14", "r24", "r34"];
 
-/// Whether a part is of the place, else it is of the orientation.
+/// True if a part belongs to the position, false if to the orientation.
 fn is_of_place(key: &str) -> bool {
     PLACE.contains(&key) || IN_MATRIX.contains(&key)
 }
 
-/// The part of a pose that letters and digits mean.
+/// The part of a pose by the letters and digits of a name.
 fn key_of(name: &str) -> Option<String> {
     let axis = |word: &str| match word {
         "x" | "0" => Some('x'),
@@ -71,7 +71,7 @@ fn key_of(name: &str) -> Option<String> {
     is_known.then(|| known.to_owned())
 }
 
-/// Whose a name says it is, and the part of a pose that it means.
+/// The list that a name states, and the part of the pose.
 fn part_of(name: &str) -> Option<(Option<Whose>, String)> {
     let (name, _) = without_unit(name);
     let words: Vec<String> = name.split(|it: char| !it.is_alphanumeric()).map(plain).collect();
@@ -87,7 +87,7 @@ fn part_of(name: &str) -> Option<(Option<Whose>, String)> {
         return Some((whose, key?));
     }
     let all = words.concat();
-    // As in `cx, cy, cz` of a camera beside `X, Y, Z`.
+    // For example `cx, cy, cz` of a camera beside `X, Y, Z`.
     if let Some(axis) = all.strip_prefix('c').filter(|it| PLACE.contains(it)) {
         return Some((Some(Whose::Target), axis.to_owned()));
     }
@@ -109,9 +109,9 @@ pub(crate) fn text_column(header: &Header<'_>, name: &str) -> Option<usize> {
 /// Units of columns that state none, as `mm`, `deg`, or both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoseUnits {
-    /// Of lengths.
+    /// Unit of lengths.
     pub length: Option<NamedUnit>,
-    /// Of angles.
+    /// Unit of angles.
     pub angle: Option<NamedUnit>,
 }
 
@@ -133,7 +133,7 @@ impl std::str::FromStr for PoseUnits {
     }
 }
 
-/// Columns of a header by whose poses they are, but for those of joints; `alone` says whose all are that do not say it, in a file of one list.
+/// Columns of a header by their list of poses, except those of joints. `alone` is the list of columns that do not state it, in a file of one list.
 pub(crate) fn found(
     header: &Header<'_>,
     joints: &[String],
@@ -154,7 +154,7 @@ pub(crate) fn found(
     if let Some(whose) = alone.filter(|_| is_one) {
         parts.iter_mut().for_each(|it| it.whose = Some(whose));
     }
-    // A matrix that is counted from 0.
+    // The elements of a matrix may be numbered from 0.
     let from_0: Vec<Option<Whose>> = parts.iter().filter(|it| it.key == "r00").map(|it| it.whose).collect();
     for part in parts.iter_mut().filter(|it| from_0.contains(&it.whose)) {
         if let Some(Ok(number)) = part.key.strip_prefix('r').map(str::parse::<u32>) {
@@ -172,7 +172,7 @@ pub(crate) fn found(
     Ok(lists)
 }
 
-/// Columns whose names do not say whose they are: makers' letters are the arm's; others go where that part is missing, the arm first.
+/// Assigns columns whose names state no list. Makers' letters belong to the arm; others to the list without this part, the arm first.
 fn settle(parts: &mut [Part]) {
     let is =
         |it: &Part, whose: Option<Whose>, name: &str| it.whose == whose && it.key.eq_ignore_ascii_case(name);
@@ -187,7 +187,7 @@ fn settle(parts: &mut [Part]) {
             part.whose = Some(if is_arms { Whose::Arm } else { Whose::Target });
         }
     }
-    // A quaternion that came first, beside the arm's own angles and the place of the camera.
+    // A quaternion may have been assigned first, beside the arm's own angles and the position of the camera.
     let has_all = |whose: Whose, it: &Convention| {
         it.columns.iter().all(|name| parts.iter().any(|part| is(part, Some(whose), name)))
     };
@@ -202,7 +202,7 @@ fn settle(parts: &mut [Part]) {
     }
 }
 
-/// What a list is called in messages.
+/// Name of a list in messages.
 pub(crate) fn list_words(whose: Whose) -> &'static str {
     match whose {
         Whose::Arm => "the arm",
@@ -240,7 +240,7 @@ fn columns(header: &Header<'_>, whose: Whose, parts: &[&Part], stated: PoseUnits
     let takes_angle_unit = quantity == Unit::Radian && convention.columns != OPENCV;
     let stated_angle = stated.angle.filter(|_| takes_angle_unit);
     let angle = if quantity == Unit::Radian { angle } else { "1" };
-    // As the header has the unit, as the name of the column ends, as it is stated, or the usual one.
+    // The unit of the header has priority, then the end of the column's name, the stated unit, and the usual one.
     let number =
         |at: usize, quantity: Unit, stated: Option<NamedUnit>, usual: &str| -> Result<NumberColumn> {
             let in_header = header.unit(at, quantity, &format!("for {who}"))?.map(|(unit, _)| unit);

@@ -1,4 +1,4 @@
-//! One file with lists of poses: of an arm's flange, of what a camera saw, or both side by side; an arm's also by the readings of its joints.
+//! One file with lists of poses: of an arm's flange, of a camera's target, or both side by side; the arm's also by joint readings.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ const LARGEST_ANGLE: f64 = 2.01 * std::f64::consts::PI;
 /// One list of a file, while it is read.
 struct Rows {
     columns: PoseColumns,
-    /// Numbers of the orientations, radians or none.
+    /// Numbers of the orientations, radians or dimensionless.
     numbers: Vec<Vec<f64>>,
     poses: Vec<Pose>,
 }
@@ -37,7 +37,7 @@ struct Rows {
 pub(crate) struct List {
     pub(crate) whose: Whose,
     pub(crate) poses: PoseList,
-    /// How its columns were understood.
+    /// Interpretation of its columns.
     pub(crate) words: String,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct PoseFile {
     pub(crate) names: Option<Vec<String>>,
     pub(crate) points: Vec<String>,
     pub(crate) tips: Vec<String>,
-    /// Readings of the joints, one row after the other, where the arm's poses are by these.
+    /// Readings of the joints, one row after the other, if the arm's poses are computed from them.
     pub(crate) joints: Vec<f64>,
     pub(crate) warnings: Vec<String>,
     pub(crate) sha256: Option<String>,
@@ -68,7 +68,7 @@ pub(crate) fn no_list<T>(path: &Path, whose: Whose) -> Result<T> {
 }
 
 impl PoseFile {
-    /// What messages call the rows: their line, and their name.
+    /// Names of the rows in messages: line, and name.
     pub(crate) fn row_names(&self) -> Vec<String> {
         let name = |row: usize| self.names.as_ref()?.get(row).filter(|it| !it.is_empty());
         let words = |(row, line): (usize, &usize)| match name(row) {
@@ -78,10 +78,10 @@ impl PoseFile {
         self.lines.iter().enumerate().map(words).collect()
     }
 
-    /// The row of each name, if a column has them.
+    /// The row of each name, if a column has names.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`] if a name comes twice, with its line.
+    /// [`ErrorKind::Measurement`] if a name occurs twice, with its line.
     pub(crate) fn rows_by_name(&self) -> Result<Option<BTreeMap<&String, usize>>> {
         let Some(names) = &self.names else { return Ok(None) };
         let mut rows = BTreeMap::new();
@@ -96,7 +96,7 @@ impl PoseFile {
         Ok(Some(rows))
     }
 
-    /// The list of one of both.
+    /// Takes one of the two lists.
     pub(crate) fn take(&mut self, whose: Whose) -> Result<List> {
         match self.lists.iter().position(|list| list.whose == whose) {
             Some(at) => Ok(self.lists.swap_remove(at)),
@@ -105,7 +105,8 @@ impl PoseFile {
     }
 }
 
-/// Reads a file; `alone` is whose poses it has, if it has one list. With a robot, the arm's poses are those of its tip by the file's joint readings.
+/// Reads a file; `alone` is its list of poses if it has one list only. With a robot, the arm's poses are those of its tip by the file's joint
+/// readings.
 pub(crate) fn read_poses(
     path: &Path,
     alone: Option<Whose>,
@@ -156,7 +157,7 @@ pub(crate) fn read_poses(
 }
 
 impl Rows {
-    /// The poses, with other readings of their numbers.
+    /// The poses, with other interpretations of their numbers.
     fn list(self) -> List {
         let others = others(&self.columns, &self.poses, &self.numbers);
         let poses = PoseList { others, ..self.poses.into() };

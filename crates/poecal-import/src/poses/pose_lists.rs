@@ -1,4 +1,4 @@
-//! Lists of poses: of an arm's flange, and of what a camera saw, side by side in one file or in two.
+//! Lists of poses: of an arm's flange, and of a camera's target, side by side in one file or in two.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use poecal_fit::hand_eye::{PoseList, Touches};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// How files of poses are read.
+/// Options for reading files of poses.
 #[derive(Clone, Copy, Debug)]
 pub struct PoseSource<'a> {
     /// Units of columns that state none.
@@ -23,18 +23,18 @@ pub struct PoseSource<'a> {
     pub pictures: &'a ReadOptions,
 }
 
-/// Poses of an arm, and of what a camera saw, row by row.
+/// Poses of an arm and of a camera's target, row by row.
 #[derive(Clone, Debug, Default)]
 pub struct PosePairs {
     /// `base_from_flange`, unless they are inverted.
     pub flange: PoseList,
-    /// `camera_from_target`, likewise.
+    /// `camera_from_target`, unless they are inverted.
     pub target: PoseList,
-    /// Readings of the joints, one row after the other, where the arm's poses are by these; else empty.
+    /// Readings of the joints, one row after the other, if the arm's poses are computed from them; else empty.
     pub joints: Vec<f64>,
-    /// What messages call each row.
+    /// Name of each row in messages.
     pub names: Vec<String>,
-    /// How the columns were understood, a sentence each.
+    /// Interpretation of the columns, a sentence each.
     pub understood: Vec<String>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
@@ -47,9 +47,9 @@ pub struct PosePairs {
 pub struct FlangePoses {
     /// The poses, with the point that each touched and the tip with which it did.
     pub touches: Touches,
-    /// What messages call each row.
+    /// Name of each row in messages.
     pub names: Vec<String>,
-    /// How the columns were understood, a sentence each.
+    /// Interpretation of the columns, a sentence each.
     pub understood: Vec<String>,
     /// Warnings, a sentence each.
     pub warnings: Vec<String>,
@@ -57,12 +57,12 @@ pub struct FlangePoses {
     pub sha256: BTreeMap<String, String>,
 }
 
-/// Reads poses of an arm and of a target: side by side in one file, or in two, joined by a column of names that both have, else row by row. The
-/// second file may have the corners of pictures instead of the target's poses.
+/// Reads poses of an arm and of a target, side by side in one file or in two. Two files are joined by a column of names in both, else row by row.
+/// The second file may have the corners of pictures instead of the target's poses.
 ///
 /// # Errors
-/// [`ErrorKind::File`] if a file cannot be read; [`ErrorKind::Syntax`], [`ErrorKind::Measurement`] and [`ErrorKind::Unit`] for what is no
-/// list of poses, with its place.
+/// [`ErrorKind::File`] if a file cannot be read; [`ErrorKind::Syntax`], [`ErrorKind::Measurement`] and [`ErrorKind::Unit`] if the content is no
+/// list of poses, with its position.
 pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<PosePairs> {
     let read = |path: &Path, alone: Option<Whose>| read_poses(path, alone, source.units, source.robot);
     match paths {
@@ -87,7 +87,7 @@ pub fn read_pose_pairs(paths: &[PathBuf], source: &PoseSource<'_>) -> Result<Pos
 /// Reads poses of an arm, with the columns `point` and `tip` if there are any.
 ///
 /// # Errors
-/// As [`read_pose_pairs`].
+/// Those of [`read_pose_pairs`].
 pub fn read_flange_poses(path: &Path, units: PoseUnits, robot: Option<&Robot>) -> Result<FlangePoses> {
     let mut file = read_poses(path, Some(Whose::Arm), units, robot)?;
     let list = file.take(Whose::Arm)?;
@@ -105,7 +105,7 @@ fn checksums<'a>(files: impl IntoIterator<Item = &'a PoseFile>) -> BTreeMap<Stri
     files.into_iter().filter_map(checksum).collect()
 }
 
-/// The arm's poses in some rows of its file, each with what was seen there.
+/// The arm's poses in some rows of its file, each with the target's pose there.
 fn paired(arm: &PoseFile, flange: List, rows: &[usize], target: (PoseList, String)) -> PosePairs {
     let names = arm.row_names();
     let width = arm.joints.len() / arm.lines.len().max(1);
@@ -144,7 +144,7 @@ fn joined(mut first: PoseFile, second: PoseFile) -> Result<PosePairs> {
     };
     let sha256 = checksums([&first, &second]);
     let (left, right): (Vec<usize>, Vec<usize>) = rows.into_iter().unzip();
-    // Or named the other way round.
+    // The files may be named in the other order.
     let is_turned = first.lists.iter().all(|list| list.whose == Whose::Target);
     let [mut arm, mut seen] = if is_turned { [second, first] } else { [first, second] };
     let [arm_rows, seen_rows] = if is_turned { [right, left] } else { [left, right] };

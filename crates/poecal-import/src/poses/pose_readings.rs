@@ -1,4 +1,4 @@
-//! How else the numbers of a list of poses could be read, to name the mistake where another reading fits.
+//! Other interpretations of the numbers of a list of poses, to name the mistake if one of them fits.
 
 use super::pose_columns::{PoseColumns, Whose, list_words};
 use crate::table::orientation::OrientationForm;
@@ -6,7 +6,7 @@ use poecal_arm::lie::Pose;
 use poecal_arm::lie::angles::Angles;
 use poecal_fit::hand_eye::Reading;
 
-/// How else the orientations of a list could be read.
+/// Other interpretations of the orientations of a list.
 pub(crate) fn others(columns: &PoseColumns, poses: &[Pose], numbers: &[Vec<f64>]) -> Vec<Reading> {
     let read = |form: OrientationForm, factor: f64| -> Option<Vec<Pose>> {
         let rows = numbers.iter().zip(poses);
@@ -20,7 +20,7 @@ pub(crate) fn others(columns: &PoseColumns, poses: &[Pose], numbers: &[Vec<f64>]
     ways(columns).into_iter().filter_map(reading).collect()
 }
 
-/// A reading: its form, the factor of its numbers, and the advice.
+/// An interpretation: its form, the factor of its numbers, and the remedy.
 type Way = (OrientationForm, f64, String);
 
 /// Other units and conventions of angles; other orders of quaternions and matrices.

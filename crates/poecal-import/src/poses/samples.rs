@@ -1,5 +1,5 @@
-//! Samples of other hand-eye programs, as a table of poses: lists of MoveIt, easy_handeye2 and scripts (YAML, JSON), and folders with a pose in each file,
-//! as ViSP and Zivid write them.
+//! Samples of other hand-eye programs as a table of poses: lists of MoveIt, easy_handeye2 and scripts (YAML, JSON), and folders with one pose in
+//! each file. The latter have the forms of ViSP and Zivid.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,22 +18,22 @@ use poecal_storage::yaml_tree::{Node, NodeKind, documents};
 
 const EXPECTED: &str = "samples of a hand-eye calibration: poses of the arm (effector_wrt_world, robot) and of the target (object_wrt_sensor, tracking), or a \
                         folder with a pose in each file";
-/// Endings of files with trees; in folders others have rows of numbers.
+/// Endings of files with trees; in folders, files with other endings have rows of numbers.
 const TREES: [&str; 4] = ["yaml", "yml", "json", "samples"];
 const TEXTS: [&str; 3] = ["txt", "csv", "dat"];
 /// Keys of the two parts of a pose.
 const PLACES: [&str; 2] = ["translation", "position"];
 const TURNS: [&str; 2] = ["rotation", "orientation"];
-/// Columns of a matrix, of a place with a quaternion, and of ViSP's vectors, each with the unit of lengths in its place.
+/// Columns of a matrix, of a position with a quaternion, and of ViSP's vectors, each with the unit of lengths of the position.
 const MATRIX: [&str; 12] =
     ["r11", "r12", "r13", "r14[m]", "r21", "r22", "r23", "r24[m]", "r31", "r32", "r33", "r34[m]"];
 const QUATERNION: [&str; 7] = ["x[m]", "y[m]", "z[m]", "qx", "qy", "qz", "qw"];
 const VECTOR: [&str; 6] = ["x[m]", "y[m]", "z[m]", "rvec_x[rad]", "rvec_y[rad]", "rvec_z[rad]"];
 
-/// Beginnings of libfranka's keys of frames on the flange and the tool, and keys of poses that were wanted: none is where the arm was.
+/// Beginnings of libfranka's keys of frames on the flange and the tool, and keys of commanded poses: none is an actual pose of the arm.
 const NOT_OF_THE_ARM: [&str; 5] = ["F_T_", "NE_T_", "EE_T_", "O_T_EE_c", "O_T_EE_d"];
 
-/// A pose as it is written.
+/// A pose in a file.
 struct Sample {
     whose: Option<Whose>,
     columns: &'static [&'static str],
@@ -45,7 +45,7 @@ struct Sample {
     sample: Option<u64>,
 }
 
-/// Poses as they are found.
+/// Poses that were found so far.
 #[derive(Default)]
 struct Samples {
     found: Vec<Sample>,
@@ -53,7 +53,7 @@ struct Samples {
     entries: u64,
 }
 
-/// The table of a folder or a file of samples; `None` of a file in another form.
+/// The table of a folder or a file of samples; `None` for a file in another form.
 pub(crate) fn table(path: &Path) -> Result<Option<Made>> {
     let ends = |path: &Path, all: &[&str]| {
         let ending = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
@@ -151,7 +151,7 @@ impl Sample {
             if let Some(matrix) = node.get("FloatMatrix").and_then(|it| it.get("Data")) {
                 return Some(Sample { in_mm: true, ..Sample::matrix(numbers(matrix)?, whose, node.line)? });
             }
-            // OpenCV's and ViSP's matrices, or the numbers alone.
+            // The node has OpenCV's or ViSP's matrix, or the numbers alone.
             let numbers = numbers(node.get("data").unwrap_or(node))?;
             let columns: &[&str] = if numbers.len() == VECTOR.len() && node.get("rows").is_some() {
                 &VECTOR
@@ -167,7 +167,7 @@ impl Sample {
         Some(Sample { whose, columns: &QUATERNION, numbers, in_mm: false, line: node.line, sample: None })
     }
 
-    /// The pose of sixteen numbers, row by row, or column by column where the place comes last.
+    /// The pose of sixteen numbers, row by row, or column by column if the position is at the end.
     fn matrix(numbers: Vec<f64>, whose: Option<Whose>, line: usize) -> Option<Self> {
         let all: [f64; 16] = numbers.try_into().ok()?;
         let row = |at: usize| [all[at], all[at + 4], all[at + 8]];

@@ -1,4 +1,5 @@
-//! Matrices as sixteen columns of one name with numbers, such as `T0` to `T15`, or `O_T_EE[0]` to `O_T_EE[15]` of libfranka, which is column by column.
+//! Matrices as sixteen columns of one name with numbers, such as `T0` to `T15`, or `O_T_EE[0]` to `O_T_EE[15]` of libfranka, which is column by
+//! column.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +11,7 @@ use crate::table::number::number_of;
 /// Numbers of a matrix.
 const COUNT: usize = 16;
 
-/// A column of a matrix: whose it is if its name says so, and its place in the matrix as conventions call it.
+/// A column of a matrix: its index, its list if the name states it, and its part of the pose, by its name in conventions.
 pub(crate) type InMatrix = (usize, Option<Whose>, String);
 
 /// The columns of all matrices in a header.
@@ -30,7 +31,7 @@ pub(crate) fn matrices(header: &Header<'_>) -> Vec<InMatrix> {
             continue;
         }
         let columns: Vec<usize> = columns.into_values().collect();
-        // The flange in the base, as libfranka calls it.
+        // The flange in the base, by its name in libfranka.
         let is_franka = stem.to_ascii_uppercase().starts_with("O_T_");
         let whose = if is_franka { Some(Whose::Arm) } else { whose_of(stem) };
         let by_columns = is_franka || ends_with_place(header, &columns);
@@ -42,7 +43,7 @@ pub(crate) fn matrices(header: &Header<'_>) -> Vec<InMatrix> {
     found
 }
 
-/// True if the first row has a place in the last four of its numbers, and not the last row of a matrix.
+/// True if the first row has a position in the last four of its numbers, and not the last row of a matrix.
 fn ends_with_place(header: &Header<'_>, columns: &[usize]) -> bool {
     let Some(line) = header.first_row() else { return false };
     let mut cells = Vec::new();

@@ -1,17 +1,17 @@
-//! Whose poses something has, by its name.
+//! List of poses to which a name belongs: the arm's or the target's.
 
 use crate::table::roles::{Role, plain};
 
-/// Whose poses a column belongs to.
+/// List of poses to which a column belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Whose {
-    /// The arm's.
+    /// Poses of the arm.
     Arm,
-    /// What the camera saw.
+    /// Poses of the target that the camera saw.
     Target,
 }
 
-/// Whose poses a key or the name of a file says that it has.
+/// The list of poses that a key or the name of a file states.
 pub(crate) fn whose_of(name: &str) -> Option<Whose> {
     let whose = |word: String| {
         let words = [(Role::KeyOfArm, Whose::Arm), (Role::KeyOfTarget, Whose::Target)];

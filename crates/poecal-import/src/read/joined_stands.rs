@@ -1,4 +1,4 @@
-//! Stands of two files that are joined, and readings at which nothing was measured.
+//! Static intervals of two files that are joined, and readings without a measurement.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -12,7 +12,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Unmeasured {
     pub(super) rows: Option<BTreeSet<usize>>,
-    /// Where the warning of these is among all.
+    /// Index of their warning among all warnings.
     pub(super) at: usize,
 }
 
@@ -27,7 +27,7 @@ impl Unmeasured {
     }
 }
 
-/// Takes the means of stands, and says how their rows scatter.
+/// Takes the means of static intervals, and reports the scatter of their rows.
 pub(super) fn take_stands(found: &mut Joined, stands: MeasuredStands, path: &Path) {
     found.notes.push(format!(
         "{}: each stand is the mean of its rows, which scatter by {:.3} mm",
@@ -47,7 +47,7 @@ pub(super) fn refuse_backwards(path: &Path, why: &NoStands) -> Result<()> {
     Err(ErrorKind::Measurement.error(message).at_line(path, *line))
 }
 
-/// The error of a stream in which the robot hardly stands.
+/// The error of a stream in which the robot is hardly ever static.
 pub(super) fn no_stands(path: &Path, what: &str, count: usize) -> Error {
     ErrorKind::Measurement
         .error(format!(

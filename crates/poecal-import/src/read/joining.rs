@@ -27,8 +27,8 @@ use poecal_numerics::named_unit::UnitSource;
 use poecal_numerics::unit::Unit;
 
 impl<'a> Reader<'a> {
-    /// Reads files of which some have the joint readings of others: each those of the files behind it, up to the next file of readings; the first
-    /// ones also those of files before them.
+    /// Reads files of which some hold the joint readings of others. A file of readings belongs to the files behind it, up to the next file of
+    /// readings. The first one also belongs to files before it.
     pub(crate) fn joined(&mut self, plan: &'a Plan<'_>) -> Result<()> {
         let first = plan.files.iter().find(|it| it.part == Part::Joints);
         let mut joints = first.map(|it| self.joint_rows(it)).transpose()?;
@@ -55,7 +55,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Warns of joint readings at which nothing was measured in any file.
+    /// Warns of joint readings without a measurement in any file.
     fn warn_of_unmeasured(&mut self, found: Unmeasured, joints: Option<&JointRows>) {
         let (Some(rows), Some(joints)) = (found.rows.filter(|it| !it.is_empty()), joints) else { return };
         let rows: Vec<usize> = rows.into_iter().collect();
@@ -64,8 +64,8 @@ impl<'a> Reader<'a> {
         self.found.warnings.insert(found.at.min(self.found.warnings.len()), warning);
     }
 
-    /// Reads a file of joint readings alone. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs, or
-    /// they are refused.
+    /// Reads a file with joint readings only. Angles without a unit that are no radians are degrees: the nominal robot then agrees with the pairs,
+    /// or they are refused.
     pub(crate) fn joint_rows(&mut self, planned: &Planned<'_>) -> Result<JointRows> {
         let found = self.joint_rows_by(planned, self.map);
         let Err(error) = &found else { return found };
@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
         self.stands(rows)
     }
 
-    /// The stands of rows of joint readings that are a stream; else the rows.
+    /// The static intervals of rows of joint readings that are a stream; else the rows.
     fn stands(&mut self, mut rows: JointRows) -> Result<JointRows> {
         // A stream has no names of rows.
         let is_listed =
@@ -159,7 +159,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Reads a file of measurements alone, with the readings of another.
+    /// Reads a file with measurements only, with the readings of another.
     fn measured(
         &mut self,
         planned: &'a Planned<'_>,
@@ -251,7 +251,7 @@ impl<'a> Reader<'a> {
         read
     }
 
-    /// What was measured, with readings that mean nothing, and the time of each row, seconds, NaN where it has none.
+    /// The measurements, with meaningless readings, and the time of each row, seconds; NaN if it has none.
     fn without_readings(&self, planned: &'a Planned<'_>) -> Result<(Dataset, Vec<f64>)> {
         let map = &planned.map;
         let mut reader =
@@ -261,7 +261,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// When each configuration was measured, where rows are points.
+/// The time of each measured configuration, if the rows are points.
 fn points(data: &Dataset, times: &[f64]) -> Vec<Span> {
     let shots = Unpaired::shots_of(data);
     shots.iter().filter_map(|it| times.get(*it.first()? as usize)).map(|it| (*it, *it)).collect()

@@ -1,4 +1,4 @@
-//! Tables of joint readings alone, for predictions.
+//! Tables with joint readings only, for predictions.
 
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub struct JointsTable {
 }
 
 impl JointsTable {
-    /// The rows as those of a list: rows that state none are to fit.
+    /// The rows as those of a planned list; a row that states no set is a training row.
     #[must_use]
     pub fn planned(&self) -> Vec<PlannedRow> {
         let part = |row: usize| match self.sets.get(row) {
@@ -52,7 +52,7 @@ impl JointsTable {
 /// Reads the joint columns of a file, and `id` if there is one; other columns are ignored.
 ///
 /// # Errors
-/// As [`crate::read`], of what concerns joints.
+/// Those of [`crate::read`] that concern joints.
 pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions) -> Result<JointsTable> {
     let path = path.as_ref();
     let no_map = ColumnMap::default();
@@ -70,10 +70,10 @@ pub fn read_joints(path: impl AsRef<Path>, robot: &Robot, options: &ReadOptions)
     Ok(JointsTable { warnings, ..joints })
 }
 
-/// Reads the text of such a file; `path` is what messages call it.
+/// Reads the text of such a file; `path` is its name in messages.
 ///
 /// # Errors
-/// As [`crate::read`], of what concerns joints.
+/// Those of [`crate::read`] that concern joints.
 pub fn parse_joints(
     text: &str,
     path: impl AsRef<Path>,

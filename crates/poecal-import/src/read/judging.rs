@@ -1,4 +1,4 @@
-//! Judges what was read: units, spread, and components that are missing.
+//! Judges the data that were read: units, spread, and missing components.
 
 use super::Reader;
 use crate::table::Table;
@@ -7,7 +7,7 @@ use poecal_fit::input_doubts::{lengths, spread};
 use poecal_numerics::error::Result;
 
 impl Reader<'_> {
-    /// Judges the scale of the readings and of what was measured.
+    /// Judges the scale of the readings and of the measurements.
     pub(super) fn judge(&mut self, table: &Table<'_>, cursor: &Cursor<'_>, first: usize) -> Result<()> {
         let header = &table.header;
         self.found.warnings.extend(cursor.joint_warnings(header)?);

@@ -1,4 +1,4 @@
-//! Words in columns of a measurement file that are no measurements, like the number of a cycle.
+//! Words in columns of a measurement file that are no measurements, such as the number of a cycle.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,14 +16,14 @@ use poecal_storage::document;
 pub struct LabelColumns {
     /// True for each of the columns that the file has.
     pub has: Vec<bool>,
-    /// Words of each line, from 1; empty of a column that the file does not have.
+    /// Words of each line, from 1; empty for a column that the file does not have.
     pub lines: BTreeMap<usize, Vec<String>>,
 }
 
 /// Reads columns of these names, without their units, from a file in our form.
 ///
 /// # Errors
-/// As [`crate::read()`], of what concerns the table.
+/// Those of [`crate::read()`] that concern the table.
 pub fn read_labels(
     path: &Path,
     names: &[&str],

@@ -38,9 +38,8 @@ use poecal_storage::document;
 /// Reads measurement files, joined in their order.
 ///
 /// # Errors
-/// A file that cannot be read ([`ErrorKind::File`]), is no table ([`ErrorKind::Syntax`]), has a wrong or missing unit
-/// ([`ErrorKind::Unit`]), or has wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::train_where`] that fits no file
-/// ([`ErrorKind::Option`]).
+/// A file cannot be read ([`ErrorKind::File`]), is no table ([`ErrorKind::Syntax`]), has a wrong or missing unit ([`ErrorKind::Unit`]), or has
+/// wrong columns or cells ([`ErrorKind::Measurement`]); a [`ReadOptions::train_where`] fits no file ([`ErrorKind::Option`]).
 pub fn read(paths: &[impl AsRef<Path>], robot: &Robot, options: &ReadOptions) -> Result<MeasurementFile> {
     let paths: Vec<&Path> = paths.iter().map(AsRef::as_ref).collect();
     document::reading(|| read_all(&paths, robot, options))
@@ -59,7 +58,7 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
         return reader.finish();
     }
     let mut reader = Reader::new(robot, options, &no_map);
-    // Readings by picture come before the corners of the pictures, in whatever order the files are named.
+    // Readings by picture precede the corners of the pictures, in whatever order the files are named.
     let mut order = paths.to_vec();
     if !options.cameras.is_empty() {
         order.sort_by_cached_key(|path| !has_readings_of_pictures(path, robot, reader.map));
@@ -81,10 +80,10 @@ fn read_all(paths: &[&Path], robot: &Robot, options: &ReadOptions) -> Result<Mea
     reader.finish()
 }
 
-/// Reads the text of a measurement file as [`read()`] reads the file; `path` is what messages call it.
+/// Reads the text of a measurement file as [`read()`] reads the file; `path` is its name in messages.
 ///
 /// # Errors
-/// As [`read()`].
+/// Those of [`read()`].
 pub fn parse(
     text: &str,
     path: impl AsRef<Path>,
@@ -101,26 +100,26 @@ pub(crate) struct Reader<'a> {
     pub(crate) map: &'a ColumnMap,
     pub(crate) targets: Names,
     pub(crate) stations: Names,
-    /// What each named place is, and where it was named first.
+    /// Kind of each named position, with its first occurrence.
     pub(crate) places: BTreeMap<String, (&'static str, PathBuf, usize)>,
     /// Pairs of rows: the first one's configuration until the second is read, and its line.
     pub(crate) begun: BTreeMap<String, (Option<u32>, usize)>,
     /// Readings of joints by picture.
     pub(crate) taken: TakenByImage,
-    /// What messages call one of these.
+    /// Name of these readings in messages.
     pub(crate) taken_as: &'static str,
-    /// The joint readings of each line, where another file has them.
+    /// The joint readings of each line, if another file has them.
     pub(crate) readings: Option<ReadingsByLine>,
-    /// The time of each row so far, seconds, where it is asked for.
+    /// The time of each row so far, seconds, if it is asked for.
     pub(crate) times: Option<Vec<f64>>,
     pub(crate) cameras: Vec<Camera>,
-    /// The boards, one that is at several places by its names there.
+    /// The boards; a board with several poses occurs under each of its names.
     pub(crate) boards: Vec<Board>,
-    /// The sockets of each place.
+    /// The sockets of each `place`.
     pub(crate) sockets: Sockets,
-    /// Which of the values that mark a row to fit were seen.
+    /// True for each of the values that mark a training row, if it was seen.
     pub(crate) fit_values_seen: Vec<bool>,
-    /// By how many columns values are taken to stand to the right of their names, and the line of names that was read last.
+    /// Number of columns by which values are assumed to be to the right of their names, and the line of names that was read last.
     pub(crate) shift: isize,
     pub(crate) header_line: usize,
     pub(crate) found: MeasurementFile,
@@ -154,18 +153,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What files are opened with.
+    /// Settings with which files are opened.
     pub(crate) fn opening(&self) -> Opening<'a> {
         Opening { robot: self.robot, options: self.options }
     }
 
-    /// Takes what was understood of a file when it was opened.
+    /// Takes the notes and warnings from the opening of a file.
     pub(crate) fn take_said(&mut self, said: Said) {
         self.found.notes.extend(said.notes);
         self.found.warnings.extend(said.warnings);
     }
 
-    /// Adds what was found in a file to the warnings.
+    /// Adds findings in a file to the warnings.
     pub(crate) fn warn(&mut self, path: &Path, words: impl IntoIterator<Item = String>) {
         let own = words.into_iter().map(|words| format!("{}: {words}", path.display()));
         self.found.warnings.extend(own);
@@ -218,7 +217,7 @@ impl<'a> Reader<'a> {
         self.understand(&table, &cursor, (first, rows, lost))
     }
 
-    /// Takes the rows of a file and judges nothing.
+    /// Takes the rows of a file without judging them.
     pub(crate) fn rows_alone<'p>(&mut self, path: &'p Path, blocks: Blocks<'p>) -> Result<()> {
         let mut table = Table::open(path, blocks, self.map)?;
         self.header_line = table.header.line;
@@ -232,7 +231,7 @@ impl<'a> Reader<'a> {
         self.refuse_far_positions(&table, &cursor, 0.0, 0)
     }
 
-    /// Takes all rows of a file, and counts them with the lost beams among them.
+    /// Takes all rows of a file, and counts them including beam breaks.
     fn rows(&mut self, table: &mut Table<'_>, cursor: &mut Cursor<'_>) -> Result<(usize, NamedLines)> {
         let mut lost = NamedLines::default();
         let rows = table.some_rows("at least one measurement", |row| {

@@ -1,4 +1,4 @@
-//! Known distances between sockets, as they are typed.
+//! Known distances between sockets, in their typed form.
 
 use std::collections::BTreeMap;
 use std::str::FromStr;
@@ -7,11 +7,11 @@ use poecal_model::measurement::KnownLength;
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_numerics::named_unit::positive_length_m;
 
-/// Known distances between the sockets of each place: `50mm` between its two, or of pairs by name, `A-B=50mm,B-C=70mm`; each may state its
+/// Known distances between the sockets of each `place`: `50mm` between its two, or by pairs of names, `A-B=50mm,B-C=70mm`; each may state its
 /// standard deviation, `50mm+-0.02mm`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SocketDistances {
-    /// The pair as typed, none of the only pair; distance and standard deviation, metres.
+    /// The pair as typed, `None` for the only pair; distance and standard deviation, metres.
     pairs: Vec<(Option<String>, f64, f64)>,
 }
 
@@ -49,7 +49,7 @@ fn bad(text: &str) -> Error {
     ))
 }
 
-/// The sockets of each place, with the index of their stations.
+/// The sockets of each `place`, with the index of their stations.
 pub(crate) type Sockets = BTreeMap<String, Vec<(String, usize)>>;
 
 impl SocketDistances {
@@ -97,7 +97,7 @@ fn too_many(place: &str, sockets: &[(String, usize)]) -> Error {
     ))
 }
 
-/// The stations of a pair by name, wherever names have a hyphen themselves.
+/// The stations of a pair by name; names may contain hyphens.
 fn named(pair: &str, sockets: &[(String, usize)]) -> Option<[usize; 2]> {
     let station = |name: &str| sockets.iter().find(|(known, _)| known == name.trim()).map(|(_, at)| *at);
     pair.match_indices('-').find_map(|(at, _)| {

@@ -8,15 +8,15 @@ use super::mapping::ColumnMap;
 use super::text::Blocks;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Most lines in which the header is sought.
+/// Largest number of lines in which the header is sought.
 const LINES_ABOVE: usize = 40;
 
-/// Number of lines above the header of a table that begins with other lines: the first line that names columns and has rows of numbers below it, or
-/// below a line of units, if the lines before are no table.
+/// Number of lines above the header of a table that begins with other lines, which are no table. The header is the first line that names columns
+/// and has rows of numbers below it, or below a line of units.
 pub(super) fn lines_above(blocks: &Blocks<'_>, map: &ColumnMap) -> usize {
     let some: Vec<(usize, &str)> = blocks.lines(0).take(LINES_ABOVE).collect();
     let separator = |text: &str| map.separator.unwrap_or_else(|| Separator::recognised(text));
-    // Numbers of cells with a text and with a number, but for empty ones.
+    // Numbers of cells with a text and with a number, without empty ones.
     let counts = |text: &str, by: Separator| {
         let mut cells = Vec::new();
         if split(text, by, &mut cells).is_err() {
@@ -40,7 +40,7 @@ pub(super) fn lines_above(blocks: &Blocks<'_>, map: &ColumnMap) -> usize {
     if is_stated || is_header(0) {
         return 0;
     }
-    // Lines with as many cells are of one table.
+    // Lines with equally many cells belong to one table.
     let width = |at: usize| some.get(at).map(|it| counts(it.1, separator(it.1))).map_or(0, |it| it.0 + it.1);
     (1..some.len())
         .find(|at| is_header(*at) && width(*at) != width(0))
@@ -60,7 +60,7 @@ pub(super) fn next_line(blocks: &mut Blocks<'_>, skip: usize) -> Result<Option<(
     }
 }
 
-/// The separator stated by a line `sep=;`, as spreadsheets write it.
+/// The separator stated by a line `sep=;`, as written by spreadsheets.
 pub(super) fn stated_separator(path: &Path, line: usize, text: &str) -> Result<Option<Separator>> {
     let text = text.strip_prefix('"').and_then(|text| text.trim_end().strip_suffix('"')).unwrap_or(text);
     let Some(stated) = text.get(..4).filter(|start| start.eq_ignore_ascii_case("sep=")) else {

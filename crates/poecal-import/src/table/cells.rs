@@ -90,10 +90,10 @@ pub struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    /// An empty one.
+    /// An empty cell.
     pub(crate) const EMPTY: Self = Cell { raw: "", offset: 0, escaped: false };
 
-    /// The text without doubled quotes, and without the apostrophe that our own files put before texts that a spreadsheet would run.
+    /// The text without doubled quotes, and without the apostrophe with which our own files protect texts that a spreadsheet would run.
     pub fn text(&self) -> Cow<'a, str> {
         let text = plain(self.raw);
         if self.escaped { Cow::Owned(text.replace("\"\"", "\"")) } else { Cow::Borrowed(text) }
@@ -107,7 +107,7 @@ pub(crate) fn character_column(line: &str, offset: usize) -> usize {
 
 /// Splits a line into cells.
 ///
-/// On failure returns the byte offset, what was found and what was expected.
+/// A failure returns the byte offset, the text that was found and the expected one.
 pub fn split<'a>(
     line: &'a str,
     separator: Separator,

@@ -1,4 +1,4 @@
-//! A folder with the joint readings of each picture in a file of its own, `configuration_1`, `configuration_2.yaml`, …, as one table.
+//! A folder with the joint readings of each picture in a separate file, `configuration_1`, `configuration_2.yaml`, …, as one table.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use poecal_storage::source::SQLITE_BAG;
 use poecal_storage::yaml::{Leaf, leaves};
 use poecal_storage::{source, source_text};
 
-/// Endings of files of readings; what else is in the folder, such as pictures, is passed over.
+/// Endings of files of readings; other files of the folder, such as pictures, are ignored.
 const ENDINGS: [&str; 6] = ["", "txt", "dat", "csv", "yaml", "yml"];
 /// Keys of a list of readings, and of the names of its joints.
 const LISTS: [&str; 5] = ["joints", "joint_positions", "positions", "position", "q"];
@@ -26,22 +26,22 @@ const EXPECTED: &str =
 
 /// The files of a folder.
 pub(crate) struct Configurations {
-    /// CSV with a row a file: its name, as that of the picture, and the readings.
+    /// CSV with a row for each file: its name, as that of the picture, and the readings.
     pub(crate) text: String,
     /// SHA-256 of the texts of the files, one after the other by their numbers.
     pub(crate) sha256: String,
-    /// What has such a name and is no file.
+    /// Entries with such a name that are no files.
     pub(crate) left: Vec<LeftOut>,
 }
 
-/// The readings of a file; without names if it has none.
+/// The readings of a file; `names` is empty if it has none.
 struct Readings {
     path: PathBuf,
     names: Vec<String>,
     values: Vec<f64>,
 }
 
-/// Whether a path is a folder.
+/// True if a path is a folder.
 pub(crate) fn is_folder(path: &Path) -> bool {
     let is_folder = |found: disk::Object| found.kind == ObjectKind::Folder;
     !source::is_standard_input(path)
@@ -54,14 +54,14 @@ pub(crate) fn in_its_file(error: Error, folder: &Path) -> Error {
     let is_of_table = |place: &&poecal_numerics::error::Place| place.path == folder && is_folder(folder);
     let Some(line) = error.place().filter(is_of_table).and_then(|place| place.line) else { return error };
     let files = numbered(folder).unwrap_or_default().0;
-    // Below the header.
+    // The line is below the header.
     match line.checked_sub(2).and_then(|at| files.get(at)) {
         Some(name) => error.without_line().with_path(&folder.join(name)),
         None => error.without_line(),
     }
 }
 
-/// What to do with a file of such a folder that is read alone.
+/// Remedy for a file of such a folder that is read alone.
 pub(crate) fn advice(path: &Path) -> &'static str {
     let name = path.file_name().and_then(|it| it.to_str()).unwrap_or_default().to_ascii_lowercase();
     if name.starts_with("configuration") && number_at_end(&name).is_some() {
@@ -99,7 +99,7 @@ pub(crate) fn read(folder: &Path) -> Result<Configurations> {
     Ok(Configurations { text, sha256: sha256_of(&whole), left })
 }
 
-/// The names of the files of readings, by their numbers, and what has such a name and is no file.
+/// The names of the files of readings, by their numbers, and entries with such a name that are no files.
 fn numbered(folder: &Path) -> Result<(Vec<String>, Vec<LeftOut>)> {
     const EXPECTED: &str =
         "`configuration_1`, `configuration_2.yaml`, … with the joint readings of each picture";
@@ -164,7 +164,7 @@ impl Readings {
         }
     }
 
-    /// Names of columns: numbers of joints where there are no names.
+    /// Names of columns: numbers of joints if there are no names.
     fn columns(&self) -> Vec<String> {
         if self.names.is_empty() {
             return (1..=self.values.len()).map(|number| format!("q{number}")).collect();
@@ -203,7 +203,7 @@ fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|it: &f64| it.abs() <= LARGEST_NUMBER)
 }
 
-/// Names, if there are some, and values of a mapping or a list; else the line with what was found there.
+/// Names, if any, and values of a mapping or a list; else the line with the defect there.
 fn of_leaves(all: &[Leaf]) -> std::result::Result<(Vec<String>, Vec<f64>), (usize, String)> {
     let below = |key: &&str| -> Vec<&Leaf> {
         all.iter()

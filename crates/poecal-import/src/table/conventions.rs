@@ -1,4 +1,4 @@
-//! Orientations by the names of their columns: controllers', robots', cameras' and ROS's, with the units that their makers have.
+//! Orientations by the names of their columns in controllers, robots, cameras and ROS, with the makers' units.
 
 use std::sync::LazyLock;
 
@@ -10,31 +10,31 @@ use poecal_numerics::unit::Unit;
 /// A convention of orientations in columns.
 #[derive(Debug)]
 pub(crate) struct Convention {
-    /// The names of its columns; large letters or small do not count.
+    /// The names of its columns; case does not matter.
     pub(crate) columns: &'static [&'static str],
-    /// What they mean.
+    /// The form of the orientation.
     pub(crate) form: OrientationForm,
-    /// Units of places and of these columns where nothing states them, as this maker has them.
+    /// This maker's units of positions and of these columns, for columns without a stated unit.
     pub(crate) usual: Option<(&'static str, &'static str)>,
-    /// What it is called.
+    /// Name of the convention in messages.
     pub(crate) words: String,
-    /// Whether it is the angles of a maker of controllers, in letters of its own.
+    /// True if it is the angles of a maker of controllers, in letters of its own.
     pub(crate) is_makers: bool,
 }
 
 impl Convention {
-    /// The unit of a maker's places, or of its columns.
+    /// The unit of a maker's positions, or of its columns.
     pub(crate) fn usual_unit(&self, quantity: Unit) -> Option<NamedUnit> {
         let (length, angle) = self.usual?;
         NamedUnit::parse(if quantity == Unit::Metre { length } else { angle }, quantity).ok()
     }
 
-    /// Whether no other maker means something else by columns of these names.
+    /// True if no other maker has another meaning for columns of these names.
     pub(crate) fn is_unique(&self) -> bool {
         self.is_makers || self.form == OrientationForm::QuaternionWxyz
     }
 
-    /// Whether a name is that of one of its columns.
+    /// True if a name is that of one of its columns.
     pub(crate) fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|it| it.eq_ignore_ascii_case(name))
     }
@@ -52,10 +52,10 @@ impl Convention {
 
 /// OpenCV's rotation vector.
 pub(crate) const OPENCV: &[&str] = &["rvecx", "rvecy", "rvecz"];
-/// Names of angles by which several makers mean several things.
+/// Names of angles with different meanings by maker.
 pub(crate) const AMBIGUOUS: [&str; 3] = ["Rx", "Ry", "Rz"];
 
-/// All conventions: of several that a header has, the first is meant.
+/// All conventions; if a header has several, the first one applies.
 pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
     let named = |columns, form, words: &str, usual| {
         let words = words.to_owned();
@@ -72,7 +72,7 @@ pub(crate) static CONVENTIONS: LazyLock<Vec<Convention>> = LazyLock::new(|| {
     ];
     let makers = MAKERS.iter().filter(|it| it.names != AMBIGUOUS).map(Convention::of_maker);
     let last = [
-        // As makers turn about what they call rx, ry, rz, as others call rotation vectors.
+        // Makers' rotations about the axes that they name rx, ry, rz, which are others' names for rotation vectors.
         named(
             &["intrinsicx", "intrinsicy", "intrinsicz"],
             OrientationForm::Angles(Angles::XYZ),

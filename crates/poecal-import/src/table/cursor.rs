@@ -1,4 +1,4 @@
-//! A cursor over the rows of a table: the numbers of each, in metres and radians, and what is watched of them.
+//! A cursor over the rows of a table: the numbers of each, in metres and radians, and statistics of them.
 
 use super::header::Header;
 use super::inputs::{Input, InputSource, Range};
@@ -22,17 +22,17 @@ pub(crate) struct Cursor<'r> {
     pub(crate) numbers: Numbers,
     /// Smallest and largest value of each input.
     pub(crate) ranges: Vec<Range>,
-    /// The joint readings of all rows, and their orientations.
+    /// Statistics of the joint readings of all rows, and of their orientations.
     watch: JointWatch<'r>,
     orientations: TurnWatch,
     values: Vec<Option<f64>>,
     readings: Vec<f64>,
-    /// Of each joint reading of the current row, the whole turns that were taken off.
+    /// The whole turns that were subtracted from each joint reading of the current row.
     turns: Vec<f64>,
 }
 
 impl<'r> Cursor<'r> {
-    /// Over rows with these columns, the first of which are the robot's joint readings; with a decimal sign, or one to be found.
+    /// A cursor over rows with these columns, the first of which are the robot's joint readings; with a decimal sign, or one to be found.
     pub(crate) fn new(layout: ColumnLayout, robot: &'r Robot, decimal: Option<DecimalSign>) -> Self {
         let joints = robot.reading_names().len().min(layout.inputs.len());
         Cursor {
@@ -74,7 +74,7 @@ impl<'r> Cursor<'r> {
         Ok(())
     }
 
-    /// Reads the joint readings of a row that has nothing else.
+    /// Reads the joint readings of a row with nothing else.
     pub(crate) fn read_joints(&mut self, row: &Row<'_>) -> Result<&[f64]> {
         self.read(row)?;
         self.take_readings(row)?;
@@ -82,7 +82,7 @@ impl<'r> Cursor<'r> {
         Ok(&self.readings)
     }
 
-    /// Takes the joint readings of the current row, which are required; whole turns beyond their limits are taken off.
+    /// Takes the joint readings of the current row, which are required; whole turns beyond their limits are subtracted.
     pub(crate) fn take_readings(&mut self, row: &Row<'_>) -> Result<()> {
         let inputs = &self.layout.inputs;
         let place = |input: usize| row.place(inputs.get(input).map_or(0, Input::column));
@@ -98,7 +98,7 @@ impl<'r> Cursor<'r> {
         Ok(())
     }
 
-    /// Takes the current row for one that is measured: its numbers are watched.
+    /// Adds the numbers of the current row, which has a measurement, to the statistics.
     pub(crate) fn observe(&mut self, row: &Row<'_>) {
         for (value, range) in self.values.iter().zip(&mut self.ranges) {
             if let Some(value) = value {
@@ -126,7 +126,7 @@ impl<'r> Cursor<'r> {
         }
     }
 
-    /// What was read of each input.
+    /// The columns of the inputs, with the numbers that were read.
     pub(crate) fn columns(&self) -> Vec<ReadColumn<'_>> {
         let inputs = self.layout.inputs.iter().zip(&self.ranges);
         inputs
@@ -153,12 +153,12 @@ impl<'r> Cursor<'r> {
         self.refuse(header, self.orientations.doubt())
     }
 
-    /// How far the slides without limits moved in all, metres.
+    /// Total motion of the slides without limits, metres.
     pub(crate) fn unlimited_slides_m(&self) -> f64 {
         self.watch.unlimited_slides_m(&self.columns())
     }
 
-    /// Refuses what is in doubt.
+    /// Refuses the table if there is a doubt.
     pub(crate) fn refuse(&self, header: &Header<'_>, doubt: Option<Doubt>) -> Result<()> {
         doubt.map_or(Ok(()), |it| Err(self.doubt(header, it)))
     }
@@ -213,7 +213,7 @@ impl<'r> Cursor<'r> {
         }
     }
 
-    /// The whole turns that were taken off each joint reading of the current row.
+    /// The whole turns that were subtracted from each joint reading of the current row.
     pub(crate) fn turns(&self) -> &[f64] {
         &self.turns
     }
@@ -252,10 +252,10 @@ fn sum(numbers: &mut Numbers, row: &Row<'_>, input: &Input) -> Result<Option<f64
     Ok(Some(sum))
 }
 
-/// Advice for a word such as `nan`.
+/// Remedy for a word such as `nan`.
 const NOTHING: &str = ": leave the cell empty where nothing was measured";
 
-/// Advice for a cell that is no number.
+/// Remedy for a cell that is no number.
 fn hint(text: &str, is_joint: bool) -> &'static str {
     if stands_for_nothing(text) {
         if is_joint { ": leave out a row without a reading" } else { NOTHING }
@@ -266,7 +266,7 @@ fn hint(text: &str, is_joint: bool) -> &'static str {
     }
 }
 
-/// Whether programs write this cell where they have no number.
+/// True if programs write this cell for a missing number.
 fn stands_for_nothing(text: &str) -> bool {
     let words = ["nan", "na", "n/a", "null", "none", "nil", "inf", "+inf", "-inf", "-nan"];
     let is_dashes = text.chars().all(|c| matches!(c, '-' | '–' | '—' | '.' | '*' | '?' | '/'));

@@ -1,23 +1,23 @@
-//! Texts that are not UTF-8: UTF-16, and Windows-1252 with Latin-1, as programs of instruments write them.
+//! Texts that are not UTF-8 from programs of instruments: UTF-16, and Windows-1252 with Latin-1.
 
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind, position};
 
-/// Characters of the bytes from 0x80 to 0x9F; those that are none are `\0`.
+/// Characters of the bytes from 0x80 to 0x9F; bytes without a character have `\0`.
 const WINDOWS: [char; 32] = [
     '€', '\0', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\0', 'Ž', '\0', '\0', '‘', '’', '“',
     '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\0', 'ž', 'Ÿ',
 ];
 
-/// Whether bytes are the beginning of UTF-16: with a byte order mark, or every other byte of the first two characters is zero.
+/// True if bytes are the beginning of UTF-16: with a byte order mark, or every other byte of the first two characters is zero.
 pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0xff, 0xfe])
         || bytes.starts_with(&[0xfe, 0xff])
         || matches!(bytes, [0, 1..=255, 0, 1..=255, ..] | [1..=255, 0, 1..=255, 0, ..])
 }
 
-/// The text of UTF-16; else the line and what was found.
+/// The text of UTF-16; else the line and the defect.
 pub(crate) fn of_utf16(bytes: &[u8]) -> Result<String, (usize, &'static str)> {
     let is_big = bytes.starts_with(&[0xfe, 0xff]) || bytes.first() == Some(&0);
     let marked = bytes.strip_prefix(&[0xff, 0xfe]).or_else(|| bytes.strip_prefix(&[0xfe, 0xff]));
@@ -35,7 +35,7 @@ pub(crate) fn of_utf16(bytes: &[u8]) -> Result<String, (usize, &'static str)> {
     if odd.is_empty() { Ok(text) } else { Err((line(&text), "an odd number of bytes")) }
 }
 
-/// The text of Windows-1252, in which Latin-1 is but for control characters; else the index of a byte that is no character.
+/// The text of Windows-1252, which contains Latin-1 except control characters; else the index of a byte that is no character.
 pub(crate) fn of_windows_1252(bytes: &[u8]) -> Result<String, usize> {
     let mut text = String::with_capacity(bytes.len() + bytes.len() / 8);
     for (at, &byte) in bytes.iter().enumerate() {
@@ -51,7 +51,7 @@ pub(crate) fn of_windows_1252(bytes: &[u8]) -> Result<String, usize> {
     Ok(text)
 }
 
-/// The error for bytes that are no text, after so many lines.
+/// The error for bytes that are no text, after this number of lines.
 pub(crate) fn not_utf8(path: &Path, bytes: &[u8], valid: usize, lines: usize) -> Error {
     let before = String::from_utf8_lossy(bytes.get(..valid).unwrap_or_default());
     let found = match bytes.get(valid) {

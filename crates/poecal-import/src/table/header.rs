@@ -80,8 +80,8 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// Columns `…position0` whose joint's name is in the cells of `…name0`, as a recorded `JointState` has them, get these names; of the first
-    /// row, with which all others must agree.
+    /// Replaces names of columns `…position0` by the joint's name in the cells of `…name0`, as in a recorded `JointState`. The first row decides,
+    /// and all others must agree.
     pub(crate) fn take_names(&mut self, cells: &[Cell<'_>]) {
         let mut taken = Vec::new();
         for (index, (header, cell)) in self.cells.iter().zip(cells).enumerate() {
@@ -105,7 +105,7 @@ impl<'a> Header<'a> {
         self.names = taken.into_iter().map(|(index, _, name)| (index, name)).collect();
     }
 
-    /// Takes the names of columns away, which then have no meaning; a file need not have them.
+    /// Removes names of columns, which then have no meaning; a file need not have them.
     pub(crate) fn ignore(&mut self, names: &[String]) {
         for name in names {
             let Some(at) = self.find(name).ok().flatten() else { continue };
@@ -132,7 +132,7 @@ impl<'a> Header<'a> {
         self.units_line.unwrap_or(self.line)
     }
 
-    /// Refuses a column of a number without dimension whose unit is another one than this.
+    /// Refuses a column of a dimensionless number with another unit than this.
     pub(crate) fn only_unit(&self, index: usize, expected: &str) -> Result<()> {
         let Some(cell) = self.cells.get(index) else { return Ok(()) };
         let below = self.units_line.zip(cell.below.as_ref());
@@ -148,7 +148,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// NamedUnit of a column by the header, the line of units, or both.
+    /// Unit of a column by the header, the line of units, or both.
     pub(crate) fn unit(
         &self,
         index: usize,
@@ -201,7 +201,7 @@ impl<'a> Header<'a> {
         self.cells.iter().filter(|cell| cell.name == name).count()
     }
 
-    /// A column as it is in the file.
+    /// A column's name in the file.
     pub(crate) fn text(&self, index: usize) -> &str {
         self.cells.get(index).map_or("", |cell| cell.text.as_str())
     }
@@ -212,7 +212,7 @@ impl<'a> Header<'a> {
         self.error_at(kind, (self.line, column, index), message)
     }
 
-    /// The error of a doubt, where it shows.
+    /// The error of a doubt, at its column.
     pub(crate) fn doubt(&self, doubt: Doubt, inputs: &[Input]) -> Error {
         let DoubtPlace::Head(input) = doubt.place else { return doubt.error(ErrorKind::Unit, self.path) };
         match inputs.get(input).map(|it| it.source) {

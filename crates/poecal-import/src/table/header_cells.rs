@@ -7,13 +7,13 @@ use poecal_numerics::named_unit::NamedUnit;
 /// A column of the header: `name[unit]` or `name (unit)`.
 #[derive(Clone, Debug)]
 pub(crate) struct HeaderCell {
-    /// As in the file.
+    /// Text in the file.
     pub(crate) text: String,
-    /// Without the unit.
+    /// Name without the unit.
     pub(crate) name: String,
-    /// Text in brackets.
+    /// Unit in brackets.
     pub(crate) unit: Option<String>,
-    /// NamedUnit in the line of units, with its column there.
+    /// Unit in the line of units, with its column there.
     pub(super) below: Option<(usize, String)>,
     pub(super) column: usize,
 }
@@ -22,13 +22,13 @@ impl HeaderCell {
     fn new(text: &str, column: usize) -> Self {
         // Round brackets may be part of a name.
         let is_unit = |unit: &str| NamedUnit::parse_any(unit.trim()).is_ok();
-        // A number in brackets is one of a list, as in `q[0]`.
+        // A number in brackets is an index, as in `q[0]`.
         let is_index = |unit: &str| !unit.is_empty() && unit.bytes().all(|it| it.is_ascii_digit());
         let (name, unit) = bracketed(text, '[', ']')
             .filter(|(_, unit)| !is_index(unit.trim()))
             .or_else(|| bracketed(text, '(', ')').filter(|(_, unit)| is_unit(unit)))
             .or_else(|| bracketed(text, '（', '）').filter(|(_, unit)| is_unit(unit)))
-            // As theses have it: `q_1 / deg`.
+            // Theses write `q_1 / deg`.
             .or_else(|| text.rsplit_once('/').filter(|(name, unit)| !name.trim().is_empty() && is_unit(unit)))
             .map_or((text, None), |(name, unit)| (name.trim_end(), Some(unit.trim().to_owned())));
         HeaderCell {
@@ -40,7 +40,7 @@ impl HeaderCell {
         }
     }
 
-    /// Its units as they are written, in brackets and in the line of units.
+    /// Its units, in brackets and in the line of units.
     pub(crate) fn units(&self) -> impl Iterator<Item = &str> {
         self.unit.as_deref().into_iter().chain(self.below.iter().map(|(_, unit)| bare(unit)))
     }
@@ -62,7 +62,7 @@ pub(crate) fn unit_in_name(text: &str, name: &str) -> Option<NamedUnit> {
     }
 }
 
-/// Whether the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
+/// True if the cells below a header are units: one is, and none is a number. (Each is checked when it is needed.)
 pub(crate) fn are_units(cells: &[Cell<'_>]) -> bool {
     cells.iter().any(|cell| NamedUnit::parse_any(bare(cell.raw)).is_ok())
         && !cells.iter().any(|cell| is_number(cell.raw))
@@ -74,7 +74,7 @@ pub(super) fn bare(text: &str) -> &str {
     inside('[', ']').or_else(|| inside('(', ')')).unwrap_or(text).trim()
 }
 
-/// The column of a joint's position beside one of its name: `field.position0` of `field.name0`, and `position[0]` of `name[0]`.
+/// The name of the column of a joint's position, beside one of its name: `field.position0` for `field.name0`, `position[0]` for `name[0]`.
 pub(super) fn beside_name(text: &str) -> Option<String> {
     let end = text.strip_suffix(']').unwrap_or(text);
     let digits = end.len() - end.trim_end_matches(|it: char| it.is_ascii_digit()).len();
@@ -92,7 +92,7 @@ pub(crate) fn is_number(text: &str) -> bool {
 }
 
 pub(crate) fn header_cells(text: &str, cells: &[Cell<'_>]) -> Vec<HeaderCell> {
-    // Counted from cell to cell, since there may be very many.
+    // Counts from cell to cell, since there may be very many.
     let (mut column, mut offset) = (1, 0);
     let cell = |cell: &Cell<'_>| {
         column += text.get(offset..cell.offset).map_or(0, |passed| passed.chars().count());

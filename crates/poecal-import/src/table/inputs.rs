@@ -1,25 +1,25 @@
-//! Numbers of a row as columns make them, in metres and radians.
+//! Numbers of a row, made of columns, in metres and radians.
 
 use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 
 /// A number in each row.
 #[derive(Clone, Debug)]
 pub(crate) struct Input {
-    /// Our name.
+    /// Name in our form.
     pub(crate) name: String,
-    /// Name in messages: the file's column; of a constant our name.
+    /// Name in messages: the file's column; for a constant our name.
     pub(crate) label: String,
     pub(crate) source: InputSource,
     pub(crate) unit: NamedUnit,
     pub(crate) unit_from: UnitSource,
     /// Columns of a sum; `source` is the first of them.
     pub(crate) sum: Vec<Term>,
-    /// What is added to a sum (metres, radians).
+    /// Offset that is added to a sum (metres, radians).
     pub(crate) offset: f64,
 }
 
 impl Input {
-    /// The columns, each with its factor; none of a constant.
+    /// The columns, each with its factor; empty for a constant.
     pub(crate) fn terms(&self) -> Vec<Term> {
         match self.source {
             InputSource::Column(column) if self.sum.is_empty() => {
@@ -30,7 +30,7 @@ impl Input {
         }
     }
 
-    /// The file's column, of a sum the first one; 0 for a constant.
+    /// The file's column, or the first one of a sum; 0 for a constant.
     pub(crate) fn column(&self) -> usize {
         match self.source {
             InputSource::Column(column) => column,
@@ -38,7 +38,7 @@ impl Input {
         }
     }
 
-    /// What is added to the columns (metres, radians): of a constant, it itself.
+    /// Offset that is added to the columns (metres, radians); for a constant, its value.
     pub(crate) fn added(&self) -> f64 {
         match self.source {
             InputSource::Column(_) => self.offset,

@@ -18,7 +18,7 @@ impl fmt::Debug for Kind {
     }
 }
 
-/// All of them.
+/// All kinds.
 pub(crate) fn kinds() -> impl Iterator<Item = Kind> {
     let of =
         |row: &'static TableRow| row.columns.iter().map(|columns| Kind { function: row.function, columns });
@@ -26,7 +26,7 @@ pub(crate) fn kinds() -> impl Iterator<Item = Kind> {
 }
 
 impl Kind {
-    /// The column without which a file has no such rows: of one that names alone make, the last of its names.
+    /// The column without which a file has no such rows; for a kind of names only, the last of its names.
     pub(crate) fn key(&self) -> &'static str {
         let of = match self.columns.from {
             From::Numbers { .. } => self.columns.numbers.first(),
@@ -35,12 +35,12 @@ impl Kind {
         of.copied().unwrap_or_default()
     }
 
-    /// Whether its numbers must be there.
+    /// True if its numbers are required.
     pub(crate) fn needs_numbers(&self) -> bool {
         matches!(self.columns.from, From::Numbers { .. })
     }
 
-    /// What it is measured from, in words. The zero of readings is one of an instrument, so that distances have another one.
+    /// The origin of its measurement, in words. The zero of readings belongs to an instrument, so that distances have another word.
     pub(crate) fn place_word(&self) -> &'static str {
         match self.columns.places.last() {
             Some(_) if self.function.zero_is_unknown && self.needs_numbers() => "anchor of changes",
@@ -63,30 +63,30 @@ pub(crate) fn our_names() -> impl Iterator<Item = &'static str> {
     Role::Ours.words().chain(names())
 }
 
-/// Whether a name has a meaning in every file.
+/// True if a name has a meaning in every file.
 pub(crate) fn is_our_name(name: &str) -> bool {
     our_names().any(|ours| ours == name)
 }
 
-/// Names of all their columns.
+/// Names of the columns of all kinds.
 fn names() -> impl Iterator<Item = &'static str> {
     let words = kinds().filter_map(|kind| kind.columns.word).map(|(column, _)| column);
     kinds().flat_map(|kind| kind.columns.numbers.iter().chain(kind.columns.places).copied()).chain(words)
 }
 
-/// Where a file has a kind: its numbers and standard deviations as indices into the inputs, names and words as columns.
+/// The columns of a kind in a file: its numbers and standard deviations as indices of inputs, names and words as columns.
 #[derive(Clone, Debug)]
 pub(crate) struct KindColumns {
     pub(crate) kind: Kind,
     pub(crate) numbers: Vec<usize>,
     pub(crate) sigmas: Vec<(Quantity, usize)>,
-    /// Columns with the name of its place.
+    /// Columns with the name of its anchor.
     pub(crate) places: Vec<usize>,
     pub(crate) word: Option<usize>,
 }
 
 impl KindColumns {
-    /// What its place is called, and the columns that name it.
+    /// The word for its anchor, and the columns that name it.
     pub(crate) fn place(&self) -> (&'static str, &[usize]) {
         (self.kind.place_word(), &self.places)
     }

@@ -31,17 +31,17 @@ pub(crate) struct ColumnLayout {
     /// Column with the name of a pair of configurations.
     pub(crate) pair: Option<usize>,
     pub(crate) id: Option<usize>,
-    /// Column with the time of a row, and the seconds of one.
+    /// Column with the time of a row, and its unit in seconds.
     pub(crate) time: Option<(usize, f64)>,
     pub(crate) set: SetRule,
     pub(crate) pose: PoseDirection,
-    /// Columns without meaning, each with a name of ours that may have been meant.
+    /// Columns without meaning, each with a name of our form that may have been meant.
     pub(crate) ignored: Vec<(String, Option<String>)>,
     /// Joints with the numbered columns that were taken for them.
     pub(crate) numbered: Option<Vec<(String, String)>>,
-    /// How the joints' readings are made of columns, where they are not one by one.
+    /// Conversion of columns into the joints' readings, if they do not match one to one.
     pub(crate) controller: Option<Controller>,
-    /// Sums that the calibration kept, of a file that has not all of their columns.
+    /// Sums from the calibration, for a file that lacks some of their columns.
     missed: Option<String>,
 }
 
@@ -90,7 +90,7 @@ impl ColumnLayout {
         })
     }
 
-    /// What was understood of the joints' columns that a user should know, a sentence each.
+    /// Notes on the interpretation of the joints' columns for the user, a sentence each.
     pub(crate) fn joint_words(&self) -> Vec<String> {
         let missed = self.missed.as_ref().map(|sums| {
             format!(
@@ -101,7 +101,7 @@ impl ColumnLayout {
         self.numbered_words().into_iter().chain(missed).collect()
     }
 
-    /// Which numbered columns were taken for the joints, in words.
+    /// The numbered columns that were taken for the joints, in words.
     fn numbered_words(&self) -> Option<String> {
         let (first, last) = (self.numbered.as_ref()?.first()?, self.numbered.as_ref()?.last()?);
         Some(format!(
@@ -125,7 +125,7 @@ impl ColumnLayout {
         Ok(ColumnLayout { set, ignored: builder.ignored(), ..Self::of_joints(builder, id, robot) })
     }
 
-    /// The layout of a file that is read for its joints alone.
+    /// The layout of a file that is read only for its joints.
     pub(crate) fn joints(
         header: &Header<'_>,
         robot: &Robot,
@@ -140,7 +140,7 @@ impl ColumnLayout {
         Ok(ColumnLayout { set: set.map_or(SetRule::Unstated, SetRule::Words), ..layout })
     }
 
-    /// The layout of a file that has none of these, and so many columns without meaning.
+    /// The layout of a file without any of these, with these columns without meaning.
     pub(crate) fn without(ignored: Vec<(String, Option<String>)>) -> Self {
         ColumnLayout { ignored, ..ColumnLayout::default() }
     }
@@ -153,7 +153,7 @@ impl ColumnLayout {
     }
 }
 
-/// What says the set of a row.
+/// The source of a row's set.
 fn set_rule(builder: &mut Builder<'_>, options: &ReadOptions, map: &ColumnMap) -> Result<SetRule> {
     let rule = options.train_where.as_ref().or(map.set.as_ref()).cloned();
     let words = builder.optional_text_column("set")?.filter(|_| !options.ignore_sets);

@@ -10,7 +10,7 @@ pub(crate) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The next line, comments and blank ones too.
+    /// The next line, including comments and blank ones.
     fn line(&mut self) -> Option<&'a str> {
         let rest = self.rest?;
         let end = memchr::memchr(self.newline, rest.as_bytes());
@@ -38,7 +38,7 @@ impl<'a> Iterator for Lines<'a> {
 /// Error values of spreadsheets; other lines that begin with `#` are comments.
 const SPREADSHEET_ERRORS: [&str; 7] = ["#N/A", "#NV", "#VALUE!", "#WERT!", "#REF!", "#DIV/0!", "#NAME?"];
 
-/// Whether a line is blank or a comment.
+/// True if a line is blank or a comment.
 fn is_comment(content: &str) -> bool {
     let is_cell = |error: &str| {
         let rest = content.strip_prefix(error);

@@ -1,4 +1,4 @@
-//! Lost beams: measurements without a position.
+//! Beam breaks: measurements without a position.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use poecal_numerics::text::NamedLines;
 /// State of a target in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beam {
-    /// Measured.
+    /// It was measured.
     Seen,
     /// All cells are empty.
     Empty,
@@ -23,11 +23,11 @@ enum Beam {
     Zero,
 }
 
-/// Removes lost beams from a row's numbers: measurements without a position, since the device did not see the target: it is empty, or exactly zero in
-/// all coordinates. True if the row has no measurement then.
+/// Removes beam breaks from a row's numbers: measurements whose position is empty or exactly zero in all coordinates, since the device did not see
+/// the target. True if the row then has no measurement.
 ///
 /// # Errors
-/// [`poecal_numerics::error::ErrorKind::Measurement`] at a lost beam if it is refused (`strict`).
+/// [`poecal_numerics::error::ErrorKind::Measurement`] at a beam break if it is refused (`strict`).
 pub(crate) fn take_out(
     lost: &mut NamedLines,
     row: &Row<'_>,
@@ -40,7 +40,7 @@ pub(crate) fn take_out(
     for target in &inputs.layout.targets {
         match beam(row, target, inputs) {
             Beam::Seen => seen = true,
-            // With several targets in a row, some may not have been measured.
+            // In rows with several targets, some may not have been measured.
             Beam::Empty => {}
             Beam::Zero if strict => return Err(refused(row, target, inputs, zero_words(target))),
             Beam::Zero => {
@@ -61,7 +61,7 @@ pub(crate) fn take_out(
     Ok(!seen)
 }
 
-/// Lost beams of a file that were omitted in words; `None` if there are none.
+/// Omitted beam breaks of a file in words; `None` if there are none.
 #[must_use]
 pub fn lost_words(lost: &NamedLines) -> Option<String> {
     let what = match lost.count {
@@ -72,7 +72,7 @@ pub fn lost_words(lost: &NamedLines) -> Option<String> {
     Some(format!("{what} with an empty or zero position, as of a lost beam ({})", lost.words()))
 }
 
-/// Whether the row has a position of a target.
+/// True if the row has a position of a target.
 pub(crate) fn has_position(target: &TargetLayout, inputs: &Cursor<'_>) -> bool {
     target.position.iter().flatten().any(|&input| inputs.value(input).is_some())
 }
@@ -105,7 +105,7 @@ fn beam(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>) -> Beam {
     if is_none || is_identity() { Beam::Zero } else { Beam::Seen }
 }
 
-/// What a target at zero has.
+/// The cells of a target at zero, in words.
 fn zero_words(target: &TargetLayout) -> &'static str {
     if target.position.is_some() { "the position 0, 0, 0" } else { "0" }
 }
@@ -118,7 +118,7 @@ fn refused(row: &Row<'_>, target: &TargetLayout, inputs: &Cursor<'_>, found: &st
     row.error(inputs.column(first), message)
 }
 
-/// The warning of rows that have some components of a position beside rows that have all.
+/// The warning of rows with some components of a position beside rows with all.
 pub(crate) fn incomplete(path: &Path, rows: &[Observation]) -> Option<String> {
     let is_part = |row: &&Observation| row.measurement.is_part_of_position();
     let lines: NamedLines = rows.iter().filter(is_part).map(|row| row.source.line as usize).collect();

@@ -1,4 +1,4 @@
-//! A file as a table: header and rows with their places.
+//! A file as a table: header and rows with their positions.
 
 mod beginning;
 pub(crate) mod cells;
@@ -46,7 +46,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 use poecal_storage::limits::Limit;
 use poecal_storage::looks_like::model_for_table;
 
-/// Most lines below the header that are checked if it is none.
+/// Largest number of lines below the header that are checked if it is none.
 const LINES_BELOW: usize = 10;
 
 /// A row, valid until the next one is read.
@@ -55,7 +55,7 @@ pub(crate) struct Row<'t> {
     pub(crate) line: usize,
     pub(crate) text: &'t str,
     pub(crate) cells: &'t [Cell<'t>],
-    /// Where it is in the file, if the table was made of another text.
+    /// Positions of its cells in the file, if the table was made of another text.
     places: Option<&'t Places>,
 }
 
@@ -66,11 +66,11 @@ pub(crate) struct Table<'a> {
     /// The line that states the separator, as `sep=;`.
     pub(crate) separator_line: Option<usize>,
     blocks: Blocks<'a>,
-    /// Of rows that were made of another file, where they are in it.
+    /// Positions in the file, for rows that were made of another file.
     places: Option<Places>,
     /// The last line of the header in the blocks.
     header_end: usize,
-    /// Whether the rows of the current block are still to be returned.
+    /// True if the rows of the current block are still to be returned.
     unread: bool,
 }
 
@@ -83,12 +83,12 @@ pub(crate) struct TableRows<'t> {
     places: Option<&'t Places>,
     lines: Lines<'t>,
     cells: Vec<Cell<'t>>,
-    /// Whether no row was returned yet.
+    /// True if no row was returned yet.
     is_first: bool,
 }
 
 impl<'a> Table<'a> {
-    /// Reads the header with the lines of separator and units; the separator is the mapping's, stated or recognised.
+    /// Reads the header with the lines of separator and units; the separator is that of the mapping, a stated or a recognised one.
     pub(crate) fn open(path: &'a Path, mut blocks: Blocks<'a>, map: &ColumnMap) -> Result<Self> {
         blocks.begin()?;
         let none =
@@ -133,42 +133,42 @@ impl<'a> Table<'a> {
         Ok(Table { header, separator, separator_line, blocks, places, header_end, unread: true })
     }
 
-    /// The text before the first block of rows, of blocks that hold what they pass.
+    /// The text before the first block of rows, if the blocks keep it.
     pub(crate) fn passed(&mut self) -> String {
         self.blocks.passed()
     }
 
-    /// Whether the file begins with a byte order mark.
+    /// True if the file begins with a byte order mark.
     pub(crate) fn is_marked(&self) -> bool {
         self.blocks.is_marked()
     }
 
-    /// Whether it was made of a file in another form.
+    /// True if it was made of a file in another form.
     pub(crate) fn is_made(&self) -> bool {
         self.places.is_some()
     }
 
-    /// What the file is that it was made of.
+    /// The form of the file of which it was made.
     pub(crate) fn form(&self) -> Option<&'static str> {
         self.places.as_ref().map(|it| it.form)
     }
 
-    /// Of columns that were made what they were made of.
+    /// The sources of columns that were made of others.
     pub(crate) fn sources(&self) -> Option<&BTreeMap<String, String>> {
         self.places.as_ref().map(|it| &it.sources)
     }
 
-    /// What was understood of a file in another form, in a few words.
+    /// Interpretation of a file in another form, in a few words.
     pub(crate) fn understood(&self) -> Option<String> {
         self.places.as_ref().map(|it| it.understood.clone()).filter(|it| !it.is_empty())
     }
 
-    /// The sheet of a workbook that it was made of.
+    /// True if it was made of a sheet of a workbook.
     pub(crate) fn is_sheet(&self) -> bool {
         self.places.as_ref().is_some_and(|it| it.sheet.is_some())
     }
 
-    /// What was understood of the file, once.
+    /// Takes the notes and warnings on the file.
     pub(crate) fn said(&mut self) -> Said {
         self.blocks.said()
     }
@@ -243,10 +243,10 @@ mod tests {
     }
 
     const PATH: &str = "x.csv";
-    /// More bytes than any text here has, but one.
+    /// A number of bytes that only one text here exceeds.
     const WHOLE: usize = 1 << 18;
 
-    /// Line number and cells of each row, or what is wrong, when so many bytes are read at a time.
+    /// Line number and cells of each row, or the error, if `size` bytes are read at a time.
     fn rows(bytes: &[u8], size: usize) -> std::result::Result<Vec<(usize, Vec<String>)>, String> {
         let path = Path::new(PATH);
         let read = || {
@@ -262,7 +262,7 @@ mod tests {
         read().map_err(|error: Error| error.to_string())
     }
 
-    /// Cuts a good file at every byte, and puts every awkward byte at every place.
+    /// A good file is cut at every byte, and every awkward byte is put at every position.
     #[test]
     fn a_damaged_file_is_the_same_table_however_its_blocks_fall() {
         let good = "\u{feff}# c\r\n\r\n # \u{e9}\r\n\"id\";a[deg];\u{b5}\r\n\"1\";0,5;\u{e9}\r\n\r\n#\r\n2;1;\"q\"\r\n";

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use crate::table::Row;
 use poecal_numerics::error::Result;
 
-/// The names so far. `first` is whether the first row of each kind of name has one, and its place.
+/// The names so far. `first` states for each kind of name whether the first row has one, and its position.
 #[derive(Default)]
 pub(crate) struct Names {
     first: BTreeMap<&'static str, (bool, PathBuf, usize)>,
@@ -16,7 +16,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Index of a row's name, the next one for a name that is new; `what` is named.
+    /// Index of a row's name; a new name gets the next one. `what` is the kind of name.
     pub(crate) fn index(
         &mut self,
         row: &Row<'_>,
@@ -40,7 +40,7 @@ impl Names {
         Ok(index)
     }
 
-    /// Refuses a row that names it where the first did not, or the reverse.
+    /// Refuses a row with a name if the first row has none, or the reverse.
     fn check(
         &mut self,
         row: &Row<'_>,

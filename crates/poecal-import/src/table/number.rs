@@ -19,7 +19,7 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// For numbers with a given decimal sign, or one to be found.
+    /// A reader for numbers with a known decimal sign, or one to be found.
     pub(crate) fn new(stated: Option<DecimalSign>) -> Self {
         Numbers { sign: stated.map(|sign| (sign, None)), buffer: String::new() }
     }
@@ -31,7 +31,7 @@ impl Numbers {
 
     /// A finite number, or the expected form.
     pub(crate) fn parse(&mut self, text: &str, line: usize) -> Result<f64, String> {
-        // Fast path; everything else, `nan` and `inf` too, takes the slow one.
+        // Fast path; everything else, including `nan` and `inf`, takes the slow one.
         if matches!(self.sign, Some((DecimalSign::Point, _)))
             && let Ok(value) = fast_float2::parse::<f64, _>(text)
             && value.is_finite()
@@ -45,7 +45,7 @@ impl Numbers {
                 b',' => commas += 1,
                 b'0'..=b'9' | b'+' | b'-' | b'e' | b'E' => {}
                 _ if is_grouped(text) => return Err(NO_GROUPS.to_owned()),
-                // Rust's own parser would take `nan` and `inf`.
+                // Rust's own parser would accept `nan` and `inf`.
                 _ => return Err("a finite number".to_owned()),
             }
         }
@@ -80,7 +80,7 @@ impl Numbers {
     }
 }
 
-/// A finite number of a cell, with a decimal point or, where there is no other, a decimal comma.
+/// A finite number of a cell, with a decimal point or, if there is none, a decimal comma.
 pub(crate) fn number_of(text: &str) -> Option<f64> {
     let text = text.trim();
     let is_plain = text.bytes().all(|it| it.is_ascii_digit() || b"+-.eE,".contains(&it));
@@ -95,7 +95,7 @@ pub(crate) fn number_of(text: &str) -> Option<f64> {
 
 const NO_GROUPS: &str = "a number with one decimal sign and no thousands separators";
 
-/// Whether a text is digits in groups, as `1 234,5` or `1'234.5`.
+/// True if a text is digits in groups, as `1 234,5` or `1'234.5`.
 fn is_grouped(text: &str) -> bool {
     let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+');
     let separates = |c: char| matches!(c, ' ' | '\u{a0}' | '\u{202f}' | '\u{2009}' | '\'' | '\u{2019}' | '_');

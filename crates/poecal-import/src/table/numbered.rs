@@ -1,4 +1,4 @@
-//! Columns of joints that are not called like the joints: numbered ones, and the joints' names with more before or behind.
+//! Columns of joints without the joints' names: numbered ones, and the joints' names with a prefix or suffix.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use poecal_model::robot::{ReadingKind, Robot};
 
 /// Yaskawa's names of axes, in the order of the chain.
 const YASKAWA: [&str; 2] = ["SLURBT", "SLEURBT"];
-/// Fewest joints of a robot whose numbered columns may be called anything: fewer are coordinates.
+/// Smallest number of joints of a robot whose numbered columns may have any name: fewer are coordinates.
 const FEWEST: usize = 4;
 
 /// Joints with the columns that are taken for them, if no column has the name of a joint.
@@ -30,12 +30,12 @@ pub(crate) fn numbered(
     Some(joints.into_iter().cloned().zip(columns).collect())
 }
 
-/// The columns that have the names of all joints with the same before and behind, if they are the only ones.
+/// The columns with the names of all joints and one common prefix and suffix, if they are the only ones.
 fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
     let cells: Vec<(String, &String)> =
         header.cells.iter().map(|cell| (plain(&cell.name), &cell.name)).collect();
     let first = plain(joints.first()?);
-    // One letter is in many names.
+    // A single letter is in many names.
     if first.chars().count() < 2 {
         return None;
     }
@@ -54,7 +54,7 @@ fn with_more(header: &Header<'_>, joints: &[&String]) -> Option<Vec<String>> {
     only(around.into_iter().filter_map(columns))
 }
 
-/// The columns with numbers from 0 or from 1 and the same before and behind, if they are the only ones.
+/// The columns with numbers from 0 or from 1 and one common prefix and suffix, if they are the only ones.
 fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
     let mut groups: BTreeMap<String, BTreeMap<usize, Option<&String>>> = BTreeMap::new();
     for cell in &header.cells {
@@ -74,7 +74,7 @@ fn by_numbers(header: &Header<'_>, joints: usize) -> Option<Vec<String>> {
         let rest = |word| stem.strip_prefix(word).or_else(|| stem.strip_suffix(word));
         Role::Reading.words().filter_map(rest).any(|rest| Role::Joint.has(rest))
     };
-    // Whatever they are called, one for each joint.
+    // Columns with any name, one for each joint.
     let is_any = |stem: &str| {
         joints >= FEWEST && !stem.is_empty() && !Role::Other.is_in(stem) && !Role::InStatistic.is_in(stem)
     };
@@ -101,7 +101,7 @@ fn split_number(name: &str) -> Option<(String, usize)> {
     Some((letters, number.parse().ok()?))
 }
 
-/// The only one.
+/// The item of an iterator that has exactly one.
 fn only<T>(mut all: impl Iterator<Item = T>) -> Option<T> {
     let found = all.next()?;
     all.next().is_none().then_some(found)

@@ -15,7 +15,7 @@ const QUATERNION_TOLERANCE: f64 = 1e-2;
 
 /// Largest deviation of a matrix's rows from lengths of 1 and right angles.
 const MATRIX_TOLERANCE: f64 = 1e-2;
-/// Most columns of a form.
+/// Largest number of columns of a form.
 pub(crate) const MOST_PARTS: usize = 9;
 
 /// Rotation from three angles, four quaternion parts, or the nine numbers of a matrix.
@@ -27,7 +27,7 @@ pub(crate) enum OrientationForm {
     QuaternionWxyz,
     /// The rotation's matrix, row by row.
     MatrixByRows,
-    /// The same, column by column.
+    /// The rotation's matrix, column by column.
     MatrixByColumns,
     /// Three angles.
     Angles(Angles),
@@ -62,11 +62,11 @@ const NAMED: [Named; 6] = [
 ];
 
 impl OrientationForm {
-    /// Axis times angle.
+    /// Rotation vector: axis times angle.
     pub(crate) const ROTATION_VECTOR: Self = OrientationForm::Angles(Angles::RotationVector);
     /// URDF's roll, pitch, yaw.
     pub(crate) const ROLL_PITCH_YAW: Self = OrientationForm::Angles(Angles::ROLL_PITCH_YAW);
-    /// Forms that columns have by our names.
+    /// Forms of columns with our names.
     pub(crate) const BY_NAME: [Self; 3] = [Self::QuaternionXyzw, Self::ROTATION_VECTOR, Self::ROLL_PITCH_YAW];
 
     /// Forms that have a name of their own, first the most frequent.
@@ -78,7 +78,7 @@ impl OrientationForm {
         NAMED.iter().find(|it| it.0 == self)
     }
 
-    /// As a mapping has it.
+    /// Name in a mapping.
     pub(crate) fn mapped(self) -> String {
         match (self, self.named()) {
             (OrientationForm::Angles(angles), None) => angles.to_string(),
@@ -96,7 +96,7 @@ impl OrientationForm {
         if self.len() == 3 { Unit::Radian } else { Unit::One }
     }
 
-    /// Column names in our own files, in order; empty for matrices and Euler angles, which these do not have.
+    /// Column names in our own files, in order; empty for matrices and Euler angles, which these files do not have.
     pub(crate) fn own_columns(self) -> &'static [&'static str] {
         let is_own = self == Self::QuaternionWxyz || Self::BY_NAME.contains(&self);
         if is_own { self.part_names() } else { &[] }
@@ -107,7 +107,7 @@ impl OrientationForm {
         self.named().map_or(&["first angle", "second angle", "third angle"], |it| it.3)
     }
 
-    /// The rotation of the columns' values (radians, quaternion parts or a matrix), or what was found and expected.
+    /// The rotation of the columns' values (radians, quaternion parts or a matrix), or the text that was found and the expected one.
     pub(crate) fn rotation(self, values: &[f64]) -> std::result::Result<Matrix3<f64>, String> {
         let all: [f64; MOST_PARTS] = std::array::from_fn(|part| values.get(part).copied().unwrap_or(0.0));
         let [a, b, c, d, ..] = all;
@@ -131,7 +131,7 @@ fn quaternion(q: Vector4<f64>) -> std::result::Result<Matrix3<f64>, String> {
     Ok(rotation::from_quaternion_xyzw(&q))
 }
 
-/// The rotation nearest to a matrix that is one but for rounding.
+/// The rotation nearest to a matrix that is a rotation except for rounding.
 fn matrix(found: &Matrix3<f64>) -> std::result::Result<Matrix3<f64>, String> {
     let off = (found.transpose() * found - Matrix3::identity()).amax();
     if off > MATRIX_TOLERANCE || off.is_nan() {
@@ -143,7 +143,7 @@ fn matrix(found: &Matrix3<f64>) -> std::result::Result<Matrix3<f64>, String> {
     if found.determinant() < 0.0 {
         return Err("found the matrix of a reflection, expected that of a rotation: an axis is mirrored, or two columns are exchanged".to_owned());
     }
-    // Each step squares what is off.
+    // Each step squares the deviation.
     Ok((0..4).fold(*found, |it, _| rotation::orthonormalized(&it)))
 }
 
@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn matrices_are_those_of_rotations() {
         let turned = rotation::from_rpy(0.3, -0.5, 1.1);
-        // As files have it, with six decimals.
+        // Files state six decimals.
         let rounded = turned.map(|it| (it * 1e6).round() * 1e-6);
         let by_columns: Vec<f64> = rounded.iter().copied().collect();
         let by_rows: Vec<f64> = rounded.transpose().iter().copied().collect();

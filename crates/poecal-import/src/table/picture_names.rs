@@ -1,4 +1,4 @@
-//! Which names of pictures of two files are of the same picture.
+//! Matching of the names of pictures in two files.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ pub(crate) fn number_at_end(name: &str) -> Option<u64> {
     stem.get(start.len()..)?.parse().ok()
 }
 
-/// Of names with a number at their end the one of each number, if no other has it.
+/// The name for each number at the end; `None` if several names have the number.
 fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Option<&'a String>> {
     let mut found: BTreeMap<u64, Option<&String>> = BTreeMap::new();
     for name in names {
@@ -23,12 +23,12 @@ fn by_number<'a>(names: impl Iterator<Item = &'a String>) -> BTreeMap<u64, Optio
     found
 }
 
-/// Which names of another file are of the same pictures.
+/// Names of another file that belong to the same pictures.
 pub(crate) struct Partners<'a> {
     others: BTreeSet<&'a String>,
-    /// Names that are not the same, and end in the same number.
+    /// Names that differ, and end in the same number.
     pub(crate) alike: BTreeMap<&'a String, &'a String>,
-    /// The first of these, by its number.
+    /// The first of these pairs.
     first: Option<(&'a String, &'a String)>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Partners<'a> {
         Partners { others, alike: pairs.into_iter().collect(), first }
     }
 
-    /// What was taken for the same by its number, of so many, in words.
+    /// The pictures that were matched by number, of `all`, in words.
     pub(crate) fn words(&self, what: &str, all: usize) -> Option<String> {
         let ((name, other), some) = (self.first?, self.alike.len());
         Some(format!(
@@ -47,13 +47,13 @@ impl<'a> Partners<'a> {
         ))
     }
 
-    /// The other file's name of a picture: the same, or that with the same number.
+    /// The other file's name of a picture: the same, or the one with the same number.
     pub(crate) fn partner(&self, name: &String) -> Option<&'a String> {
         self.others.get(name).or_else(|| self.alike.get(name)).copied()
     }
 }
 
-/// Of names that the other file does not have, those that end in the same number as one of its names, each once in its file.
+/// Pairs of names without an equal in the other file that end in the same number, each once in its file.
 fn same_numbers<'a>(
     own: &BTreeSet<&'a String>,
     others: &BTreeSet<&'a String>,

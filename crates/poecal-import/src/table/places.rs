@@ -1,22 +1,22 @@
-//! Where the rows of a table are in the file that it was made of.
+//! Positions of the rows of a table in the file of which it was made.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
 use poecal_numerics::error::{Error, ErrorKind};
 
-/// Places of the rows and columns of a table that was made of another file.
+/// Positions of the rows and columns of a table that was made of another file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places {
     /// The line of the file of each line of the table.
     pub(crate) lines: Vec<usize>,
     /// The sheet of a workbook.
     pub(crate) sheet: Option<Sheet>,
-    /// What the file is, as in "a workbook".
+    /// Title of the file, as in "a workbook".
     pub(crate) form: &'static str,
-    /// What was understood of it, in a few words.
+    /// Interpretation of the file, in a few words.
     pub(crate) understood: String,
-    /// Of columns of the table what they were made of, where that has another name in the file.
+    /// Sources of columns of the table that have another name in the file.
     pub(crate) sources: BTreeMap<String, String>,
 }
 

@@ -1,14 +1,14 @@
-//! What columns are called: our names, and those of makers, recorders, cameras and scripts around them.
+//! Names of columns: ours, and those of makers, recorders, cameras and scripts around them.
 //!
-//! A new word is a word in a row of [`ROLES`]; a maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which `conventions.rs` takes
-//! beside quaternions, vectors and matrices.
+//! A new word goes into a row of [`ROLES`]. A maker's angles are a row of [`MAKERS`](poecal_arm::lie::angles::MAKERS), which `conventions.rs` uses
+//! with quaternions, vectors and matrices.
 
 use poecal_numerics::named_unit::NamedUnit;
 
-/// What a column is for, or what a word in its name says.
+/// Role of a column, or of a word in its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// Has a meaning in every file of measurements, by exactly this name.
+    /// Meaning in every file of measurements, by exactly this name.
     Ours,
     /// The readings of a numbered joint, with its number.
     Joint,
@@ -16,7 +16,7 @@ pub(crate) enum Role {
     Time,
     /// The picture of a row.
     Picture,
-    /// The same, where nothing else names the row.
+    /// The picture of a row, if nothing else names the row.
     Frame,
     /// The name of a row.
     Row,
@@ -28,43 +28,43 @@ pub(crate) enum Role {
     PixelSigma,
     Camera,
     Board,
-    /// The name of a point in a file of boards.
+    /// Name of a point in a file of boards.
     BoardPoint,
-    /// Before x, y and z: the place of a corner on its board.
+    /// Word before x, y and z: the position of a corner on its board.
     OnBoard,
-    /// Before a part of a pose: the arm's.
+    /// Word before a part of a pose: the arm's.
     OfArm,
-    /// Before a part of a pose: what the camera saw.
+    /// Word before a part of a pose: the target's, which the camera saw.
     OfTarget,
-    /// In a key, or in the name of a file or a matrix: the arm's poses.
+    /// Word in a key, or in the name of a file or a matrix: the arm's poses.
     KeyOfArm,
-    /// The same of the target's, unless a word before it is the arm's.
+    /// Word in such a name: the target's poses, unless a word before it is the arm's.
     KeyOfTarget,
-    /// Before an axis, by its letter or its number: a part of a pose, whose name in a convention begins so.
+    /// Word before an axis, by its letter or its number: the beginning of the name of a part of a pose in a convention.
     Part(&'static str),
-    /// Before an axis by its letter alone: the place of a pose.
+    /// Word before an axis by its letter alone: the position of a pose.
     Place,
-    /// Beside a joint: a reading.
+    /// Word beside a joint: a reading.
     Reading,
-    /// Beside a joint or a position: what was wanted, and other quantities.
+    /// Word beside a joint or a position: a commanded value, or another quantity.
     Other,
-    /// In the name of a joint.
+    /// Word in the name of a joint.
     InJoint,
-    /// In the name of what was measured.
+    /// Word in the name of a measurement.
     InMeasured,
-    /// In the name of a column that says how good another one is.
+    /// Word in the name of a column with the quality of another one.
     InStatistic,
-    /// Before x, y and z without anything between, in a file whose columns are guessed.
+    /// Word before x, y and z without anything between, in a file whose columns are guessed.
     Guessed,
     /// The coordinates of a position that is guessed.
     Axes,
-    /// A set of coordinates that was wanted or computed.
+    /// A set of coordinates that was commanded or computed.
     NominalSet,
     /// A set of coordinates that was measured.
     MeasuredSet,
 }
 
-/// Words of each role in small letters and digits, but for our own; the first that a file has is meant.
+/// Words of each role in small letters and digits, except our own; the first one that a file has applies.
 const ROLES: &[(Role, &str)] = &[
     (
         Role::Ours,
@@ -127,17 +127,17 @@ impl Role {
         self.rows().flat_map(|row| row.split(' '))
     }
 
-    /// Whether a name of letters and digits is one of its words.
+    /// True if a name of letters and digits is one of its words.
     pub(crate) fn has(self, name: &str) -> bool {
         self.words().any(|word| word == name)
     }
 
-    /// Whether a name has one of its words in it.
+    /// True if a name contains one of its words.
     pub(crate) fn is_in(self, name: &str) -> bool {
         self.words().any(|word| name.contains(word))
     }
 
-    /// What a name begins with of a part of a pose, and what is behind it.
+    /// The beginning of a name that belongs to a part of a pose, and the rest.
     pub(crate) fn part(name: &str) -> Option<(&'static str, &str)> {
         ROLES.iter().find_map(|(role, words)| {
             let Role::Part(part) = role else { return None };
@@ -146,17 +146,17 @@ impl Role {
     }
 }
 
-/// Letters and digits of a name, small.
+/// Letters and digits of a name, in small letters.
 pub(crate) fn plain(name: &str) -> String {
     name.chars().filter(|it| it.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// A unit as names of columns have it, in letters of any size.
+/// The unit of a word in the name of a column; case does not matter.
 pub(crate) fn unit_of(word: &str) -> Option<NamedUnit> {
     NamedUnit::parse_any(word).or_else(|_| NamedUnit::parse_any(&word.to_lowercase())).ok()
 }
 
-/// The name of a column without the unit that it ends with, as `x_mm`, and that unit.
+/// The name of a column without the unit at its end, as `x_mm`, and that unit.
 pub(crate) fn without_unit(name: &str) -> (&str, Option<NamedUnit>) {
     let parts = name.rsplit_once(|it: char| !it.is_alphanumeric() && it != '°');
     let found = parts.and_then(|(stem, word)| Some((stem, unit_of(word)?)));

@@ -15,7 +15,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::measurement::{From, Measurement, Stated};
 use poecal_numerics::error::Result;
 
-/// Expected cells of an incomplete position that is one of a pose, or of a row with nothing else.
+/// Expected cells of an incomplete position that belongs to a pose, or to a row with nothing else.
 const EMPTY: &str = "a position: where none was measured, leave all of its cells empty";
 
 /// Measurement of a target in the current row; `None` if an optional one is missing.
@@ -112,7 +112,7 @@ pub(crate) fn component_noise(
 }
 
 impl KindColumns {
-    /// Name of the place of a row; `None` if no cell names it.
+    /// Name of the anchor of a row; `None` if no cell names it.
     pub(crate) fn place_name<'r>(&self, row: &Row<'r>) -> Option<Cow<'r, str>> {
         let mut parts = self.places.iter().filter_map(|&at| row.cells.get(at)).map(|cell| cell.text());
         let first = parts.next()?;
@@ -124,7 +124,7 @@ impl KindColumns {
         Some(joined).filter(|name| !name.is_empty())
     }
 
-    /// Whether the row's word is that of the kind; of none, the usual one.
+    /// True if the row's word is that of the kind; without a word, the usual one applies.
     fn has_word(&self, row: &Row<'_>, usual: PlaneContact) -> Result<bool> {
         let Some((column, own)) = self.kind.columns.word else { return Ok(true) };
         let cell = self.word.and_then(|at| Some((at, row.cells.get(at)?.text())));
@@ -139,7 +139,7 @@ impl KindColumns {
         Ok(text == own)
     }
 
-    /// Whether a row has a measurement of the kind. `has_position` says whether it has a position too.
+    /// True if a row has a measurement of the kind; `has_position` is true if it has a position too.
     pub(crate) fn is_measured(&self, row: &Row<'_>, inputs: &Cursor<'_>, has_position: bool) -> bool {
         let has_number = || self.numbers.iter().any(|&input| inputs.value(input).is_some());
         match self.kind.columns.from {
@@ -155,13 +155,13 @@ impl KindColumns {
         }
     }
 
-    /// Whether its numbers in a row are those of a lost beam.
+    /// True if its numbers in a row are those of a beam break.
     pub(crate) fn is_lost(&self, inputs: &Cursor<'_>) -> bool {
         self.kind.columns.from == (From::Numbers { above_zero: true })
             && self.numbers.iter().all(|&input| inputs.value(input) == Some(0.0))
     }
 
-    /// The measurement of a row, with what the row states of its noise; `None` if it has none.
+    /// The measurement of a row, with its stated noise; `None` if it has none.
     pub(crate) fn measurement(
         &self,
         row: &Row<'_>,

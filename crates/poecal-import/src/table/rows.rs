@@ -1,4 +1,4 @@
-//! The rows of a table, one after the other, and what their cells say.
+//! The rows of a table, one after the other, and their cells.
 
 use std::borrow::Cow;
 use std::fmt::Arguments;
@@ -9,11 +9,11 @@ use super::number::Numbers;
 use super::{Row, Table, TableRows, refuse_more_rows};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Lines below the first row that show whether all rows have another number of cells than the header.
+/// Number of lines below the first row that show whether all rows have another number of cells than the header.
 const NEAR: usize = 10;
 
 impl Table<'_> {
-    /// Hands over each row, as many as are held in memory, and counts them; there may be none.
+    /// Passes each row to `take`, as many as are held in memory, and counts them; there may be none.
     pub(crate) fn each_row(&mut self, mut take: impl FnMut(&Row<'_>) -> Result<()>) -> Result<usize> {
         let mut count = 0;
         while let Some(mut rows) = self.next_block()? {
@@ -26,7 +26,7 @@ impl Table<'_> {
         Ok(count)
     }
 
-    /// The same of a table that has a row; `expected` says what it would be.
+    /// Passes the rows of a table that must have one; `expected` describes it.
     pub(crate) fn some_rows(
         &mut self,
         expected: &str,
@@ -84,7 +84,7 @@ impl TableRows<'_> {
         }
     }
 
-    /// Whether a row has only another number of empty cells at its end than the header.
+    /// True if a row differs from the header only in the number of empty cells at its end.
     fn is_ended_otherwise(&self, expected: usize) -> bool {
         let found = self.cells.len();
         let more = self.cells.get(expected..).unwrap_or_default();
@@ -94,7 +94,7 @@ impl TableRows<'_> {
             && missing.iter().all(|cell| cell.text.is_empty())
     }
 
-    /// Advice for a row with another number of cells than the header.
+    /// Remedy for a row with another number of cells than the header.
     fn count_hint(&self, text: &str) -> String {
         let (found, expected) = (self.cells.len(), self.header.cells.len());
         let mut cells = Vec::new();
@@ -130,22 +130,22 @@ impl TableRows<'_> {
 }
 
 impl<'t> Row<'t> {
-    /// The text of a cell as it is written; none of one that is not there.
+    /// The text of a cell in the file; empty if there is no such cell.
     pub(crate) fn raw(&self, at: usize) -> &str {
         self.cells.get(at).map_or("", |cell| cell.raw)
     }
 
-    /// The text in the cell of a column that is there.
+    /// The text in the cell of a column that exists.
     pub(crate) fn cell(&self, column: Option<usize>) -> Option<Cow<'t, str>> {
         Some(self.cells.get(column?)?.text())
     }
 
-    /// The same without blanks around it; empty of a column that is not there.
+    /// The text without blanks around it; empty if the column does not exist.
     pub(crate) fn word(&self, column: Option<usize>) -> String {
         self.cell(column).unwrap_or_default().trim().to_owned()
     }
 
-    /// The number of a cell; `of` says in an error what it is.
+    /// The number of a cell; `of` describes it in an error.
     pub(crate) fn number(&self, at: usize, numbers: &mut Numbers, of: Arguments<'_>) -> Result<f64> {
         let text = self.cell(Some(at)).unwrap_or_default();
         let found = numbers.parse(text.trim(), self.line);

@@ -16,13 +16,13 @@ use poecal_storage::source::{self, Input, unreadable};
 const BLOCK: usize = 1 << 18;
 /// Longest line, bytes.
 const LONGEST_LINE: usize = 16 << 20;
-/// Fewest lines of the first block.
+/// Smallest number of lines of the first block.
 const FIRST_LINES: usize = 64;
 
 /// Source of a text.
 enum TextSource {
     File(Hashing<Input>),
-    /// Made of other files, with the checksum of their bytes.
+    /// Text made of other files, with the checksum of their bytes.
     Made(Box<dyn Read + Send>, Option<String>),
 }
 
@@ -42,19 +42,19 @@ pub(crate) struct Blocks<'a> {
     newline: Option<u8>,
     /// Number of lines before the current block.
     lines: usize,
-    /// Whether the text begins with a byte order mark.
+    /// True if the text begins with a byte order mark.
     is_marked: bool,
-    /// The blocks before the current one, where they are asked for.
+    /// The blocks before the current one, if they are asked for.
     passed: Option<String>,
-    /// Whether bytes beyond ASCII are Windows-1252, and not UTF-8.
+    /// True if bytes beyond ASCII are Windows-1252, and not UTF-8.
     is_windows: Option<bool>,
-    /// Where the lines of a text that was made of a file are in it.
+    /// Positions in the file of the lines of a text that was made of it.
     places: Option<Places>,
-    /// What was understood of the file.
+    /// Notes and warnings on the file.
     said: Said,
 }
 
-/// What was understood of a file, a sentence each.
+/// Notes and warnings on the interpretation of a file, a sentence each.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Said {
     pub(crate) notes: Vec<String>,
@@ -68,7 +68,7 @@ impl<'a> Blocks<'a> {
         Ok(Blocks::new(path, expected, source, BLOCK))
     }
 
-    /// The same, and of a folder the table that its files make.
+    /// The blocks of a file, or of the table that the files of a folder make.
     pub(crate) fn open_or_join(path: &'a Path, expected: &'a str) -> Result<Self> {
         if !configurations::is_folder(path) {
             return Blocks::open(path, expected);
@@ -89,7 +89,7 @@ impl<'a> Blocks<'a> {
         Blocks::new(path, expected, TextSource::Made(text, sha256), BLOCK)
     }
 
-    /// The same with the places of its lines, and what was understood.
+    /// Adds the positions of its lines, and the notes and warnings.
     pub(crate) fn with_places(self, places: Places, said: Said) -> Self {
         Blocks { places: Some(places), said, ..self }
     }
@@ -99,22 +99,22 @@ impl<'a> Blocks<'a> {
         Blocks::new(path, expected, TextSource::File(Hashing::new(input)), BLOCK)
     }
 
-    /// The places of the lines in the file that they were made of.
+    /// The positions of the lines in the file of which they were made.
     pub(crate) fn places(&self) -> Option<&Places> {
         self.places.as_ref()
     }
 
-    /// Adds what was understood of the file.
+    /// Adds a note on the file.
     pub(crate) fn say(&mut self, note: String) {
         self.said.notes.push(note);
     }
 
-    /// What was understood of the file, once.
+    /// Takes the notes and warnings on the file.
     pub(crate) fn said(&mut self) -> Said {
         std::mem::take(&mut self.said)
     }
 
-    /// The blocks of a text that messages call `path`, of so many bytes per read.
+    /// The blocks of a text with the name `path` in messages, of `size` bytes per read.
     #[cfg(test)]
     pub(crate) fn sized(path: &'a Path, text: &[u8], size: usize) -> Self {
         Blocks::new(path, "a table (CSV)", TextSource::Made(Box::new(Cursor::new(text.to_vec())), None), size)
@@ -161,7 +161,7 @@ impl<'a> Blocks<'a> {
                 self.rest.extend(bytes.drain(known + end + 1..));
             }
             let is_text = memchr::memchr(0, bytes.get(known..).unwrap_or_default()).is_none();
-            // The first block shows what the file is.
+            // The first block determines the form of the file.
             let is_enough = self.newline.is_some()
                 || memchr::memchr_iter(b'\n', &bytes).take(FIRST_LINES).count() == FIRST_LINES;
             if end.is_some() && is_enough || more == 0 || !is_text {
@@ -185,7 +185,7 @@ impl<'a> Blocks<'a> {
         if is_first {
             self.newline = Some(if memchr::memchr(b'\n', &bytes).is_some() { b'\n' } else { b'\r' });
         }
-        // Valid UTF-8, but no text: rather UTF-16 without a byte order mark.
+        // The bytes are valid UTF-8, but no text: more likely UTF-16 without a byte order mark.
         if let Some(at) = memchr::memchr(0, &bytes) {
             return Err(not_utf8(self.path, &bytes, at, self.lines));
         }
@@ -197,7 +197,7 @@ impl<'a> Blocks<'a> {
         Ok(!self.text.is_empty())
     }
 
-    /// The text of bytes: UTF-8, or Windows-1252 where the first bytes beyond ASCII are no UTF-8.
+    /// The text of bytes: UTF-8, or Windows-1252 if the first bytes beyond ASCII are no UTF-8.
     fn text_of(&mut self, bytes: Vec<u8>) -> Result<String> {
         if self.is_windows == Some(true) {
             return of_windows_1252(&bytes).map_err(|at| not_utf8(self.path, &bytes, at, self.lines));
@@ -248,7 +248,7 @@ impl<'a> Blocks<'a> {
         if self.newline.is_none() { self.advance() } else { Ok(!self.text.is_empty()) }
     }
 
-    /// The current block with all that follow, of a text that is held whole.
+    /// The current block with all following ones, of a text that is held whole.
     pub(crate) fn rest(&mut self) -> Result<String> {
         self.begin()?;
         let mut all = String::new();
@@ -272,12 +272,12 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// The same, which holds what it has passed until that is taken.
+    /// Makes the blocks keep the passed text until it is taken.
     pub(crate) fn keeping(self) -> Self {
         Blocks { passed: Some(String::new()), ..self }
     }
 
-    /// The text before the current block, once.
+    /// Takes the text before the current block.
     pub(crate) fn passed(&mut self) -> String {
         self.passed.take().unwrap_or_default()
     }
@@ -287,7 +287,7 @@ impl<'a> Blocks<'a> {
         &self.text
     }
 
-    /// Whether the text begins with a byte order mark, which no block has.
+    /// True if the text begins with a byte order mark, which no block has.
     pub(crate) fn is_marked(&self) -> bool {
         self.is_marked
     }
@@ -302,7 +302,7 @@ impl<'a> Blocks<'a> {
 mod tests {
     use super::*;
 
-    /// The lines but for the first `skip`, and the number of blocks, when so many bytes are read at a time.
+    /// The lines without the first `skip`, and the number of blocks, if `size` bytes are read at a time.
     fn lines(text: &str, skip: usize, size: usize) -> (Vec<(usize, String)>, usize) {
         let mut blocks = Blocks::sized(Path::new("x.csv"), text.as_bytes(), size);
         let (mut found, mut count) = (Vec::new(), 0);
@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(lines("#N/A,1\n#NAME\n#N/A 1", 0, BLOCK).0, [(1, "#N/A,1".to_owned())]);
     }
 
-    /// Comments and blank lines, some before all others, a byte order mark, and characters of several bytes.
+    /// The text has comments and blank lines, some before all others, a byte order mark, and characters of several bytes.
     #[test]
     fn lines_are_the_same_however_the_blocks_fall() {
         let line = |k: usize| match k {
@@ -341,7 +341,7 @@ mod tests {
                     let (found, count) = lines(&text, 0, size);
                     println!("{newline:?}, {size} bytes at a time: {} lines in {count} blocks", found.len());
                     assert!(found == expected, "{newline:?} {size}");
-                    // A block ends with a line, none of more than 200 bytes; where there is no `\n`, with the text.
+                    // A block ends with a line, none of more than 200 bytes; without `\n`, it ends with the text.
                     let least = if newline == "\r" { 1 } else { text.len() / (size + 200) };
                     assert!(count >= least, "{newline:?} {size}: {count}");
                 }
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn a_file_that_fails_while_being_read_is_told() {
-        /// What breaks off.
+        /// A reader that breaks off.
         struct Broken;
         impl Read for Broken {
             fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {

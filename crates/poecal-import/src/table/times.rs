@@ -2,11 +2,11 @@
 
 use super::roles::{Role, plain};
 
-/// Units of times, with their seconds.
+/// Units of times, with their sizes in seconds.
 const UNITS: [(&str, f64); 6] =
     [("s", 1.0), ("sec", 1.0), ("seconds", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)];
 
-/// Seconds of one in a column of times with this name and unit; `None` of another column.
+/// Unit, in seconds, of a column of times with this name and unit; `None` for another column.
 pub(crate) fn seconds_of(name: &str, unit: Option<&str>) -> Option<f64> {
     let plain = plain(name);
     let own = |unit: &str| UNITS.iter().find(|it| it.0.eq_ignore_ascii_case(unit)).map(|it| it.1);

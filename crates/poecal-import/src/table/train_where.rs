@@ -12,7 +12,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 pub struct FitWhere {
     /// Name of the column, with or without its unit.
     pub column: String,
-    /// Values that mark a row to fit.
+    /// Values that mark a training row.
     #[serde(rename = "fit")]
     pub values: Vec<String>,
 }

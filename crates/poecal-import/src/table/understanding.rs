@@ -1,4 +1,4 @@
-//! How a file was read, for the user to check.
+//! Interpretation of a file, for the user to check.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,10 +15,10 @@ use crate::table::Table;
 use poecal_numerics::named_unit::UnitSource;
 use poecal_numerics::text::NamedLines;
 
-/// Source of one of our columns.
+/// Source of a column of our form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnUnderstanding {
-    /// Our name: `joint1`, `x`, `smr1 x`, …
+    /// Name in our form: `joint1`, `x`, `smr1 x`, …
     pub name: String,
     /// The file's column, or sum of columns; `None` for a constant of the mapping.
     pub column: Option<String>,
@@ -32,18 +32,18 @@ pub struct ColumnUnderstanding {
     pub max: Option<f64>,
 }
 
-/// How a file was read, as `poecal check --json` prints it.
+/// Interpretation of a file, as printed by `poecal check --json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileUnderstanding {
-    /// File name as given by the user.
+    /// File name as passed by the user.
     pub path: PathBuf,
-    /// What the file is, of one in another form than ours.
+    /// Title of a file in another form than ours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub form: Option<&'static str>,
-    /// What was understood of one in another form, in a few words.
+    /// Interpretation of a file in another form, in a few words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub understood: Option<String>,
-    /// Number of rows, those of lost beams included.
+    /// Number of rows, including beam breaks.
     pub rows: usize,
     /// Number of position-only measurements.
     pub points: usize,
@@ -52,7 +52,7 @@ pub struct FileUnderstanding {
     /// Number of other measurements, by their quantity.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub others: BTreeMap<&'static str, usize>,
-    /// Lost beams: measurements without a position, which were omitted.
+    /// Beam breaks: measurements without a position, which were omitted.
     pub lost: NamedLines,
     /// Separator of cells.
     pub separator: Separator,
@@ -62,7 +62,7 @@ pub struct FileUnderstanding {
     pub units_line: Option<usize>,
     /// Decimal sign.
     pub decimal_sign: DecimalSign,
-    /// Our columns with their sources.
+    /// Columns of our form with their sources.
     pub columns: Vec<ColumnUnderstanding>,
     /// Form of the orientation columns; `None` without orientation.
     pub orientation: Option<String>,
@@ -73,7 +73,7 @@ pub struct FileUnderstanding {
 }
 
 impl FileUnderstanding {
-    /// Of a table, with its number of rows; what was measured in them follows.
+    /// The interpretation of a table, with its number of rows; the numbers of measurements follow.
     pub(crate) fn new(table: &Table<'_>, cursor: &Cursor<'_>, rows: usize) -> Self {
         FileUnderstanding {
             path: table.header.path.to_path_buf(),
@@ -99,7 +99,7 @@ impl FileUnderstanding {
     }
 }
 
-/// Our columns with their sources.
+/// Columns of our form with their sources.
 fn columns(table: &Table<'_>, layout: &ColumnLayout, ranges: &[Range]) -> Vec<ColumnUnderstanding> {
     let (header, sources) = (&table.header, table.sources());
     let text_of = |index: usize| {

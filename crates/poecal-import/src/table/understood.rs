@@ -1,4 +1,4 @@
-//! What a file was understood as, while it is read.
+//! Interpretation of a file, collected while it is read.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,14 +13,14 @@ use poecal_model::robot::Controller;
 use poecal_numerics::error::{ErrorKind, Result, shown};
 use poecal_numerics::text::NamedLines;
 
-/// What rows are of that have some components of a position.
+/// Name of rows with some components of a position.
 const COMPONENTS: &str = "single components";
 
-/// Most ignored columns in a warning.
+/// Largest number of ignored columns in a warning.
 const IGNORED_NAMED: usize = 30;
 
 impl Reader<'_> {
-    /// Says how a file was understood.
+    /// Records the interpretation of a file.
     pub(crate) fn understand(
         &mut self,
         table: &Table<'_>,
@@ -49,13 +49,13 @@ impl Reader<'_> {
         self.found.notes.extend(turns::note(layout).map(|note| format!("{}: {note}", path.display())));
         let mut own =
             FileUnderstanding { points, poses, others, lost, ..FileUnderstanding::new(table, inputs, rows) };
-        // Joints whose readings another file has are no columns of this one.
+        // Joints whose readings are in another file are no columns of this one.
         own.columns.drain(..if self.readings.is_some() { self.found.data.reading_names().len() } else { 0 });
         self.found.understood.push(own);
         Ok(())
     }
 
-    /// How the files' readings are made of columns, which must be the same in all.
+    /// Takes the conversion of columns into readings, which must be the same in all files.
     pub(crate) fn take_controller(&mut self, path: &Path, layout: &ColumnLayout) -> Result<()> {
         let words = |it: &Option<Controller>| it.as_ref().map(|it| (it.third_axis, it.words()));
         let is_first = self.found.understood.is_empty();
@@ -92,7 +92,7 @@ impl Reader<'_> {
         self.warn_of_joints_beyond(path, layout);
     }
 
-    /// Says that a file has readings of joints beyond the tip link.
+    /// Warns that a file has readings of joints beyond the tip link.
     fn warn_of_joints_beyond(&mut self, path: &Path, layout: &ColumnLayout) {
         let of_column = |name: &str| {
             let plain = name.split('[').next().unwrap_or(name).trim();

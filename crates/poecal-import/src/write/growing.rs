@@ -1,4 +1,4 @@
-//! A measurement file that grows while it is read.
+//! A measurement file that grows while it is being read.
 
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use poecal_storage::{disk, source_text};
 /// Bytes that show whether a file has text.
 const HEAD: u64 = 4096;
 
-/// A measurement file that is read again and again while lines are added to it.
+/// A measurement file that is read repeatedly while lines are added to it.
 ///
 /// ```no_run
 /// use poecal_import::{GrowingFile, ReadOptions};
@@ -25,21 +25,21 @@ const HEAD: u64 = 4096;
 pub struct GrowingFile {
     path: PathBuf,
     known: String,
-    /// Whether a file that is missing, empty or shorter is waited for.
+    /// True if a missing, empty or shorter file is waited for.
     is_waited_for: bool,
-    /// How often in a row it was shorter than what is known of it.
+    /// Number of consecutive reads in which it was shorter than the known text.
     shorter: u32,
 }
 
-/// A file that has so often been a beginning of what is known of it was cut, and is not written again at the moment.
+/// Number of such reads after which the file counts as cut, and not as being written again.
 const LOOKS: u32 = 20;
 
-/// What a file has become.
+/// Change of a file since the last read.
 #[derive(Clone, Debug)]
 pub struct News {
     /// All complete rows.
     pub file: MeasurementFile,
-    /// Whether lines that were read before were changed or are gone, so that all rows are new.
+    /// True if earlier lines were changed or removed, so that all rows are new.
     pub is_again: bool,
 }
 
@@ -51,13 +51,13 @@ impl GrowingFile {
         GrowingFile { path, known: String::new(), is_waited_for: false, shorter: 0 }
     }
 
-    /// The same of a file that is looked at again and again: where it is missing or empty, or for some looks shorter, there are no news.
+    /// Waits for the file: a missing or empty file, or for some reads a shorter one, is no change.
     #[must_use]
     pub fn waited_for(self) -> Self {
         GrowingFile { is_waited_for: true, ..self }
     }
 
-    /// Whether there is no file, or one without text.
+    /// True if there is no file, or one without text.
     #[must_use]
     pub fn is_absent(&self) -> bool {
         let mut head = Vec::new();
@@ -70,10 +70,10 @@ impl GrowingFile {
         }
     }
 
-    /// All rows, if there are other complete lines than before; a last line without an end is waited for.
+    /// All rows, if complete lines were added or changed; a last line without an end is waited for.
     ///
     /// # Errors
-    /// As [`crate::read()`].
+    /// Those of [`crate::read()`].
     pub fn news(&mut self, robot: &Robot, options: &ReadOptions) -> Result<Option<News>> {
         if self.is_waited_for && self.is_absent() {
             return Ok(None);
@@ -90,7 +90,7 @@ impl GrowingFile {
         self.shorter = 0;
         let is_again = !complete.starts_with(&self.known);
         let is_row = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
-        // Names of columns, and a row.
+        // Names of columns and a row are needed.
         if complete.lines().filter(is_row).nth(1).is_none() {
             return Ok(None);
         }

@@ -19,7 +19,7 @@ use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::unit::Unit;
 use poecal_storage::csv_text;
 
-/// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names where there are some. Readings are exact;
+/// Rows as a file with a leading comment: degrees and millimetres, orientations as quaternions, names if there are any. Readings are exact;
 /// measured numbers are rounded to less than a thousandth of their noise.
 pub fn text(data: &Dataset, robot: &Robot, noise: &Noise, comment: &str) -> Result<String> {
     if data.observations.iter().any(|row| row.from.is_some() || !row.measurement.is_place()) {
@@ -135,7 +135,7 @@ fn cells(data: &Dataset, observation: &Observation, noise: &Noise) -> Result<BTr
     Ok(cells)
 }
 
-/// The cells of a place, or of some of its components, and of an orientation.
+/// The cells of a position, or of some of its components, and of an orientation.
 fn place_cells(seen: &Measurement, noise: &Noise, cells: &mut BTreeMap<String, String>) -> Result<()> {
     let mm = NamedUnit::parse("mm", Unit::Metre)?;
     let digits = decimals(mm.from_si(noise[Quantity::Position]));
@@ -183,7 +183,7 @@ mod tests {
         );
     }
 
-    /// What is written of each kind is read as it was, and a pair as two rows.
+    /// Each kind is read back unchanged, and a pair as two rows.
     #[test]
     fn sessions_of_every_kind_read_back_the_same() {
         use crate::{ReadOptions, parse};
@@ -202,7 +202,7 @@ mod tests {
             println!("{:16} {}", kind.word(), text.lines().nth(1).unwrap());
             assert_eq!((data.len(), data.further_readings()), (12, made.data.further_readings()));
             for (found, expected) in data.observations.iter().zip(&made.data.observations) {
-                // Faces lie on their planes up or down.
+                // Faces are on their planes, up or down.
                 let (metres, radians) = found.measurement.apart(&expected.measurement).unwrap();
                 assert!(metres < 1e-12 && (radians < 1e-7 || kind == Kind::FLUSH), "{metres} {radians}");
                 assert_eq!(found.station, expected.station);

@@ -57,7 +57,7 @@ pub(crate) fn decimals(noise: f64) -> Option<usize> {
     (noise > 0.0).then(|| (3.0 - noise.log10()).ceil().clamp(0.0, 17.0) as usize)
 }
 
-/// A number in a unit, with the given decimals, else with as many as are needed to read back the same number.
+/// A number in a unit, with these decimals, else with as many as are needed to read back the same number.
 pub(crate) fn decimal(si: f64, unit: NamedUnit, decimals: Option<usize>) -> String {
     let value = unit.from_si(si);
     let with = |count: usize| format!("{value:.count$}");

@@ -18,9 +18,9 @@ pub(crate) enum OwnColumn {
     Instrument,
     Position,
     Orientation,
-    /// The standard deviation that rows state.
+    /// Standard deviation that rows state.
     Stated(Quantity),
-    /// The same of each component of the position.
+    /// Standard deviation of each component of the position.
     StatedByComponent,
     Set,
 }
@@ -50,17 +50,17 @@ pub(crate) struct OwnRows<'a> {
     units: Vec<NamedUnit>,
     mm: NamedUnit,
     deg: NamedUnit,
-    /// Decimals of positions and quaternions; as many as are needed to read back the same number where there are none.
+    /// Decimals of positions and quaternions; `None` means as many as are needed to read back the same number.
     decimals: [Option<usize>; 2],
-    /// Whether what was measured is left empty, and readings are as they are typed into a controller.
+    /// True if measured numbers are left empty, and readings are rounded for typing into a controller.
     is_to_fill: bool,
 }
 
 impl<'a> OwnRows<'a> {
-    /// The rows in those of these columns that they need, every number as it is.
+    /// The rows in those of these columns that they need, with exact numbers.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`] of a joint with the name of another column.
+    /// [`ErrorKind::Model`] for a joint with the name of another column.
     pub(crate) fn new(data: &'a Dataset, robot: &Robot, columns: &[OwnColumn]) -> Result<Self> {
         let has = |of: &dyn Fn(&Observation) -> bool| data.observations.iter().any(of);
         let is_by_component = has(&|it| it.noise_shape.is_some());
@@ -90,14 +90,14 @@ impl<'a> OwnRows<'a> {
         })
     }
 
-    /// The same with measured numbers rounded to less than a thousandth of their noise.
+    /// Rounds measured numbers to less than a thousandth of their noise.
     pub(crate) fn rounded(self, noise: &Noise) -> Self {
         let position = decimals(self.mm.from_si(noise[Quantity::Position]));
         // A rotation turns the quaternion by half its angle.
         OwnRows { decimals: [position, decimals(noise[Quantity::Rotation] / 2.0)], ..self }
     }
 
-    /// The same as a form to fill: `id` and empty cells for what is to be measured, with orientations if so.
+    /// Makes a form to fill in: `id` and empty cells for the measurements, with orientations if `sees_orientation`.
     pub(crate) fn left_empty(mut self, sees_orientation: bool) -> Self {
         self.columns.insert(0, OwnColumn::Id);
         self.columns.retain(|it| *it != OwnColumn::Orientation);
@@ -160,7 +160,7 @@ impl<'a> OwnRows<'a> {
         cells.collect::<Vec<_>>().join(",")
     }
 
-    /// Cells of readings; of a form to fill as they are typed into a controller, but for factors.
+    /// Cells of readings; in a form to fill in, rounded for typing into a controller, except for factors.
     pub(crate) fn readings(&self, readings: &[f64]) -> Vec<String> {
         let typed = |reading: f64, unit: NamedUnit| {
             if !self.is_to_fill || unit == NamedUnit::from(Unit::One) {
@@ -177,14 +177,14 @@ impl<'a> OwnRows<'a> {
     }
 }
 
-/// Parts of a degree and a millimetre that are typed into a controller: those of planned configurations.
+/// Number of steps in a degree and a millimetre that are typed into a controller: those of planned configurations.
 const TYPED: f64 = 1e4;
 
-/// The rows of files as one table in our form, with standard deviations where rows state them: every number reads back the same.
+/// The rows of files as one table in our form, with standard deviations if rows state them: every number reads back the same.
 ///
 /// # Errors
-/// [`ErrorKind::Measurement`] of other measurements than positions and poses, of an instrument's own configuration, of rows in motion, and of a joint with the name of
-/// another column.
+/// [`ErrorKind::Measurement`] for other measurements than positions and poses, for an instrument's own configuration, for rows in motion, and for a
+/// joint with the name of another column.
 pub fn imported_table(file: &MeasurementFile, robot: &Robot) -> Result<String> {
     const COLUMNS: [OwnColumn; 10] = [
         OwnColumn::Id,

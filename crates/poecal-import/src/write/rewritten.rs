@@ -1,4 +1,4 @@
-//! Tables whose joint readings are replaced, row by row; all else stays as it is.
+//! Tables whose joint readings are replaced, row by row; all else stays unchanged.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -18,7 +18,7 @@ use poecal_numerics::named_unit::NamedUnit;
 use poecal_numerics::text::visible;
 use poecal_storage::numbers::push_number;
 
-/// A row of joint readings, and what stands in their place.
+/// A row of joint readings, and the text in their place.
 #[derive(Debug)]
 pub struct JointRow<'a> {
     /// Line of the file, from 1.
@@ -36,13 +36,13 @@ pub struct RewrittenTable {
     pub warnings: Vec<String>,
 }
 
-/// Reads a file of joint readings (CSV) and hands it on with new readings: `change` gets each row and changes its numbers (rad, m) in place,
-/// `out` gets the text piece by piece. Everything but the digits of changed readings stays byte for byte; they keep the column's unit and the
-/// decimal sign. Nothing is held but a few hundred kilobytes.
+/// Reads a file of joint readings (CSV) and passes it on with new readings. `change` receives each row and changes its numbers (rad, m) in place,
+/// `out` receives the text piece by piece. Everything except the digits of changed readings stays byte for byte; they keep the column's unit and
+/// the decimal sign. Only a few hundred kilobytes are held.
 ///
 /// # Errors
-/// As [`crate::read_joints`]; [`ErrorKind::Measurement`] if a reading is a constant, [`ErrorKind::Option`] if sums of columns
-/// cannot be taken apart again; what `change` and `out` return.
+/// Those of [`crate::read_joints`]; [`ErrorKind::Measurement`] if a reading is a constant, [`ErrorKind::Option`] if sums of columns cannot be
+/// inverted; the errors that `change` and `out` return.
 pub fn rewrite_joints(
     path: impl AsRef<Path>,
     robot: &Robot,
@@ -81,8 +81,7 @@ pub fn rewrite_joints(
     Ok(rewritten)
 }
 
-/// Column and unit of each number that is counted: of each reading, or, where these are sums, of the columns in the order of
-/// [`Counting::names`].
+/// Column and unit of each counted number: of each reading, or, if readings are sums, of the columns in the order of [`Counting::names`].
 fn columns(
     layout: &ColumnLayout,
     counting: Option<&Counting>,
@@ -109,7 +108,7 @@ fn columns(
     Ok(columns)
 }
 
-/// The way back from readings that are sums to their columns; `None` where each reading is a column.
+/// The inverse conversion of readings that are sums to their columns; `None` if each reading is a column.
 fn counting(layout: &ColumnLayout, path: &Path) -> Result<Option<Counting>> {
     if let Some(input) = layout.inputs.iter().find(|it| matches!(it.source, InputSource::Constant(_))) {
         return Err(ErrorKind::Measurement.error(format!(
@@ -148,7 +147,7 @@ impl Rewriting {
             self.numbers.extend_from_slice(inputs.readings());
             change(&JointRow { line: row.line, readings: inputs.readings() }, &mut self.numbers)?;
             let start = row.text.as_ptr() as usize - block.as_ptr() as usize;
-            // Of sums the columns change, by what makes the change of the readings.
+            // Columns of sums change by the amounts that produce the change of the readings.
             let changes = self.counting.as_ref().map(|counting| {
                 let of = self.numbers.iter().zip(inputs.readings());
                 counting.change(&of.map(|(new, old)| new - old).collect::<Vec<f64>>())
@@ -158,7 +157,7 @@ impl Rewriting {
                 let Some(cell) = row.cells.get(column) else { continue };
                 let number = match &changes {
                     None if self.numbers[at].to_bits() == inputs.readings()[at].to_bits() => continue,
-                    // The controller counts on with the turns that were taken off.
+                    // The controller includes the turns that were subtracted.
                     None => self.numbers[at] + inputs.turns()[at] * TAU,
                     Some(changes) if changes[at] == 0.0 => continue,
                     Some(changes) => {

@@ -73,8 +73,8 @@ pub fn template(robot: &Robot, kind: Kind) -> Result<String> {
     Ok(format!("{text}{columns}\n"))
 }
 
-/// A table of `count` random configurations within the limits with some margin, within a turn (±180° and ±0.5 m where there are none). Every twentieth is the first again,
-/// which shows repeatability and drift.
+/// A table of `count` random configurations within the limits with some margin, within a turn (±180° and ±0.5 m if there are none). Every twentieth
+/// repeats the first, which shows repeatability and drift.
 pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
     let names = robot.reading_names();
     let units = reading_units(&names, robot)?;
@@ -100,7 +100,7 @@ pub fn plan(robot: &Robot, count: usize, seed: u64) -> Result<String> {
     Ok(text)
 }
 
-/// What stands above a planned list.
+/// Comments above a planned list.
 fn about(found: &Plan) -> [String; 4] {
     let count = |part: RowPart| found.rows.iter().filter(|row| row.part == part && !row.returns).count();
     let [fit, judge] = [count(RowPart::Fit), count(RowPart::Judge)];
@@ -114,7 +114,7 @@ fn about(found: &Plan) -> [String; 4] {
     ]
 }
 
-/// A planned list as a table: `set` has what a row is for, `returns` the row that it repeats, then the readings.
+/// A planned list as a table: `set` states the purpose of a row, `returns` the row that it repeats, then the readings.
 ///
 /// # Errors
 /// [`poecal_numerics::error::ErrorKind::Model`] if a joint has the name of one of these columns.
@@ -140,7 +140,7 @@ pub fn planned_table(robot: &Robot, found: &Plan) -> Result<String> {
 /// The table of a test of ISO 9283 to fill in: a row for each pose and cycle, in the order of the standard.
 ///
 /// # Errors
-/// As [`planned_table`].
+/// Those of [`planned_table`].
 pub fn test_table(robot: &Robot, cube: &TestCube, cycles: usize) -> Result<String> {
     let names = robot.reading_names();
     refuse_names(&names, &["pose", "cycle"])?;

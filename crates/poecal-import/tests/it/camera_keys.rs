@@ -1,4 +1,4 @@
-//! Keys of files of cameras that change what their numbers mean: applied, refused or named; and pictures of another size than the lens states.
+//! Keys of files of cameras that change the meaning of their numbers: applied, refused or named. Pictures of another size than the lens states.
 
 use poecal_import::{CameraFile, ReadOptions, read_cameras};
 use poecal_model::camera::{Camera, Lens};
@@ -6,7 +6,7 @@ use poecal_testing::files::Folder;
 
 use crate::foreign_corners::{Session, as_texts};
 
-/// A camera_info of ROS with this end.
+/// A camera_info of ROS that ends with this text.
 fn camera_info(end: &str) -> String {
     format!(
         "header:\n  frame_id: eye\nheight: 1200\nwidth: 1600\ndistortion_model: plumb_bob\nD: [-0.1, 0.0, 0.0, 0.0, 0.0]\n\
@@ -92,7 +92,7 @@ fn keys_that_scale_or_shift_are_refused_and_others_named() {
         let found = cameras(name, &text).unwrap();
         assert!(found.said.iter().all(|it| !it.contains("flip") && !it.contains("time")), "{:?}", found.said);
     }
-    // Where the camera is, is no turn of its pictures.
+    // The pose of the camera is no rotation of its pictures.
     let mounted = "rotation: [0, 0, 0.7, 0.7]\ngrayscale: true\n";
     let found = cameras("mounted.yaml", &camera_info(mounted)).unwrap();
     assert_eq!(found.said, ["mounted.yaml: did not read `rotation`"]);

@@ -34,10 +34,10 @@ fn with_components(data: &Dataset, measured: impl Fn(usize) -> [bool; 3]) -> Dat
     data
 }
 
-/// Which components of a row are measured.
+/// True for each component of a row that is measured.
 type Measured = fn(usize) -> [bool; 3];
 
-/// Whatever is missing: one component of some points, two of all, another one in each row.
+/// Components are missing: one of some points, two of all, another one in each row.
 #[test]
 fn rows_without_some_components_find_the_robot() {
     let made = session(150, 1, 0.0);
@@ -180,8 +180,8 @@ fn noise_of_an_instrument_grows_across_its_line_of_sight() {
     }
 }
 
-/// Positions that are well known along the line of sight and badly across it: the fit that knows it predicts better than the one that takes
-/// them as alike, and what it promises holds.
+/// Positions are accurate along the line of sight and inaccurate across it. A fit with this noise predicts better than a fit with equal noise, and
+/// its predicted uncertainty holds.
 #[test]
 fn a_fit_that_knows_the_noise_is_better() {
     let (along, across) = (2e-6, 2e-4);
@@ -221,6 +221,6 @@ fn a_fit_that_knows_the_noise_is_better() {
         ratios.push(by_known / by_alike);
     }
     ratios.sort_by(f64::total_cmp);
-    // A third of the numbers are a hundred times better; how much of the robot they show depends on the configurations.
+    // A third of the numbers are a hundred times better; their effect on the robot depends on the configurations.
     assert!(ratios[4] < 0.5, "{ratios:?}");
 }

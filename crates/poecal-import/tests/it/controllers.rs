@@ -1,4 +1,4 @@
-//! Lists of joint readings as controllers, ROS and theses write them, and Vicon's exports: the rows of a plain table in each form.
+//! Lists of joint readings of controllers, ROS and theses, and Vicon's exports: the rows of a plain table in each form.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Screw, rotation};
@@ -153,7 +153,8 @@ fn external_axes_are_the_slides_wherever_they_stand() {
         let error = found(&elbow(), name, text).unwrap_err();
         assert!(error.contains("which are not one to one the joints `joint1`"), "{error}");
     }
-    // By a mapping, as the file names them, where they are not one to one the joints: here the rail comes first as the arm's own axis.
+    // A mapping assigns the axes by their names in the file if they do not match the joints one to one. Here the rail comes first as the arm's own
+    // axis.
     let swapped = fanuc.replace("EXT1: 100.0 mm", "EXT1: 100.0 mm EXT2: 7.0 deg");
     let columns: String = (1..=6).map(|at| format!("joint{at} = \"J{at}\"\n")).collect();
     let mapping = ColumnMap::parse(&format!("[joints]\nrail = \"EXT1\"\n{columns}"), "columns.toml").unwrap();
@@ -238,7 +239,7 @@ fn segments_and_trajectories_of_vicon_are_those_of_a_plain_table() {
         let other = (pose.translation + pose.rotation * Vector3::new(0.1, 0.0, 0.0)) * 1e3;
         markers += &format!("{row},0,{},{}\n", cells(place.as_slice()), cells(other.as_slice()));
     }
-    // Another part of the export, behind a line without cells.
+    // Another part of the export follows, behind a line without cells.
     segments += "\r\nDevices\r\n1000\r\n,,Force\r\nFrame,Sub Frame,Fx\r\n,,N\r\n1,0,3.5\r\n";
     let found = joined(&joints, &segments);
     println!("{:?}", found.notes);

@@ -1,4 +1,4 @@
-//! What the data do not tell stays at the drawing, and what they tell is not touched by it.
+//! Parameters that the data do not determine stay nominal, and the prior does not affect the others.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -77,7 +77,7 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
                 let slope = (along(&moved, &[(k, H)]) - along(&moved, &[(k, -H)])) / (2.0 * H);
                 worst[0] = worst[0].max((slope + at_moved.gradient[k]).abs() / largest);
             }
-            // At the drawing nothing deviates, and the information is the second derivative.
+            // At the nominal model nothing deviates, and the information is the second derivative.
             const STEP: f64 = 1e-4;
             let scale = (0..n).map(|k| at_nominal.gram[k * n + k]).fold(0.0, f64::max);
             for i in 0..n {
@@ -92,7 +92,7 @@ fn gradient_and_information_of_the_prior_are_those_of_its_cost() {
                 "{} base {base_free}: gradient {:.1e}, information {:.1e}",
                 robot.name, worst[0], worst[1]
             );
-            // Rounding of differences of a cost of some thousand, and their third derivatives.
+            // Bounds of rounding of differences of a cost of some thousand, and of their third derivatives.
             assert!(worst[0] < 1e-6 && worst[1] < 1e-5);
         }
     }
@@ -112,7 +112,7 @@ fn moving_the_base_costs_nothing_where_it_is_a_choice() {
     assert!((here / there - 1.0).abs() < 1e-9);
 }
 
-/// A session of configurations: points or poses of an actual robot, seen from a device that stands at the base.
+/// A session of configurations: points or poses of an actual robot, observed by a device at the base.
 fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], seed: u64) -> Dataset {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let mut data = Dataset::new(robot.reading_names());
@@ -130,7 +130,7 @@ fn observed(robot: &Robot, actual: &Robot, kind: Kind, readings: &[Vec<f64>], se
     data
 }
 
-/// Random configurations, changed by what a session does.
+/// Random configurations, changed by the closure.
 fn configurations(
     robot: &Robot,
     count: usize,
@@ -161,7 +161,7 @@ fn missed(robot: &Robot, truth: &Robot, estimate: &Estimate, seed: u64) -> f64 {
     missed_in(robot, truth, estimate, &configurations(robot, 200, seed ^ 0x77, |_, _| {}))
 }
 
-/// The same in these configurations.
+/// The mean distance in these configurations.
 fn missed_in(robot: &Robot, truth: &Robot, estimate: &Estimate, readings: &[Vec<f64>]) -> f64 {
     let readings = readings.concat();
     let packed = Packed::new(robot, &readings, robot.joints.len());
@@ -175,7 +175,7 @@ fn missed_in(robot: &Robot, truth: &Robot, estimate: &Estimate, readings: &[Vec<
         / packed.rows() as f64
 }
 
-/// A joint that stands still, but for what its encoder jitters by: its axis ends where it was drawn.
+/// A joint does not move, except for the jitter of its encoder: its axis stays nominal.
 #[test]
 fn an_axis_that_only_jitters_stays_at_the_drawing() {
     let robot = elbow();
@@ -189,7 +189,7 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             });
             let kind = if seed % 4 < 2 { Kind::POSE } else { Kind::POINT };
             let truth = actual(&robot, seed);
-            // What the encoder says is noise: the joint does not move.
+            // The encoder's value is noise: the joint does not move.
             let real: Vec<Vec<f64>> = readings
                 .iter()
                 .map(|row| {
@@ -216,11 +216,11 @@ fn an_axis_that_only_jitters_stays_at_the_drawing() {
             (joint.tilt_rad, joint.shift_m)
         })
         .reduce(|| (0.0, 0.0), |a, b| (a.0.max(b.0), a.1.max(b.1)));
-    // The other axes are off by 1 deg and 2 mm, and the base takes the mean of that in.
+    // The errors of the other axes are 1 deg and 2 mm, and the base absorbs their mean.
     assert!(worst.0.to_degrees() < 2.0 && worst.1 < 15e-3, "{worst:?}");
 }
 
-/// The tip of the model lies on the last axis: points of it tell nothing of how that axis is tilted about it.
+/// The tip of the model is on the last axis: its points do not determine the tilt of that axis about it.
 #[test]
 fn an_axis_through_the_target_stays_at_the_drawing() {
     let robot = elbow();
@@ -246,7 +246,7 @@ fn an_axis_through_the_target_stays_at_the_drawing() {
     println!("tilt of joint6 at most {worst:.3} deg; rank {:?}, verdict {}", found[0].1, found[0].2);
     // 5.3 deg in the median without a prior.
     assert!(worst < 0.5);
-    // Configurations decide what is told, and not the noise.
+    // Configurations decide which unknowns are determined, and not the noise.
     assert!(found.iter().all(|it| (it.1, &it.2) == (found[0].1, &found[0].2)));
 }
 
@@ -260,7 +260,7 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
         .filter_map(|seed| {
             let count = 15 + (seed as usize % 11);
             let mut generator = ChaCha8Rng::seed_from_u64(seed);
-            // The wrist keeps one posture, but for a few degrees.
+            // The wrist keeps one orientation, within a few degrees.
             let keep = |row: &mut Vec<f64>, generator: &mut ChaCha8Rng| {
                 for (k, at) in [(3, 0.3), (4, -0.8), (5, 0.5)] {
                     row[k] = at + 0.02 * random::normal(generator);
@@ -286,7 +286,7 @@ fn few_poses_of_poor_orientation_are_never_worse_than_registered() {
     assert!(worse.is_empty());
 }
 
-/// Configurations on which a solver used to crawl: the tip on a circle, or on a surface with one attitude.
+/// Configurations at which an earlier solver was slow: the tip on a circle, or on a surface with constant orientation.
 #[test]
 fn circles_and_surfaces_of_one_attitude_end_soon() {
     let robot = elbow();
@@ -303,7 +303,7 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
                         3.0 * random::uniform(&mut generator) - 1.5
                     };
                     let bend = if circle { 0.6 } else { 0.3 + 0.6 * random::uniform(&mut generator) };
-                    // The attitude stays: joints 2, 3 and 5 add up, joint 6 undoes joint 1.
+                    // The orientation is constant: joints 2, 3 and 5 add up, joint 6 compensates joint 1.
                     vec![0.3 * t, -0.4 - bend, 0.9 + 0.5 * bend, 0.0, 0.2 - 0.5 * bend, -0.3 * t]
                 })
                 .collect();
@@ -321,8 +321,8 @@ fn circles_and_surfaces_of_one_attitude_end_soon() {
     assert!(most <= 60, "{most}");
 }
 
-/// Mean squared errors of robots whose errors are of the prior's size are no more with it than without, and errors far beyond it are
-/// found where the data tell them.
+/// Mean squared errors of robots whose errors are of the prior's size are no larger with the prior than without. Errors far beyond it are found if
+/// the data determine them.
 #[test]
 fn what_the_data_tell_is_not_touched() {
     let robot = elbow();
@@ -355,7 +355,7 @@ fn what_the_data_tell_is_not_touched() {
             sums[0] / sums[1],
             sessions.count
         );
-        // Of one session it is some per cent more or less.
+        // In one session the ratio differs by some per cent.
         assert!(sums[0] < (1.01 + sessions.more(0.05)) * sums[1]);
     }
     let far = Simulation {
@@ -391,7 +391,7 @@ fn a_joint_may_state_its_own_tolerance() {
     let error = robot_toml::parse(&model(", tolerance = { angle = 0, length = 20 }"), "r.toml").unwrap_err();
     println!("{error}");
     assert!(error.to_string().starts_with("r.toml:6:") && error.to_string().contains("not above 0"));
-    // A joint that is known worse than the others is held less.
+    // A joint that is known less well than the others has a weaker prior.
     let mut robot = elbow();
     let cost = |robot: &Robot| {
         let mut estimate = Estimate::new(robot, vec![robot.home], Pose::identity());
@@ -404,8 +404,8 @@ fn a_joint_may_state_its_own_tolerance() {
     assert!((cost(&robot) / usual - 0.01).abs() < 1e-6);
 }
 
-/// A tool that points down in all configurations but for 5 microradians shows the height of its target only by that, and noise of a twentieth of a
-/// millimetre puts it metres away: it stays near the tip, unless it is open.
+/// A tool points down in all configurations within 5 microradians. Only that shows the height of its target, and noise of a twentieth of a
+/// millimetre moves it by metres. It stays near the tip, unless it is free.
 #[test]
 fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     let robot = elbow();
@@ -435,7 +435,7 @@ fn a_target_stays_near_the_tip_where_the_measurements_do_not_say_where_it_is() {
     assert!(far[0].iter().all(|far| *far < 0.8) && far[1].iter().all(|far| *far > 1.0));
 }
 
-/// In a small cube, with a joint that only jitters, unknowns follow a curved valley far; the errors of other rows do not.
+/// In a small cube, with a joint that only jitters, unknowns move far along a curved valley; the errors of other rows do not grow.
 #[test]
 fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
     let robot = elbow();
@@ -463,6 +463,6 @@ fn cross_validation_says_the_error_of_other_rows_where_little_is_determined() {
         ratios.push(validated / (squares / errors.len() as f64).sqrt());
     }
     println!("cross-validation over the error of other rows: {ratios:.2?}");
-    // 120 rows tell a standard deviation to 5 %, and folds leave a fifth of them out.
+    // 120 rows determine a standard deviation to 5 %, and folds leave a fifth of them out.
     assert!(ratios.iter().all(|it| (0.8..1.35).contains(it)));
 }

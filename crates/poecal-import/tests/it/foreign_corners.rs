@@ -1,4 +1,4 @@
-//! Corners as other programs write them: each form of one simulated session gives its rows and its calibration, and each mistake its sentence.
+//! Corners in the forms of other programs: each form of one simulated session has its rows and its calibration, and each mistake its sentence.
 
 use std::fmt::Write as _;
 
@@ -43,7 +43,7 @@ impl Session {
         Session { data: made.data, robot: made.nominal, options }
     }
 
-    /// The same without a stated board.
+    /// The options without a stated board.
     fn without_boards(&self) -> ReadOptions {
         ReadOptions { boards: Vec::new(), ..self.options.clone() }
     }
@@ -73,7 +73,7 @@ impl Session {
         text
     }
 
-    /// The place of a corner on its board, millimetres.
+    /// The position of a corner on its board, millimetres.
     pub(crate) fn place_mm(&self, corner: &Corner) -> [String; 3] {
         let point = self.options.boards[0].points[corner.point as usize];
         [point.x, point.y, point.z].map(|it| format!("{:.3}", 1e3 * it))
@@ -141,7 +141,7 @@ fn judged(session: &Session, file: &MeasurementFile) -> [f64; 2] {
     [pixels.rms_px, pixels.rms_mm]
 }
 
-/// Compares a form with ours, and says what was read of it.
+/// Compares a form with ours, and prints the result.
 pub(crate) fn same(session: &Session, what: &str, found: &MeasurementFile, digits: f64) {
     let ours = session.read(&as_texts(&session.ours()), &session.options).unwrap();
     let (px, rad) = apart(&ours, found);
@@ -257,7 +257,7 @@ fn pictures_with_the_same_number_are_the_same() {
         );
         same(&session, &name(7), &found, 0.0);
     }
-    // Numbers that two pictures have join none.
+    // Numbers that two pictures share join none.
     let twice = corners.replace("image-3.png", "other-4.png");
     let joints = session.joints("image", |at| format!("configuration_{at}"));
     let found = session.read(&[("corners.csv", &twice), ("joints.csv", &joints)], &session.options).unwrap();
@@ -270,7 +270,7 @@ fn pictures_with_the_same_number_are_the_same() {
         &found,
         "left out the pictures that have joint readings and no corners: 2 (configuration_3, configuration_4)",
     );
-    // Names go before numbers.
+    // Names precede numbers.
     let mixed = session.joints("image", |at| match at {
         0 => "image-1.png".to_owned(),
         1 => "image-0.png".to_owned(),
@@ -370,7 +370,7 @@ fn positions_are_no_pixels() {
         let file = parse(&text(columns, cells), "t.csv", &session.robot, &options).unwrap();
         assert_eq!((file.understood[0].points, file.data.pictures.all.len()), (1, 0), "{columns}");
     }
-    // px, py and pz are a vector.
+    // The columns px, py and pz are a vector.
     let error =
         parse(&text("px,py,pz", "0.8,0.1,0.3"), "t.csv", &session.robot, &options).unwrap_err().to_string();
     assert!(error.contains("found no column `x`"), "{error}");

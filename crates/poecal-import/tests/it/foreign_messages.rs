@@ -162,7 +162,7 @@ fn mistakes_in_messages_are_named() {
     );
 }
 
-/// Files that were damaged at every so many bytes are refused or read, and no part of them makes the program stop.
+/// Files damaged at regular intervals are refused or read, and no damage makes the program panic.
 #[test]
 fn damaged_messages_are_told_in_one_line() {
     let session = Session::new();

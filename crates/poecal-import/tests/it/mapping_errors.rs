@@ -1,4 +1,4 @@
-//! Bad mapping files: each gets one sentence with its place, what was found and what was expected.
+//! Bad mapping files: the message of each is one sentence with its place, *found* and *expected*.
 
 use poecal_import::{ColumnMap, ReadOptions, read};
 use poecal_testing::files::Folder;

@@ -130,7 +130,7 @@ fn inverted_poses_are_turned_round() {
     assert_eq!(file.understood[0].pose, "target_from_device");
 }
 
-/// A file of the form of a published data set: `;`, decimal comma, several columns without use, intrinsic angles in degrees.
+/// A file in the form of a published data set: `;`, decimal comma, several columns without use, intrinsic angles in degrees.
 #[test]
 fn a_tracker_file_with_its_own_columns_gives_the_same_rows_as_ours() {
     let angles = [[-90.18_f64, -20.11, -90.16], [12.5, 77.0, 179.2]];
@@ -225,7 +225,7 @@ fn columns_of_a_table_without_names_are_named_by_their_numbers() {
         (file.data.ids.as_slice(), file.data.observations[1].source.line),
         (&["P1".to_owned(), "P2".to_owned()][..], 2)
     );
-    // The same of a table with names, where one is not unique.
+    // The same for a table with names, one of which is not unique.
     let file = with_map(
         "n,x,x,x,a,lift,b\nP1,100,200,300,180,250,90\n",
         &map.replace("unit = \"rad\"", "unit = \"deg\""),

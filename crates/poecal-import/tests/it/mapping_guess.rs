@@ -1,4 +1,4 @@
-//! The mapping that poecal guesses for a file of another program, and what can be chosen instead.
+//! The mapping that poecal guesses for a file of another program, and the choices instead.
 
 use poecal_import::{ColumnGuess, ColumnMap, ReadOptions, guess_columns, read};
 use poecal_model::measurement::Dataset;
@@ -7,10 +7,10 @@ use poecal_numerics::error::ErrorKind;
 use poecal_testing::files::Folder;
 use poecal_testing::sessions::lifting_robot;
 
-/// Joints a and b in degrees, the lift in millimetres, a pose by angles in degrees; what was wanted beside what was measured.
+/// Joints a and b in degrees, the lift in millimetres, a pose by angles in degrees; commanded beside measured values.
 const FOREIGN: &str = "no;goal x;goal y;goal z;axis one;axis two;axis three;meas_x;meas_y;meas_z;meas_rx;meas_ry;meas_rz\n\
                        1;1;2;3;90,5;250;-12;1500,5;-20;30;10;20;170\n2;1;2;3;10,5;125;15;1400,5;-25;35;15;25;-170\n";
-/// The same in our form.
+/// The same table in our form.
 const OWN: &str = "a[deg],lift[mm],b[deg],x[mm],y[mm],z[mm],p,q,r\n90.5,250,-12,1500.5,-20,30,10,20,170\n10.5,125,15,1400.5,-25,35,15,25,-170\n";
 const OWN_ANGLES: &str =
     "[orientation]\nform = \"intrinsic_zyx\"\ncolumns = [\"p\", \"q\", \"r\"]\nunit = \"deg\"\n";

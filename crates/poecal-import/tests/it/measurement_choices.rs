@@ -1,4 +1,4 @@
-//! Measurement files that are fine although they look odd, and what the options change.
+//! Measurement files that are correct although unusual, and the effects of the options.
 
 use poecal_import::{ColumnMap, FitWhere, ReadOptions, read};
 use poecal_testing::files::Folder;

@@ -1,4 +1,4 @@
-//! Bad measurement files: each gets one sentence with its place, what was found and what was expected.
+//! Bad measurement files: the message of each is one sentence with its place, *found* and *expected*.
 
 use poecal_import::{FitWhere, ReadOptions, read, read_joints};
 use poecal_testing::files::Folder;
@@ -393,7 +393,7 @@ fn joint_tables_are_checked_too() {
     );
 }
 
-/// Cuts a good file at every byte, and puts every awkward byte at every place.
+/// A good file is cut at every byte, and every awkward byte is put at every position.
 #[test]
 fn no_damage_to_a_file_makes_reading_panic() {
     let good = "# c\r\n\"id\";a[deg];lift;b;x;y;z;qx;qy;qz;qw;\u{b5};set\r\n\

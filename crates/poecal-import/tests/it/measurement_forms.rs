@@ -1,4 +1,4 @@
-//! Measurement files in the forms that people have them.
+//! Measurement files in the usual forms.
 
 use std::f64::consts::PI;
 
@@ -96,7 +96,7 @@ fn lines_of_separator_and_units_are_read() {
         assert_eq!((file.data.len(), file.data.ids[0].as_str()), (1, "r"));
         assert_eq!(understood.columns[1].unit_from, Some(UnitSource::UnitsLine));
     }
-    // However few bytes are read at a time, the tests of `table` say; here a joint table.
+    // The tests of `table` vary the number of bytes per read; here it is a joint table.
     let folder = Folder::new();
     let path = folder.write("joints.csv", "sep=;\na;lift;b\ndeg;mm;deg\n180;100;0\n");
     assert_eq!(
@@ -121,7 +121,7 @@ fn lost_beams_are_left_out_and_counted() {
     let understood = &file.understood[0];
     assert_eq!((understood.rows, understood.points, understood.poses), (7, 1, 2));
     assert_eq!((understood.lost.count, &understood.lost.first_lines[..]), (4, &[3, 4, 5, 6][..]));
-    // What was left out says nothing of the joint either.
+    // Omitted rows do not affect the range of the joint either.
     assert_eq!(understood.columns[0].max, Some(0.6));
     assert_eq!(
         file.warnings.iter().map(|warning| warning.split(": ").nth(1).unwrap()).collect::<Vec<_>>(),
@@ -263,7 +263,7 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
     for (row, expected) in [-10.0, -170.0, 10.0, 20.0].into_iter().enumerate() {
         assert!((degrees(row) - expected).abs() < 1e-12, "{row}: {}", degrees(row));
     }
-    // Without limits a joint may count on.
+    // Without limits, a joint may turn repeatedly.
     assert!((file.data.readings(0)[2].to_degrees() - 350.0).abs() < 1e-12);
     assert_eq!(file.warnings.len(), 1);
     assert!(
@@ -273,7 +273,7 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
         "{}",
         file.warnings[0]
     );
-    // Degrees that were stated as radians differ by more than any count of turns does.
+    // Degrees that were stated as radians differ by more than any number of turns.
     let of = |text: &str| format!("a[rad],lift,b,x,y,z\n{text}");
     let degrees: String = (-6..=6).map(|k| format!("{},0,0,1,2,3\n", 1.9 * f64::from(k))).collect();
     let folder = Folder::new();
@@ -282,7 +282,7 @@ fn whole_turns_are_taken_off_where_that_brings_readings_inside_the_limits() {
     assert!(told.contains("up to 11.4 rad") && told.contains("most likely deg"), "{told}");
     let counted: String = (-3..=3).map(|k| format!("{},0,0,1,2,3\n", 1.9 * f64::from(k))).collect();
     assert_eq!(plain(&of(&counted)).data.len(), 7);
-    // Readings alone, for predictions, are taken so too.
+    // Joint readings alone, for predictions, are treated in the same manner.
     let path = folder.write("q.csv", "a[deg],lift,b\n350,0,0\n");
     let joints = read_joints(&path, &lifting_robot(), &ReadOptions::default()).unwrap();
     assert!((joints.readings[0].to_degrees() + 10.0).abs() < 1e-12);
@@ -392,7 +392,7 @@ fn anchors_name_where_distances_are_measured_from() {
     let columns: Vec<_> = file.understood[0].columns.iter().map(|column| column.name.as_str()).collect();
     assert_eq!(columns[columns.len() - 2..], ["instrument", "anchor"]);
 
-    // Without an instrument's column, and with the same name in both.
+    // There is no column of the instrument, and then both have the same name.
     let file = plain("a,lift,b,anchor,distance\n0,0.1,0,wall,0.8\n0.1,0.1,0,door,0.9\n");
     assert_eq!(file.data.stations.len(), 2);
     assert_eq!(plain(&format!("{head}20,250,0.5,,,,wall,wall,800\n")).data.stations.len(), 1);

@@ -6,7 +6,7 @@ use poecal_model::simulate::elbow;
 /// Enough rows for several pieces of a file.
 const LINES: usize = 20_000;
 
-/// A file in which targets, sets and readings beyond the limits come late, and the row that each line says.
+/// A file in which targets, sets and readings beyond the limits come late, and the expected row of each line.
 fn lines() -> Vec<String> {
     let row = |line: usize| {
         let target = if line < LINES / 2 { "a" } else { ["b", "c", "a"][line % 3] };
@@ -43,7 +43,7 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
             assert!((turns - turns.round()).abs() < 1e-15);
         }
     }
-    // Of several mistakes the first in the file is named.
+    // Among several mistakes, the first one in the file is reported.
     for (line, bad, message) in [
         (
             19_000,
@@ -72,7 +72,7 @@ fn a_long_file_is_read_row_by_row_and_its_first_mistake_named() {
     }
 }
 
-/// Nearly as many columns as a file may have: whatever looks at all of them for each takes seconds.
+/// Nearly the largest number of columns of a file: code that looks at all of them for each takes seconds.
 const COLUMNS: usize = 16_000;
 
 fn with_columns(own: &str) -> String {

@@ -18,7 +18,7 @@ use rand_core::{Rng as _, SeedableRng as _};
 use poecal_testing::files::Folder;
 use poecal_testing::trials::trials;
 
-/// Moves between configurations: when each begins, where, and how long it takes; then how long the robot stops.
+/// Moves between configurations: beginning, configuration and duration of each, and the pause that follows.
 struct Moves {
     begins_s: Vec<f64>,
     lasts_s: Vec<f64>,
@@ -26,14 +26,14 @@ struct Moves {
 }
 
 impl Moves {
-    /// Moves for so long, of a tip at up to 0.3 to 1 m/s, with stops or without.
+    /// Moves during `span_s`, with a tip speed of up to 0.3 to 1 m/s, with pauses or without.
     fn new(robot: &Robot, span_s: f64, stops: bool, generator: &mut ChaCha8Rng) -> Self {
         let configurations = Configurations::new(robot);
         let mut moves =
             Moves { begins_s: vec![], lasts_s: vec![], places: vec![configurations.random(generator)] };
         let mut time = 0.0;
         while time < span_s {
-            // A part of the way to anywhere.
+            // The move covers a part of the path to a random configuration.
             let far = configurations.random(generator);
             let last = moves.places.last().unwrap().clone();
             let next: Vec<f64> = last.iter().zip(&far).map(|(a, b)| a + 0.5 * (b - a)).collect();
@@ -54,7 +54,7 @@ impl Moves {
         moves
     }
 
-    /// The same with its first moves again and again, and back to the first place.
+    /// Repeats the first moves, with a return to the first configuration.
     fn repeat(&mut self, count: usize, span_s: f64) {
         let period = self.begins_s[count];
         let first = self.places[0].clone();
@@ -79,7 +79,7 @@ impl Moves {
     }
 }
 
-/// How a session is recorded.
+/// Settings of a recorded session.
 #[derive(Clone, Copy, Debug)]
 struct Recorded {
     span_s: f64,
@@ -91,17 +91,17 @@ struct Recorded {
     drift: f64,
     /// Mean lateness of the stamps of the measurements, seconds.
     late_s: f64,
-    /// Moves after which the program begins again, if it does.
+    /// Number of moves after which the program restarts, if it does.
     repeats: Option<usize>,
-    /// Whether the measurements are of another session.
+    /// True if the measurements belong to another session.
     is_other: bool,
 }
 
-/// What was found of a session.
+/// Results of a session.
 struct Found {
     lag_s: f64,
     drift: f64,
-    /// Of the lag and of the drift by the fit.
+    /// Standard deviations of the lag and of the drift by the fit.
     sigmas: [f64; 2],
     expected_mm: f64,
     true_mm: f64,
@@ -184,7 +184,7 @@ fn session(seed: u64, of: &Recorded) -> Result<Found, String> {
     let mut squares = 0.0;
     let target = calibration.targets[0].tip_from_target;
     for _ in 0..200 {
-        // Where the robot was.
+        // The robot's configuration.
         let readings = moves.at(of.span_s * random::uniform(&mut generator));
         let of = |robot: &Robot| robot.forward_kinematics(&robot.joint_values(&readings));
         let predicted = calibration.base_from_device.inverse() * of(&calibration.robot) * target;
@@ -272,7 +272,7 @@ fn stamps_that_are_late_irregularly_are_part_of_the_lag_by_their_mean() {
         let of = Recorded { late_s: LATE_S, ..recorded(&mut generator) };
         let found = session(seed, &of).unwrap();
         let lag = found.lag_s - of.lag_s - LATE_S;
-        // Of few rows the mean itself is off: three of its standard deviations more.
+        // With few rows the mean itself is uncertain: three of its standard deviations are added.
         let of_mean = 3.0 * LATE_S / (of.span_s * of.rate).sqrt();
         near += usize::from(lag.abs() < 1e-3 + of_mean);
         honest += usize::from(found.true_mm < 2.0 * found.expected_mm);

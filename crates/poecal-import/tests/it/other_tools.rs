@@ -1,4 +1,4 @@
-//! Cameras and samples of hand-eye programs as other tools write them: one lens, and one list of poses, in every form.
+//! Cameras and samples of hand-eye programs in the forms of other tools: one lens, and one list of poses, in every form.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -94,7 +94,7 @@ fn a_lens_is_the_same_in_every_form() {
         let expected = Lens { size_px: found.cameras[0].lens.size_px.and(lens().size_px), ..lens() };
         assert_eq!(found.cameras[0].lens, expected, "{name}");
     }
-    // Open3D's, column by column.
+    // Open3D's matrix is column by column.
     let found = cameras("open3d.json", "{\"width\": 1920, \"height\": 1200, \"intrinsic_matrix\": [1400, 0, 0, 0, 1410, 0, 959.5, 599.5, 1]}").unwrap();
     assert_eq!(found.cameras[0].lens, Lens { distortion: Distortion::Brown([0.0; 8]), ..lens() });
     let two = "{\"left\": {\"fx\": 1400, \"fy\": 1410, \"ppx\": 1, \"ppy\": 2}, \"right\": {\"fx\": 1400, \"fy\": 1410, \"ppx\": 1, \"ppy\": 2}}";
@@ -129,7 +129,7 @@ fn the_division_model_of_halcon_is_exact_to_a_thousandth_of_a_pixel() {
         let focal = 8.2e-3 / 5.5e-6;
         let mut worst = 0.0_f64;
         for (x, y) in [(0.0, 0.0), (0.3, -0.2), (-0.6, 0.38), (0.63, 0.4)] {
-            // Metres on the sensor.
+            // Lengths on the sensor are metres.
             let [u, v] = [x * 8.2e-3, y * 8.2e-3];
             let bent = 2.0 / (1.0 + (1.0 - 4.0 * kappa * (u * u + v * v)).sqrt());
             let pixel = lens.pixel(&Vector3::new(x, y, 1.0)).unwrap();
@@ -185,7 +185,7 @@ fn lenses_of_other_models_are_named() {
         println!("{error}");
         assert!(error.contains(part), "{error}");
     }
-    // Without coefficients that bend, a model of another name is a pinhole.
+    // Without coefficients other than zero, a model of another name is a pinhole.
     let straight = "{\"fx\": 600, \"fy\": 600, \"ppx\": 320, \"ppy\": 240, \"model\": \"modified_brown_conrady\", \"coeffs\": [0, 0, 0, 0, 0]}";
     assert!(cameras("straight.json", straight).is_ok());
     let poly = halcon("Poly1:poly1: -1.2e3;\n  DOUBLE::;\n\n");
@@ -318,7 +318,7 @@ fn samples_of_other_programs_are_the_same_poses() {
                 + &of(&|arm, seen| format!("{}\n", listed(&[numbers(arm), rvec(seen)].concat()))),
         ));
     }
-    // As easy_handeye2 names it, and libfranka's frames of the tool beside the pose.
+    // The name is easy_handeye2's, and libfranka's frames of the tool are beside the pose.
     texts.push(("arm.samples", texts[1].1.clone()));
     let numbers = |pose: &Pose| listed(&by_columns(pose));
     let tool = listed(&sixteen(&Pose::from_xyz_rpy([0.0, 0.0, 0.1], [0.0, 0.0, -0.8])));
@@ -333,7 +333,7 @@ fn samples_of_other_programs_are_the_same_poses() {
             ))
         ),
     ));
-    // An entry without its target, and one without its arm: as many of both, and no pairs.
+    // One entry has no target, and one no arm: as many of both, and no pairs.
     let lame = format!(
         "[{}]",
         matrices(&|it| {

@@ -1,5 +1,5 @@
-//! Every way a shop can measure: recovery without noise, ranks in closed form, efficiency with noise, mixtures, known lengths, places that are
-//! held out, and files (theory.md §4, §7).
+//! All kinds of measurements: recovery without noise, ranks in closed form, efficiency with noise, mixtures, known lengths, anchors that are held
+//! out, and files (theory.md §4, §7).
 
 use poecal_calibrate::{Calibration, CalibrationOptions, Corrections, ModelAccuracy, Robust, calibrate};
 use poecal_fit::analysis::Cause;
@@ -12,8 +12,8 @@ use poecal_testing::largest::larger;
 use poecal_testing::sessions::geometry;
 use poecal_testing::trials::trials;
 
-/// Kinds without a device frame, with the rank that they add to 4 of each joint that turns and 2 of each that slides, and what it lacks of the
-/// unknowns: the size of the robot where nothing has a length.
+/// Kinds without a device frame. The first number is the rank that they add to 4 for each revolute joint and 2 for each prismatic one. The second
+/// one is the number of undetermined unknowns: the size of the robot if nothing has a length.
 const KINDS: [(Kind, i32, usize); 10] = [
     (Kind::DISTANCE, 6, 0),
     (Kind::CHANGE, 9, 0),
@@ -62,7 +62,7 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
         for (kind, more, lacks) in KINDS {
             let made = exact(150, 1).run(&robot, kind).unwrap();
             let found = fit(&made);
-            // A slide has a length.
+            // A prismatic joint has a length.
             let slides = robot.joints.iter().any(|joint| joint.screw.is_prismatic());
             let (more, lacks) = if slides { (more + lacks as i32, 0) } else { (more, lacks) };
             let rank = (g(&robot) as i32 + more) as usize;
@@ -75,7 +75,7 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
                 identified.parameters,
                 worst(&found)
             );
-            // 1e-9 m, and so many degrees.
+            // 1e-9 m, and the same number of degrees.
             assert!(worst(&found) < 1e-6, "{} {}: {:e}", robot.name, kind.word(), worst(&found));
             assert_eq!(
                 (identified.rank, identified.parameters),
@@ -88,7 +88,7 @@ fn each_kind_alone_finds_the_robot_and_has_the_rank_of_the_closed_form() {
     }
 }
 
-/// One direction of the tip is all that directions tell: 2 for each joint that turns, and 2.
+/// Directions determine only one direction of the tip: 2 for each revolute joint, and 2.
 #[test]
 fn directions_tell_directions_alone() {
     for robot in [elbow(), seven_axis()] {
@@ -99,7 +99,7 @@ fn directions_tell_directions_alone() {
     }
 }
 
-/// A known distance of two sockets tells the size.
+/// A known distance of two sockets determines the size.
 #[test]
 fn one_known_length_gives_the_scale() {
     let mut made = exact(150, 2).run(&elbow(), Kind::SOCKET).unwrap();
@@ -111,7 +111,7 @@ fn one_known_length_gives_the_scale() {
     let found = fit(&made);
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (27, 27));
     assert!(found.identifiability.unidentifiable.is_empty());
-    // Sizes are right, and so are predictions anywhere.
+    // The size is right, and so are predictions anywhere.
     let other = exact(60, 2).held_out(&made, Kind::DISTANCE, 60).unwrap();
     assert_eq!(other.len(), 60);
     let apart = |estimate: &poecal_fit::state::Estimate| {
@@ -149,8 +149,8 @@ fn kinds_are_mixed() {
     assert_eq!(found.identifiability.rank, found.identifiability.parameters);
 }
 
-/// The bound of Cramér and Rao for what is fitted: `E Σ |f(x̂) - f(x)|² = n σ²` over the rows of a fit with n unknowns, with the truth f(x)
-/// from the same session without noise. Of what is touched the configurations have the noise, and `E Σ e² = (m - n) σ²` of the residuals.
+/// The Cramér-Rao bound of the fitted values: `E Σ |f(x̂) - f(x)|² = n σ²` over the rows of a fit with n unknowns. The truth f(x) is from the same
+/// session without noise. For touches the configurations have the noise, and `E Σ e² = (m - n) σ²` holds for the residuals.
 #[test]
 fn fits_reach_the_bound_of_cramer_and_rao() {
     let trials = trials(60).at_least(30);
@@ -164,7 +164,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
             let options = CalibrationOptions {
                 robust: Robust::Off,
                 held_out: Some(0.0),
-                // Without a length noise would have it shrink.
+                // Without a length, noise would shrink the robot.
                 tolerance: kind.is_touched().then(Tolerance::default),
                 sigma: sigma.map(Some),
                 diagnose: false,
@@ -194,7 +194,7 @@ fn fits_reach_the_bound_of_cramer_and_rao() {
     }
 }
 
-/// Without a length and without a tolerance the robot that fits best is a point.
+/// Without a length and without a tolerance, the robot that fits best is a point.
 #[test]
 fn a_tolerance_is_needed_where_nothing_has_a_length() {
     let options = CalibrationOptions { tolerance: None, ..geometry() };
@@ -211,7 +211,7 @@ fn a_tolerance_is_needed_where_nothing_has_a_length() {
     }
 }
 
-/// Places that only held-out rows name are found from these; the figure is what the constraint leaves.
+/// Anchors that only held-out rows name are estimated from these rows; the figure is the error that the constraint leaves.
 #[test]
 fn held_out_sockets_are_judged_by_their_own_mean() {
     let made = exact(160, 4).run(&elbow(), Kind::SOCKET).unwrap();
@@ -226,7 +226,7 @@ fn held_out_sockets_are_judged_by_their_own_mean() {
         println!("{:e} mm, before {:e} mm", residual.max, held_out.registered.residual_mm.unwrap().max);
         assert_eq!(residual, held_out.calibrated.get(Quantity::Contact).unwrap());
         assert!(residual.max < 1e-6 && held_out.registered.residual_mm.unwrap().rms > 1.0);
-        // One socket, whichever is the first in the file: all but the size.
+        // One socket, whichever is the first in the file, determines all but the size.
         let told = &found.identifiability;
         assert_eq!((told.rank, told.parameters), (23, 24));
         let expected_m = found.trust.expected.measured.as_ref().unwrap().sigma_m;
@@ -235,7 +235,7 @@ fn held_out_sockets_are_judged_by_their_own_mean() {
     }
 }
 
-/// Sizes of terms are chosen by the rows of the socket that is fitted, whatever others are held out.
+/// Sizes of terms are chosen by the rows of the socket that is fitted, whichever others are held out.
 #[test]
 fn sizes_are_chosen_where_other_sockets_are_held_out() {
     let Ok(Corrections::Sizes(terms)) = "sag=2e-3,tilt=1e-3".parse() else { panic!("no sizes") };
@@ -253,7 +253,7 @@ fn sizes_are_chosen_where_other_sockets_are_held_out() {
     assert!(correction.tried.len() > 3 && after <= 1.02 * before);
 }
 
-/// Corrections are fitted for these too.
+/// Corrections are fitted for these kinds too.
 #[test]
 fn corrections_are_fitted_where_there_is_no_device() {
     let made = Simulation { count: 200, ..Simulation::default() }.run(&elbow(), Kind::DISTANCE).unwrap();
@@ -262,7 +262,7 @@ fn corrections_are_fitted_where_there_is_no_device() {
     assert!(found.correction.is_some());
 }
 
-/// Rows may be dealt out over places without changing the data otherwise.
+/// Rows may be distributed over anchors without changing the data otherwise.
 #[test]
 fn a_single_unnamed_socket_is_a_fixed_point() {
     let text = "joint1,joint2,joint3,joint4,socket\n0,0.1,0.1,0,post\n0.2,0.1,0.1,0,post\n";
@@ -272,8 +272,8 @@ fn a_single_unnamed_socket_is_a_fixed_point() {
     assert!(of(&file.data));
 }
 
-/// Residuals of touches inside and outside a sphere of unknown radius have different signs, so that their mean is near zero: the zero of the
-/// sphere is fitted with them.
+/// Residuals of touches inside and outside a sphere of unknown radius have different signs, so that their mean is near zero. The zero of the sphere
+/// is fitted with them.
 #[test]
 fn residuals_of_a_sphere_have_their_sign() {
     let simulation = Simulation { count: 150, ..Simulation::default() };
@@ -287,7 +287,7 @@ fn residuals_of_a_sphere_have_their_sign() {
     let mean = all.iter().sum::<f64>() / all.len() as f64;
     let rms = (all.iter().map(|e| e * e).sum::<f64>() / all.len() as f64).sqrt();
     println!("mean {:.2e} mm, RMS {:.4} mm", 1e3 * mean, 1e3 * rms);
-    // The zero is an unknown, and so their mean vanishes but for the prior; of one sign it would be 0.8 of the RMS.
+    // The zero is an unknown, and so their mean vanishes except for the prior; with one sign it would be 0.8 of the RMS.
     assert!(mean.abs() < 0.01 * rms, "{mean:e} m of {rms:e} m");
 }
 

@@ -1,4 +1,4 @@
-//! Recordings of a robot that stands in each configuration, with clocks of their own: the stands of both belong together.
+//! Recordings of a robot with static intervals, with clocks of their own: the static intervals of both belong together.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -18,12 +18,12 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// A standard normal number, nearly: of twelve uniform ones.
+/// An approximately standard normal number: the sum of twelve uniform ones.
 fn normal(random: &mut ChaCha8Rng) -> f64 {
     (0..12).map(|_| uniform(random)).sum::<f64>() - 6.0
 }
 
-/// When the robot stands, and where it is between: begin and end of each stand, seconds.
+/// Beginning and end of each static interval, seconds.
 fn stands(random: &mut ChaCha8Rng, count: usize) -> Vec<(f64, f64)> {
     let mut time = 0.3 * uniform(random);
     (0..count)
@@ -36,7 +36,7 @@ fn stands(random: &mut ChaCha8Rng, count: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// The stand at a time, and how far the robot is on the way to the next one.
+/// The static interval at a time, and the progress of the robot to the next one.
 fn place(stands: &[(f64, f64)], time: f64) -> (usize, f64) {
     let at = stands.partition_point(|it| it.0 <= time).saturating_sub(1);
     let end = stands[at].1;
@@ -49,17 +49,17 @@ fn place(stands: &[(f64, f64)], time: f64) -> (usize, f64) {
     }
 }
 
-/// Of each row that was read the stand that its readings and its measurement are of.
+/// For each row that was read, the static intervals of its readings and of its measurement.
 struct Joined {
     rows: Vec<(usize, usize)>,
     stands: usize,
     lag_s: f64,
     said: String,
-    /// Rate, when frames were lost, and the stands.
+    /// Rate, times of lost frames, and the static intervals, in words.
     about: String,
 }
 
-/// A session of 20 to 60 stands, written as two recordings and read again; `None` if it is refused.
+/// A session of 20 to 60 static intervals, written as two recordings and read again; `None` if it is refused.
 fn session(seed: u64) -> Option<Joined> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let random = &mut random;
@@ -88,7 +88,7 @@ fn session(seed: u64) -> Option<Joined> {
         }
         let (at, share) = place(&spans, time);
         let readings: Vec<String> = (made.data.readings(at).iter().zip(made.data.readings(next(at))))
-            // An encoder's digits.
+            // The encoder has a limited number of digits.
             .map(|(one, other)| format!("{:.6}", one + share * (other - one) + 1e-5 * normal(random)))
             .collect();
         writeln!(joints, "{:.4},{}", 5000.0 + time, readings.join(",")).unwrap();
@@ -101,7 +101,7 @@ fn session(seed: u64) -> Option<Joined> {
         if time > to {
             break;
         }
-        // Single frames, and a second, are lost.
+        // Single frames, and a whole second, are lost.
         if uniform(random) < 0.02 || (gap..gap + 1.0).contains(&time) {
             continue;
         }
@@ -191,7 +191,7 @@ fn stands_of_two_recordings_are_joined_rightly() {
 #[test]
 fn a_program_that_repeats_itself_is_refused_until_the_lag_is_stated() {
     let made = Simulation { count: 8, seed: 3, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
-    // Three times the same configurations, each for a second.
+    // The same configurations occur three times, each for a second.
     let spans: Vec<(f64, f64)> = (0..24).map(|at| (2.0 * f64::from(at), 2.0 * f64::from(at) + 1.0)).collect();
     let (mut joints, mut seen) =
         (format!("time,{}\n", made.data.reading_names().join(",")), "time,x,y,z,qx,qy,qz,qw\n".to_owned());

@@ -1,4 +1,4 @@
-//! Accuracy with noise, and convergence from afar.
+//! Accuracy with noise, and convergence from distant starts.
 
 use super::super::{Basin, Claim, MeasurementKind};
 use super::{Evidence, said};

@@ -1,4 +1,4 @@
-//! What the paper leaves out.
+//! Findings that the paper leaves out.
 
 use super::super::{Claim, MeasurementKind, Run, literal, runs, tables};
 use super::{Evidence, left_out};
@@ -9,7 +9,7 @@ use poecal_numerics::error::Result;
 /// Rank of the first matrix of the point simulation, and at its end.
 const FIRST_RANK: usize = 25;
 const LAST_RANK: usize = 27;
-/// Four decimals of millimetres leave a miss of v·ω above this, mm.
+/// Least error of v·ω that rounding to four decimals of millimetres causes in Table II, mm.
 const ROUNDED_MM: f64 = 1e-6;
 
 pub(super) fn redundancy(evidence: &Evidence<'_>) -> Result<Claim> {

@@ -1,4 +1,4 @@
-//! The statements of lou2009, and what it leaves out, against the runs.
+//! The statements of lou2009, and findings that it leaves out, compared with the runs.
 
 mod accuracy;
 mod left_out;
@@ -11,12 +11,12 @@ use crate::{Formulation, Method, Residual};
 use poecal_fit::state::Estimate;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// Difference below which a coordinate is recovered and a prediction right: metres, or of a unit vector.
+/// Difference below which a coordinate is recovered and a prediction right: metres, or without unit for a unit vector.
 const RECOVERED: f64 = 1e-9;
-/// What is left of an identity after rounding.
+/// Residual of an identity by rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// What the claims are judged by.
+/// Evidence that decides the claims.
 pub(super) struct Evidence<'a> {
     pub(super) runs: &'a [Ended],
     pub(super) found: &'a Reproduction,
@@ -38,7 +38,7 @@ impl Evidence<'_> {
         ])
     }
 
-    /// Where the noise-free run of the adjoint form from points ended.
+    /// Final estimate of the noise-free run of the adjoint form from points.
     fn end_of_points(&self) -> Result<&Estimate> {
         let ended = exact(self.runs, Formulation::Adjoint, MeasurementKind::Points, false);
         ended
@@ -57,7 +57,7 @@ impl Evidence<'_> {
         fits.ok_or_else(|| missing("noisy fit", formulation, seen))
     }
 
-    /// The starts from afar, the nearest first.
+    /// The distant starts, the nearest first.
     fn basins(&self, formulation: Formulation, seen: MeasurementKind, method: Method) -> Result<Vec<&Basin>> {
         let basins: Vec<&Basin> = self.found.basins(formulation, seen, method).collect();
         if basins.is_empty() {
@@ -92,7 +92,7 @@ fn left_out(claim: &str, paper: &str, judged: (String, bool), measured: String) 
     Claim { said_by_paper: false, ..said(claim, paper, judged, measured) }
 }
 
-/// All claims, in the order of the paper; then what it leaves out.
+/// All claims, in the order of the paper; then the findings that it leaves out.
 pub(super) fn claims(evidence: &Evidence<'_>) -> Result<Vec<Claim>> {
     let parts: [fn(&Evidence<'_>) -> Result<Claim>; 17] = [
         offsets::original_without_offsets,

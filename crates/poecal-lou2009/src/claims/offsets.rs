@@ -7,10 +7,10 @@ use poecal_arm::lie::Pose;
 use poecal_fit::state::{Chain, Linkage};
 use poecal_numerics::error::Result;
 
-/// A missed joint offset from which on it is not the prescribed one, degrees.
+/// Error of a joint offset from which it differs from the prescribed one, degrees.
 const MISSED_DEG: f64 = 0.5;
 
-/// Whether all screws are recovered.
+/// True if all screws are recovered.
 fn screws_recovered(run: &Run) -> bool {
     run.screw_error_max_v_m < RECOVERED && run.screw_error_max_omega < RECOVERED
 }

@@ -1,4 +1,4 @@
-//! What gross errors do to a calibration: a figure, a table and a file.
+//! Effect of gross errors on a calibration: a figure, a table and a file.
 
 use crate::{Breakdown, BreakdownEntry};
 use poecal_numerics::error::Result;

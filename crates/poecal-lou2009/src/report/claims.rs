@@ -3,7 +3,7 @@
 use crate::Reproduction;
 use poecal_report::table::line;
 
-/// What the paper says, and what it leaves out: for each statement its place, whether it holds, and what was measured.
+/// Statements of the paper, and findings that it leaves out: for each its location, its outcome, and the measurement.
 #[must_use]
 pub fn claims(found: &Reproduction) -> String {
     let mut out = String::new();

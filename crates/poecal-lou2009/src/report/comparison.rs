@@ -1,9 +1,9 @@
-//! The original formulation beside the adjoint one, in words that the numbers choose.
+//! The original formulation compared with the adjoint one, in words selected by the numbers.
 
 use super::numbers::{mm, number, percent, stated};
 use crate::{Formulation, MeasurementKind, Method, Reproduction, Residual, Run};
 
-/// Without noise, with noise, with offsets, from afar: a paragraph for each that the findings can tell.
+/// Without noise, with noise, with offsets, from distant starts: a paragraph for each supported by the findings.
 pub(super) fn sentences(found: &Reproduction) -> Vec<String> {
     [without_noise(found), with_noise(found), with_offsets(found), from_afar(found)]
         .into_iter()

@@ -1,4 +1,4 @@
-//! A report as blocks, so that Markdown and HTML say the same.
+//! A report as blocks, so that Markdown and HTML have the same content.
 
 use poecal_report::plot::NamedPlot;
 
@@ -13,7 +13,7 @@ pub(super) enum Block {
     Heading(String),
     /// A paragraph; words between backticks are code.
     Text(String),
-    /// What is typed or printed as it stands.
+    /// Typed or printed text.
     Code(String),
     Table(DocumentTable),
     Figure(Figure),
@@ -24,7 +24,7 @@ pub(super) struct DocumentTable {
     pub(super) caption: String,
     pub(super) head: Vec<String>,
     pub(super) rows: Vec<Vec<String>>,
-    /// How many columns, from the left, hold words; the others hold numbers.
+    /// Number of columns, from the left, with words; the others hold numbers.
     pub(super) words: usize,
 }
 

@@ -11,9 +11,9 @@ use poecal_report::plot::{Axis, DotPlot, Dots, Line, LinePlot, Mark, NamedPlot, 
 const SEEN: [MeasurementKind; 2] = [MeasurementKind::Poses, MeasurementKind::Points];
 /// Names of the parts of `v` and `ω`.
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// From this ratio on, an axis of ratios is logarithmic.
+/// Ratio from which an axis of ratios is logarithmic.
 const WIDE_RATIO: f64 = 10.0;
-/// An axis of shares goes from here, or from the least share, to 1.
+/// Lower end of an axis of shares, unless the least share is lower; the upper end is 1.
 const LEAST_SHARE: f64 = 0.9;
 
 /// The style of a formulation, the same in every figure.
@@ -230,7 +230,7 @@ pub(super) fn efficiency(found: &Reproduction) -> Figure {
     let plot = DotPlot {
         title: "Held-out error over the Cramér-Rao bound".to_owned(),
         description: "Ratio of the RMS held-out error of many noisy fits to the Cramér-Rao bound.".to_owned(),
-        // A scatter of a percent should not fill the plot.
+        // A scatter of a percent must not fill the plot.
         x: Axis::new("held-out RMS error over bound, ratio", scale).including(&[0.9, 1.1]),
         rows: rows
             .iter()

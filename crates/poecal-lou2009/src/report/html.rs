@@ -1,4 +1,4 @@
-//! A report as one HTML page: its style and its plots are in it, and it loads nothing. maud escapes every text.
+//! A report as one HTML page: it contains its style and its plots, and loads nothing. maud escapes every text.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -48,7 +48,7 @@ fn of_table(table: &DocumentTable) -> Markup {
         (true, false) => None,
         (false, _) => Some("number"),
     };
-    // The box scrolls on narrow screens, and is reached by the keyboard.
+    // The box scrolls on narrow screens, and is accessible by the keyboard.
     html! {
         p.caption { (table.caption) }
         div.scroll tabindex="0" role="region" aria-label=(table.caption) {
@@ -68,13 +68,13 @@ fn of_table(table: &DocumentTable) -> Markup {
     }
 }
 
-/// Whether a cell holds a sentence, which needs room.
+/// True if a cell contains a sentence, which needs space.
 fn is_long(cell: &str) -> bool {
     cell.chars().count() > 30
 }
 
 fn of_figure(figure: &Figure) -> Markup {
-    // The plots' own writer has escaped every text of theirs.
+    // The plots' own writer has escaped all their texts.
     html! {
         figure {
             div.plots { @for plot in &figure.plots { (PreEscaped(&plot.svg)) } }

@@ -1,4 +1,4 @@
-//! Reports: of a reproduction of lou2009, Markdown, HTML and plots from the same findings; of what gross errors do.
+//! Reports: of a reproduction of lou2009, as Markdown, HTML and plots from the same findings; and of the effect of gross errors.
 
 mod breakdown;
 mod claims;

@@ -1,8 +1,8 @@
-//! Numbers as the report writes them.
+//! Numbers in the form of the report.
 
 use poecal_report::table;
 
-/// A number with about four digits, with an exponent where it is tiny or huge.
+/// A number with about four digits, with an exponent if it is tiny or huge.
 pub(super) fn number(value: f64) -> String {
     if value.is_nan() {
         return "not a number".to_owned();
@@ -14,7 +14,7 @@ pub(super) fn number(value: f64) -> String {
     if value < 0.0 { format!("-{size}") } else { size }
 }
 
-/// The same, or a dash for what does not exist.
+/// A number, or a dash for a missing one.
 pub(super) fn number_or_dash(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), number)
 }
@@ -24,7 +24,7 @@ pub(super) fn mm(metres: f64) -> String {
     number(1e3 * metres)
 }
 
-/// A size that was chosen, as it was: without digits that rounding adds.
+/// A chosen size in its original form: without digits that rounding adds.
 pub(super) fn stated(value: f64) -> String {
     let rounded = (value * 1e9).round() / 1e9;
     if rounded.is_finite() && value.abs() < 1e6 { format!("{rounded}") } else { number(value) }

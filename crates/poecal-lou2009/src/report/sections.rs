@@ -55,7 +55,7 @@ pub(super) fn document(found: &Reproduction) -> Document {
     Document { title: "Reproduction of lou2009".to_owned(), blocks }
 }
 
-/// What of the experiment the paper does not say.
+/// Parts of the experiment that the paper does not state.
 fn own(found: &Reproduction) -> String {
     let count = |seen| found.runs.iter().find(|run| run.measurement == seen).map(|run| run.measurements);
     let offsets: Vec<String> = found.offsets.iter().map(|row| stated(row.prescribed_deg)).collect();
@@ -136,7 +136,7 @@ fn left_out(found: &Reproduction) -> String {
     )
 }
 
-/// How many iterations each formulation took.
+/// Number of iterations of each formulation.
 fn convergence(found: &Reproduction) -> String {
     let start = "Plain Gauss-Newton, as in the paper, from the nominal screws; no noise, no joint offsets in the truth.";
     let words = |run: &Run| {

@@ -53,7 +53,7 @@ pub(super) fn runs(found: &Reproduction) -> DocumentTable {
     }
 }
 
-/// What makes a run harder than the paper's own.
+/// Difficulties of a run beyond the paper's own.
 fn truth_words(offsets: bool, noise: bool) -> &'static str {
     match (offsets, noise) {
         (false, false) => "–",
@@ -93,7 +93,7 @@ fn screw_rows(row: &ScrewRow) -> Vec<Vec<String>> {
     screws.into_iter().map(cells).collect()
 }
 
-/// Largest difference of two lists; not a number if one of them is not.
+/// Largest difference of two lists; NaN if one of them contains NaN.
 pub(super) fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     differences.fold(
@@ -222,7 +222,7 @@ pub(super) fn basin(found: &Reproduction) -> DocumentTable {
     }
 }
 
-/// The residual of poses; points have one only.
+/// The residual of poses; points have only one.
 fn residual(seen: MeasurementKind, word: &str) -> String {
     match seen {
         MeasurementKind::Poses => word.to_owned(),
@@ -234,7 +234,7 @@ fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// The distinct values of a list, in the order in which they come.
+/// The distinct values of a list, in the order of their first occurrence.
 pub(super) fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     let mut found = Vec::new();
     for value in values {

@@ -1,4 +1,4 @@
-//! Made-up findings of a reproduction: of the right shape, with numbers from formulas. They measure nothing.
+//! Made-up findings of a reproduction: of the right shape, with numbers from formulas. They are not measured.
 
 use poecal_lou2009::{
     Basin, Claim, Efficiency, Formulation, Iteration, MatrixSpectrum, MeasurementKind, OffsetRow, PointRow,
@@ -131,7 +131,7 @@ fn screw(joint: usize) -> ScrewRow {
         printed: prescribed.map(|value| (1e4 * value).round() / 1e4),
         prescribed,
         from_poses: moved(prescribed, 3e-13),
-        // One coordinate is met exactly: a logarithmic axis has no place for it.
+        // One coordinate is met exactly: a logarithmic axis cannot show it.
         from_points: if joint == 4 { prescribed } else { moved(prescribed, 4e-12) },
     }
 }

@@ -6,7 +6,7 @@ use poecal_lou2009::literal::AdjointErrors;
 use poecal_lou2009::{Formulation, MeasurementKind};
 use poecal_model::robot::Robot;
 
-/// Everything that stands in the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
+/// Arguments of the POE formula: free twists `ξ_i`, joint values, `M` as its logarithm or `exp(Υ) M`, `P_c0`.
 #[derive(Clone)]
 pub(crate) struct Formula {
     twists: Vec<Twist>,

@@ -1,4 +1,4 @@
-//! The formulations of lou2009 side by side: what each finds, and where they part.
+//! The formulations of lou2009 side by side: their results, and their differences.
 
 use poecal_calibrate::{Calibration, CalibrationOptions, DeviceFrameKnowledge, calibrate};
 use poecal_lou2009::{Formulation, Method, Residual, formulated};
@@ -94,7 +94,7 @@ fn formulations_part_with_noise() {
     let fit = |formulation, method| {
         let mut options = options(&made, formulation);
         options.held_out = Some(0.0);
-        // A belief is held by none of the formulations for comparison.
+        // None of the formulations for comparison has a prior.
         options.tolerance = None;
         options.formulation = formulated(formulation, Residual::Tool, method);
         options.solver.decrement = 1e-14;

@@ -13,11 +13,11 @@ use poecal_model::measurement::{Dataset, Measurement, Noise};
 use poecal_model::robot::{Joint, Robot, Term};
 use poecal_numerics::solve::LeastSquares as _;
 
-/// What the differences can tell: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
+/// Resolution of the differences: their truncation error is some (0.2 rad)¹⁰ / 2772, far less.
 const RELATIVE: f64 = 1e-6;
 /// Rounding of one whitened residual of order one, which differences magnify by the inverse of their step.
 const ROUNDING: f64 = 2e-15;
-/// Different for position and rotation, so that a mix-up shows.
+/// Different noise for position and rotation, so that a mix-up shows.
 const NOISE: Noise = Noise::new(0.5, 0.8);
 const LENGTH_M: f64 = 0.7;
 
@@ -32,7 +32,7 @@ fn robot() -> Robot {
     Robot::new("r_p_r", joints, Pose::from_xyz_rpy([0.25, 0.15, 0.3], [0.4, -0.3, 0.8])).unwrap()
 }
 
-/// A measurement that is off the estimate's prediction by a shift and a turn.
+/// A measurement that differs from the estimate's prediction by a shift and a turn.
 fn data(
     robot: &Robot,
     estimate: &Estimate,
@@ -130,17 +130,17 @@ fn jacobians_agree_with_differences() {
             println!("{seen:12} by {name:13} {worst:.1e}");
         }
     }
-    // Of each of 16 cases and 3 kinds: 6 of the target, 4 of a turning axis by either way, 2 of a sliding one, an offset each.
+    // Compared columns of each of 16 cases and 3 kinds: 6 of the target, 4 of a turning axis by either form, 2 of a sliding one, an offset each.
     assert_eq!(compared, 16 * 3 * (6 + 2 * (4 + 4 + 2) + 3));
 }
 
-/// Whether the retraction keeps the unknown at a place of a step.
+/// True if the retraction keeps the unknown at an index of a step.
 fn problem_keeps(problem: &Problem<'_>, kept: &[f64], place: usize) -> bool {
     let own = problem.layout().parameters().flat_map(|(_, places)| places);
     own.zip(kept).any(|(&(other, _), &kept)| other == place && kept != 0.0)
 }
 
-/// The kernels take the paper's residual as any function of the target's pose, and its screws as columns that rows give.
+/// The kernels treat the paper's residual as any function of the target's pose, and its screws as columns supplied by rows.
 #[test]
 fn the_kernels_sum_them_as_their_formulas_do() {
     let simulation =
@@ -170,7 +170,7 @@ fn the_kernels_sum_them_as_their_formulas_do() {
             let estimate = Estimate::new(&robot, vec![robot.home], made.device_from_base);
             let (fast, rows) = (problem.normal(&estimate), reference::normal(&problem, &estimate));
             let n = problem.dim();
-            // Of an unknown without effect there is rounding only.
+            // The column of an unknown without effect is only rounding.
             let size = |k: usize| rows.gram[k * n + k].sqrt().max(1e-3);
             let mut worst = (fast.cost - rows.cost).abs() / rows.cost;
             for a in 0..n {

@@ -1,4 +1,4 @@
-//! The Jacobians of lou2009 as printed against quadrature, differences, the telescoping form and the solver's columns; and their ranks.
+//! The Jacobians of lou2009 as printed compared with quadrature, differences, the telescoping form and the solver's columns; and their ranks.
 
 use crate::formula::{Formula, differences, steps};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
@@ -18,7 +18,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Rounding of products of a few 6×6 matrices with elements of order one to ten.
 const RELATIVE: f64 = 1e-12;
-/// Rounding of a difference over a step of 0.01, with some room.
+/// Rounding of a difference over a step of 0.01, with some margin.
 const DIFFERENCES: f64 = 1e-10;
 
 /// All joints at these (radians, metres), and one configuration of different values.
@@ -99,7 +99,7 @@ fn closed_form_is_the_printed_integral() {
     assert!(worst < RELATIVE);
 }
 
-/// The adjoint formulation's matrix by theory.md §3 (12) and (12a), at errors that are not zero by (10b).
+/// The adjoint formulation's matrix by theory.md §3 (12) and (12a), at non-zero errors by (10b).
 fn telescoping(
     nominal: &Robot,
     errors: &AdjointErrors,
@@ -112,7 +112,7 @@ fn telescoping(
     let mut blocks: Vec<Matrix6<f64>> = (errors.eta.iter().zip(prefixes.windows(2)))
         .map(|(eta, pair)| (pair[0].adjoint() - pair[1].adjoint()) * eta.left_jacobian())
         .collect();
-    // As many columns of the tool's own as rows.
+    // The tool has as many own columns as rows.
     let rows = if seen == MeasurementKind::Poses { 6 } else { 3 };
     let mut all = DMatrix::zeros(rows, 6 * blocks.len() + rows);
     if seen == MeasurementKind::Poses {
@@ -139,7 +139,7 @@ fn telescoping_jacobian_is_that_of_the_paper() {
                 for seen in [MeasurementKind::Poses, MeasurementKind::Points] {
                     let literal = adjoint_jacobian(&robot, &errors, &values, false, seen);
                     let expected = telescoping(&robot, &errors, &values, seen);
-                    // At a whole turn a joint's block vanishes: what it is a difference of sets the scale.
+                    // At a whole turn a joint's block vanishes: the terms of its difference set the scale.
                     let scale = expected.norm().max(1.0);
                     worst = larger(worst, (literal - expected).norm() / scale);
                 }
@@ -222,8 +222,8 @@ fn columns_of_the_solver_are_the_blocks_of_the_paper_seen_at_the_target() {
     assert!(worst < RELATIVE);
 }
 
-/// All columns of free screws, those that the retraction drops too, and of offsets: Q_k and r_k of lou2009 (8) in the axis' own frame,
-/// also for values beyond a turn and with offsets in the estimate.
+/// All columns of free screws, including those that the retraction drops, and of offsets: Q_k and r_k of lou2009 (8) in the axis' own frame, also for
+/// values beyond a turn and with offsets in the estimate.
 #[test]
 fn free_screws_and_offsets_of_the_solver_are_those_of_the_paper() {
     let mut worst: f64 = 0.0;
@@ -277,8 +277,7 @@ fn within_limits(robot: &Robot, count: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Rank and columns on 60 configurations. Prints the last singular value that counts and the first that does not, as shares of the
-/// largest.
+/// Rank and columns on 60 configurations. Prints the last counted singular value and the first uncounted one, as shares of the largest.
 fn rank(robot: &Robot, formulation: Formulation, seen: MeasurementKind) -> (usize, usize) {
     let length_m = robot.reach_m() / 3.0;
     let matrix = stacked(robot, &within_limits(robot, 60), formulation, seen, length_m);
@@ -290,7 +289,7 @@ fn rank(robot: &Robot, formulation: Formulation, seen: MeasurementKind) -> (usiz
     (rank, values.len())
 }
 
-/// theory.md §7. At the nominal robot the point stands on axis 6.
+/// theory.md §7. At the nominal robot the point is on axis 6.
 #[test]
 fn ranks_of_the_elbow_are_those_of_the_theory() {
     use Formulation::{Adjoint, AdjointOffsets, Screw, ScrewOffsets};
@@ -308,7 +307,7 @@ fn ranks_of_the_elbow_are_those_of_the_theory() {
     }
 }
 
-/// theory.md §7 (35) and (35a) where some joints slide.
+/// theory.md §7 (35) and (35a) for chains with sliding joints.
 #[test]
 fn ranks_of_mixed_chains_are_those_of_the_theory() {
     for robot in robots().iter().filter(|robot| has_sliding_joint(robot)) {

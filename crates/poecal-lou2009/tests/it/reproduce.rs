@@ -1,4 +1,4 @@
-//! What the reproduction of lou2009 must show, and that it shows the same every time.
+//! Requirements on the reproduction of lou2009, and its determinism.
 
 use poecal_lou2009::{Formulation, MeasurementKind, Reproduction, ReproductionOptions, Run, lou2009};
 use poecal_testing::largest::larger;
@@ -141,7 +141,7 @@ fn claims_tell_the_numbers_of_the_runs() {
         println!("{}", claim.measured);
         numbers(&claim.measured)
     };
-    // As many digits as the text has.
+    // As many digits as in the text.
     let has = |told: &[f64], value: f64, digits: f64| {
         let near = |number: &f64| (number - value).abs() <= 0.51 * digits;
         assert!(told.iter().any(near), "{value} is not in {told:?}");
@@ -159,7 +159,7 @@ fn claims_tell_the_numbers_of_the_runs() {
     let (pitch, length) = free.fold((0.0_f64, 0.0_f64), |(pitch, length), run| {
         (pitch.max(run.constraint_miss_pitch_m), length.max(run.constraint_miss_length))
     });
-    // Free screws leave their constraints by what the paper normalises away; a claim that cannot fail would not show it.
+    // Free screws violate their constraints by the part that the paper normalises away; a claim that cannot fail would not show it.
     assert!(pitch > 1e-4 && length > 1e-4, "{pitch} {length}");
     let numbers = told("The adjoint error eliminates");
     has(&numbers, 1e3 * pitch, 0.01);
@@ -170,7 +170,7 @@ fn claims_tell_the_numbers_of_the_runs() {
 
 #[test]
 fn lengths_and_directions_are_told_apart() {
-    // From the estimates that the tables hold, with joint offsets neither in the truth nor in the formulation.
+    // Estimates of the tables, with joint offsets neither in the truth nor in the formulation.
     let found = lou2009(&FEW).unwrap();
     for (seen, of) in [
         (MeasurementKind::Poses, (|row| &row.from_poses) as fn(&poecal_lou2009::ScrewRow) -> &[f64; 6]),
@@ -186,7 +186,7 @@ fn lengths_and_directions_are_told_apart() {
         assert!((run.screw_error_max_v_m - largest(0..3)).abs() < 1e-15);
         assert!((run.screw_error_max_omega - largest(3..6)).abs() < 1e-15);
     }
-    // With offsets in the truth, the adjoint form ends at the equivalent robot, which equations (14) and (15) give without any fit.
+    // With offsets in the truth, the adjoint form ends at the equivalent robot, which equations (14) and (15) determine without any fit.
     let prescribed = poecal_lou2009::tables::prescribed();
     let offsets = poecal_lou2009::tables::PRESCRIBED_OFFSETS_DEG.map(f64::to_radians);
     let equivalent = poecal_model::offsets::into_screws(&prescribed, &offsets).unwrap();

@@ -1,4 +1,4 @@
-//! The report of a reproduction says what was found, in every form, and loads nothing.
+//! The report of a reproduction contains the findings, in every form, and loads nothing.
 
 use crate::findings::findings;
 use poecal_lou2009::Reproduction;
@@ -122,7 +122,7 @@ fn claims_stand_in_both_forms() {
             assert!(markdown.contains(&format!("| {} |", escaped_markdown(words))), "{words}");
         }
     }
-    // What the paper leaves out stands in a table of its own.
+    // Findings that the paper leaves out are in a table of their own.
     for text in [&html, &markdown] {
         let at = |words: &str| text.find(words).unwrap();
         let (said, left_out) =
@@ -224,7 +224,7 @@ fn a_second_run_replaces_the_first_and_leaves_other_files() {
     assert_eq!(std::fs::read_to_string(out.join("mine.svg")).unwrap(), "mine");
 }
 
-/// Every key of an object and of what is in it.
+/// Every key of an object and of its nested objects.
 fn keys(value: &serde_json::Value, found: &mut Vec<String>) {
     match value {
         serde_json::Value::Object(object) => {

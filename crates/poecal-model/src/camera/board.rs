@@ -11,7 +11,7 @@ use poecal_numerics::linalg;
 /// Points of one solid, in its own frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Board {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Names of its points.
     pub names: Vec<String>,
@@ -20,13 +20,13 @@ pub struct Board {
 }
 
 impl Board {
-    /// The point with a name.
+    /// Index of the point with a name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|own| own == name)
     }
 
-    /// Its points by their numbers, where all of their names are one word with a number behind it, such as `corner0` and `dot12`; none of others.
+    /// Points by their numbers, if all of their names are one word with a number behind it, such as `corner0` and `dot12`; otherwise empty.
     #[must_use]
     pub fn numbered(&self) -> BTreeMap<u32, u32> {
         let word = |name: &str| name.trim_end_matches(|it: char| it.is_ascii_digit()).len();
@@ -38,8 +38,8 @@ impl Board {
         all.filter(|all| all.len() == self.names.len()).unwrap_or_default()
     }
 
-    /// The same points in the order of a grid that counts along its other side first: what corners are where columns and rows of a board are
-    /// exchanged. `None` of a board that is no grid, or as long as it is wide.
+    /// The same points in the order of a grid that counts along its other side first. This is the result of an exchange of columns and rows
+    /// of a board. `None` if the board is no grid, or as long as it is wide.
     #[must_use]
     pub fn transposed(&self) -> Option<Self> {
         let [first, second, ..] = self.points.as_slice() else { return None };
@@ -60,8 +60,8 @@ impl Board {
         is_grid.then(|| Board { points: (0..self.points.len()).map(place).collect(), ..self.clone() })
     }
 
-    /// The half turn that takes each point of a flat board to the one with the same place from the end: how a chessboard looks whose first corner was
-    /// taken for its last. `None` of points that lie otherwise.
+    /// Half turn that takes each point of a flat board to the one with the same position from the end. It is the appearance of a chessboard whose
+    /// first corner was taken for its last. `None` if the points lie otherwise.
     #[must_use]
     pub fn half_turn(&self) -> Option<Pose> {
         let middle = middle(&self.points);
@@ -96,7 +96,7 @@ pub fn middle(points: &[Vector3<f64>]) -> Vector3<f64> {
     points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64
 }
 
-/// The direction in which some points are nearest to each other: the normal of a flat board.
+/// Direction in which some points are nearest to each other: the normal of a flat board.
 #[must_use]
 pub fn normal(points: &[Vector3<f64>]) -> Vector3<f64> {
     let (_, vectors) = linalg::symmetric_eigen(scatter(points).as_slice(), 3);
@@ -108,7 +108,7 @@ fn scatter(points: &[Vector3<f64>]) -> Matrix3<f64> {
     points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum()
 }
 
-/// How many dimensions some points have: 0 of one place, 1 of a line, 2 of a plane, 3 otherwise, by a thousandth of their size.
+/// Number of dimensions of some points: 0 of a single position, 1 of a line, 2 of a plane, 3 otherwise, by a thousandth of their size.
 #[must_use]
 pub fn dimensions(points: &[Vector3<f64>]) -> usize {
     let (values, _) = linalg::symmetric_eigen(scatter(points).as_slice(), 3);

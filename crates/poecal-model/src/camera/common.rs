@@ -1,4 +1,4 @@
-//! What the corners of one picture share: the error of the configuration (theory.md §4, *Pictures*).
+//! Shared error of the corners of one picture: the error of the configuration (theory.md §4, *Pictures*).
 
 use nalgebra::{Matrix6, Vector6};
 use schemars::JsonSchema;
@@ -7,34 +7,34 @@ use serde::{Deserialize, Serialize};
 use poecal_arm::lie::{Pose, hat};
 use poecal_numerics::linalg;
 
-/// Standard deviations of the common error of the corners of a picture, each component: what the arm does beyond its model, its repeatability, and
-/// whatever else moves a whole board in its picture.
+/// Standard deviations of the shared error of the corners of a picture, each component: errors of the arm beyond its model, its repeatability, and
+/// other motions of a whole board in its picture.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommonError {
     /// Shift, metres.
     pub shift_m: f64,
     /// Turn, rad.
     pub turn_rad: f64,
-    /// What it turns about.
+    /// Centre of the turn.
     pub about: Centre,
-    /// By how many times more than by their own noise the corners move the pose that they determine: above 1 where they are off together as in
-    /// the picture of another lens or board.
+    /// Factor by which the corners move the pose that they determine more than by their own noise. It is above 1 if their errors have a common
+    /// cause, such as another lens or board.
     pub corners: f64,
 }
 
-/// What the common error of the corners of a picture turns about.
+/// Centre of the turn of the shared error of a picture's corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Centre {
-    /// The board: as an arm that has it in its hand, or corners that are off together, turn it.
+    /// The board: the centre for an arm that holds it, or for corners with a common error.
     #[default]
     Board,
-    /// The camera: as an arm that has it in its hand turns it.
+    /// The camera: the centre for an arm that holds it.
     Camera,
 }
 
 impl Default for CommonError {
-    /// 1 mm and 1 mrad, to begin with.
+    /// Initial values: 1 mm and 1 mrad.
     fn default() -> Self {
         CommonError { shift_m: 1e-3, turn_rad: 1e-3, about: Centre::Board, corners: 1.0 }
     }
@@ -44,14 +44,15 @@ impl Default for CommonError {
 const UNDETERMINED: f64 = 1e-12;
 
 impl CommonError {
-    /// Corners whose errors are their own.
+    /// Corners without a shared error.
     pub const NONE: CommonError =
         CommonError { shift_m: 0.0, turn_rad: 0.0, about: Centre::Board, corners: 1.0 };
     /// Smallest standard deviation that is sought, m and rad.
     pub const FINEST: f64 = 1e-6;
 
-    /// `W = (c²H⁻¹ + Q)^{-1/2}`, what whitens the pose of a picture whose corners have the information H (1/m², 1/rad²), c times, and share an
-    /// error of the covariance Q; directions that the corners do not determine have no weight. Symmetric where a radian counts `length_m`.
+    /// `W = (c²H⁻¹ + Q)^{-1/2}`, the whitening of the pose of a picture. Its corners have the information H (1/m², 1/rad²), their noise the
+    /// factor c, and their shared error the covariance Q. Directions that the corners do not determine have no weight. The matrix is symmetric
+    /// if a radian counts `length_m`.
     #[must_use]
     pub fn whitening(&self, information: &Matrix6<f64>, length_m: f64) -> Matrix6<f64> {
         let root = root_of(information, length_m) / self.corners;
@@ -67,8 +68,8 @@ impl CommonError {
         whitening
     }
 
-    /// Of poses with the expected squares of their deviations from the true ones (m, rad), each with the information of its corners, a number of
-    /// which `unknowns` a fit has taken beside: by maximum likelihood, beginning from this one. Returns `-2 log L` with it.
+    /// Maximum-likelihood estimate, beginning from this one. Each pose has the expected squares of its deviation from the true one (m, rad) and
+    /// the information of its corners; a fit has used `unknowns` degrees of freedom beside. Returns `-2 log L` with it.
     #[must_use]
     pub fn likeliest(
         &self,
@@ -87,7 +88,7 @@ impl CommonError {
             })
             .collect();
         let numbers = 6.0 * seen.len() as f64;
-        // Residuals are smaller than errors by what the unknowns took.
+        // Residuals are smaller than errors by the degrees of freedom of the unknowns.
         let taken = numbers / (numbers - unknowns).max(6.0);
         let surprise = |logs: &[f64; 3]| {
             let [a, b, c] = logs.map(|it| it.exp().powi(2));
@@ -110,8 +111,7 @@ impl CommonError {
     }
 }
 
-/// The least value of a function of the first so many of three logarithms: coordinate by coordinate, with steps that halve, and no derivative to get
-/// wrong.
+/// Minimum of a function of the first `free` of three logarithms: coordinate by coordinate, with steps that halve, and no derivative to get wrong.
 fn least(of: &impl Fn(&[f64; 3]) -> f64, start: [f64; 3], free: usize) -> ([f64; 3], f64) {
     let (mut at, mut step, mut best) = (start, 1.0, of(&start));
     while step > 1e-2 {
@@ -141,13 +141,14 @@ const MOST_TIMES: f64 = 100.0;
 /// Twice the logarithm of a likelihood ratio that one more number reaches by chance in one of 1,000.
 const EVIDENT: f64 = 10.83;
 
-/// Squares of six numbers as a loss that a picture of another configuration does not move: linear beyond 5 standard deviations of each.
+/// Loss of the squares of six numbers, bounded so that a picture of another configuration has little effect: logarithmic beyond 5 standard
+/// deviations of each.
 fn bounded(square: f64) -> f64 {
     const FAR: f64 = 6.0 * 25.0;
     if square <= FAR { square } else { FAR * (1.0 + (square / FAR).ln()) }
 }
 
-/// The symmetric root of an information in which a radian counts a length, without directions that are not determined.
+/// Symmetric root of an information in which a radian counts a length, without directions that are not determined.
 fn root_of(information: &Matrix6<f64>, length_m: f64) -> Matrix6<f64> {
     let mut scaled = *information;
     for k in 3..6 {
@@ -157,7 +158,7 @@ fn root_of(information: &Matrix6<f64>, length_m: f64) -> Matrix6<f64> {
     power(&scaled, |value| value.sqrt())
 }
 
-/// A symmetric matrix with a function of its eigenvalues in their place; 0 of those that are nothing beside the largest.
+/// A symmetric matrix with a function of its eigenvalues in their place; 0 for eigenvalues that are rounding beside the largest.
 fn power(matrix: &Matrix6<f64>, function: impl Fn(f64) -> f64) -> Matrix6<f64> {
     let (values, vectors) = linalg::symmetric_eigen(matrix.as_slice(), 6);
     let largest = values.iter().copied().fold(0.0, f64::max);
@@ -169,7 +170,7 @@ fn power(matrix: &Matrix6<f64>, function: impl Fn(f64) -> f64) -> Matrix6<f64> {
     found
 }
 
-/// How a pose moves where its inverse moves by `(δ', ω')`: `ω = -R ω'`, `δ = -R δ' + p × R ω'` (theory.md §4, *Pictures*).
+/// Motion of a pose whose inverse moves by `(δ', ω')`: `ω = -R ω'`, `δ = -R δ' + p × R ω'` (theory.md §4, *Pictures*).
 #[must_use]
 pub fn motion_by_inverse(pose: &Pose) -> Matrix6<f64> {
     let mut back = Matrix6::zeros();
@@ -241,7 +242,8 @@ mod tests {
                 turn.exp(),
                 times.exp()
             );
-            // One session finds shift and turn to 3 and 5 %: eight to 1 and 2, and to thrice that where the corners hide them.
+            // One session determines shift and turn to 3 and 5 %, eight to 1 and 2 %; the error is three times as large if the corners hide
+            // them.
             assert!(shift.abs() < 0.04 * corners && turn.abs() < 0.06 * corners, "{shift} {turn}");
             assert!(times.abs() < 0.02 && (corners > 1.0 || times == 0.0), "{times}");
             assert!((variance - 1.0).abs() < 0.03);

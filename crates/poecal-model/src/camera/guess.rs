@@ -5,23 +5,23 @@ use nalgebra::{DVector, Matrix3, Vector2, Vector3};
 use super::Lens;
 use poecal_numerics::linalg;
 
-/// Fewest corners of a picture that has a say.
+/// Fewest corners of a picture that counts.
 const FEWEST: usize = 6;
-/// Least share of what tilts a homography that is no noise: below, all boards are parallel to the image.
+/// Least share of the tilt of a homography that is no noise: below, all boards are parallel to the image.
 const TILTED: f64 = 1e-3;
 
 /// Mean distance of corners from those of a pinhole, as a share of the picture, beyond which they are of another board: no lens bends so much.
 const BENT: f64 = 0.02;
 
-/// Corners of a flat board in one picture: places on the board (m), and pixels.
+/// Corners of a flat board in one picture: positions on the board (m), and pixels.
 pub type FlatView = (Vec<Vector2<f64>>, Vec<Vector2<f64>>);
 
-/// A pinhole of one focal length whose axis meets the middle of the picture, from pictures of flat boards (zhang2000, with the centre known): the
-/// columns h1, h2 of each homography are pixels of two directions at right angles and of one length, so `h1ᵀωh2 = 0` and `h1ᵀωh1 = h2ᵀωh2`
-/// with `ω = diag(1/f², 1/f², 1)`.
+/// A pinhole of one focal length whose axis meets the middle of the picture, from pictures of flat boards (zhang2000, with the centre known). The
+/// columns h1, h2 of each homography are pixels of two perpendicular directions of equal length, so `h1ᵀωh2 = 0` and `h1ᵀωh1 = h2ᵀωh2` with `ω =
+/// diag(1/f², 1/f², 1)`.
 ///
 /// # Errors
-/// In words, if no picture has enough corners, or no board is tilted.
+/// A message, if no picture has enough corners, or no board is tilted.
 pub fn guessed_lens([width, height]: [u32; 2], views: &[FlatView]) -> Result<Lens, String> {
     let centre = Vector2::new(0.5 * f64::from(width) - 0.5, 0.5 * f64::from(height) - 0.5);
     let size = f64::from(width.max(height));
@@ -60,7 +60,7 @@ pub fn guessed_lens([width, height]: [u32; 2], views: &[FlatView]) -> Result<Len
     Ok(Lens { size_px: Some([width, height]), ..Lens::pinhole([focal, focal], [centre.x, centre.y]) })
 }
 
-/// The homography from places on a board to pixels from the centre of the picture in units of its size, by the direct linear transformation.
+/// Homography from positions on a board to pixels from the centre of the picture in units of its size, by the direct linear transformation.
 fn homography(
     board: &[Vector2<f64>],
     pixels: &[Vector2<f64>],
@@ -69,7 +69,7 @@ fn homography(
     if board.len() < FEWEST || board.len() != pixels.len() {
         return None;
     }
-    // In units of about 1, without which rounding decides.
+    // The units are about 1; without them rounding decides.
     let middle = board.iter().sum::<Vector2<f64>>() / board.len() as f64;
     let radius = board.iter().map(|it| (it - middle).norm()).fold(0.0, f64::max);
     let mut gram = vec![0.0; 81];
@@ -122,7 +122,7 @@ mod tests {
             "focal length {:.0} px of 1500, with a distortion of -0.1 and a centre 15 px off",
             found.focal()
         );
-        // A start: what distortion and centre are taken for is some percent of the focal length.
+        // The guess is a start: the assumptions on distortion and centre cost some percent of the focal length.
         assert!((found.focal() / 1500.0 - 1.0).abs() < 0.1);
         let parallel: Vec<FlatView> = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].map(view).into();
         let pinhole = Lens::pinhole([1500.0; 2], [959.5, 599.5]);

@@ -1,16 +1,16 @@
-//! Lenses: where a point in front of a camera is in its picture (theory.md §4, *Pictures*).
+//! Lenses: projection of a point in front of a camera into its picture (theory.md §4, *Pictures*).
 
 use nalgebra::{Matrix2, Matrix2x3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Most numbers of a lens: focal lengths, centre, and eight of distortion.
+/// Largest number of parameters of a lens: focal lengths, centre, and eight of distortion.
 pub const LENS_NUMBERS: usize = 12;
 
 /// Names of the numbers of a lens, in the order of their derivatives.
 pub const LENS_NAMES: [&str; LENS_NUMBERS] =
     ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];
 
-/// How a lens bends rays away from a pinhole's.
+/// Model of the deviation of rays from those of a pinhole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Distortion {
@@ -32,7 +32,7 @@ pub enum Distortion {
 pub struct Lens {
     /// Focal lengths along u and v, pixels.
     pub focal_px: [f64; 2],
-    /// Where the axis meets the picture, pixels.
+    /// Intersection of the axis with the picture, pixels.
     pub centre_px: [f64; 2],
     /// Distortion.
     pub distortion: Distortion,
@@ -51,36 +51,37 @@ pub struct Projection {
     pub by_lens: [[f64; LENS_NUMBERS]; 2],
 }
 
-/// The place of a point in the plane of a pinhole with focal length 1, its derivative by the point, and those by the coefficients of the distortion.
+/// Position of a point in the plane of a pinhole with focal length 1, its derivative by the point, and those by the coefficients of the
+/// distortion.
 type Place = (Vector2<f64>, Matrix2x3<f64>, [[f64; 8]; 2]);
 
-/// Where a ray of slopes x/z and y/z is in the plane of a pinhole with focal length 1, with derivatives.
+/// Position of a ray of slopes x/z and y/z in the plane of a pinhole with focal length 1, with derivatives.
 struct Bent {
     place: Vector2<f64>,
     by_ray: Matrix2<f64>,
     by_coefficients: [[f64; 8]; 2],
 }
 
-/// Slopes x/z and y/z beyond which no ray is looked at: 84 degrees from the axis.
+/// Slopes x/z and y/z beyond which no ray is considered: 84 degrees from the axis.
 const STEEPEST: f64 = 10.0;
 /// Angle from the axis beyond which a fisheye sees nothing.
 const WIDEST: f64 = 2.6;
 
 impl Lens {
-    /// A lens that bends nothing.
+    /// A lens without distortion.
     #[must_use]
     pub fn pinhole(focal_px: [f64; 2], centre_px: [f64; 2]) -> Self {
         Lens { focal_px, centre_px, distortion: Distortion::Brown([0.0; 8]), size_px: None }
     }
 
-    /// The pixel of a point in the camera's frame (metres: x right, y down, z forward). `None` behind the camera, and beyond the radius where
-    /// the distortion turns back, so that a second ray would have the same pixel.
+    /// Pixel of a point in the camera's frame (metres: x right, y down, z forward). `None` behind the camera, and beyond the radius where the
+    /// distortion turns back, so that a second ray would have the same pixel.
     #[must_use]
     pub fn pixel(&self, point: &Vector3<f64>) -> Option<Vector2<f64>> {
         self.projection(point).map(|found| found.pixel)
     }
 
-    /// The same with derivatives.
+    /// The same pixel with derivatives.
     #[must_use]
     pub fn projection(&self, point: &Vector3<f64>) -> Option<Projection> {
         let [fx, fy] = self.focal_px;
@@ -110,7 +111,7 @@ impl Lens {
         Some(Projection { pixel: Vector2::new(fx * x + cx, fy * y + cy), by_point, by_lens })
     }
 
-    /// The direction of the ray that has a pixel, in the camera's frame; `None` if no ray has it.
+    /// Direction of the ray of a pixel, in the camera's frame; `None` if no ray has it.
     #[must_use]
     pub fn ray(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
         let place = Vector2::new(
@@ -137,7 +138,7 @@ impl Lens {
         Some(ray.normalize())
     }
 
-    /// Its numbers, in the order of [`LENS_NAMES`].
+    /// Numbers, in the order of [`LENS_NAMES`].
     #[must_use]
     pub fn numbers(&self) -> [f64; LENS_NUMBERS] {
         let mut numbers = [0.0; LENS_NUMBERS];
@@ -161,7 +162,7 @@ impl Lens {
         Lens { focal_px: [fx, fy], centre_px: [cx, cy], distortion, ..*self }
     }
 
-    /// Square of the slope from the axis at which the places of a lens of Brown and Conrady turn back.
+    /// Square of the slope from the axis at which the positions of a lens of Brown and Conrady turn back.
     pub fn turn(&self) -> f64 {
         const PARTS: u32 = 512;
         const HALVINGS: usize = 50;
@@ -187,8 +188,8 @@ impl Lens {
 /// Steps of Newton's method, which doubles the digits in each.
 const NEWTON: usize = 30;
 
-/// Brown and Conrady: `x = a R + 2 p1 a b + p2 (r² + 2 a²)`, `y = b R + p1 (r² + 2 b²) + 2 p2 a b` with
-/// `R = (1 + k1 r² + k2 r⁴ + k3 r⁶)/(1 + k4 r² + k5 r⁴ + k6 r⁶)`. `None` where a larger slope would have a smaller place.
+/// Brown and Conrady: `x = a R + 2 p1 a b + p2 (r² + 2 a²)`, `y = b R + p1 (r² + 2 b²) + 2 p2 a b` with `R = (1 + k1 r² +
+/// k2 r⁴ + k3 r⁶)/(1 + k4 r² + k5 r⁴ + k6 r⁶)`. `None` where a larger slope would have a smaller image.
 fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option<Bent> {
     let s = a * a + b * b;
     let above = 1.0 + s * (k1 + s * (k2 + s * k3));
@@ -226,10 +227,10 @@ fn brown(&[k1, k2, p1, p2, k3, k4, k5, k6]: &[f64; 8], a: f64, b: f64) -> Option
     Some(Bent { place, by_ray, by_coefficients })
 }
 
-/// Whether the place of a ray turns back before this square of its slope.
+/// True if the image of a ray turns back before this square of its slope.
 fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
     const PARTS: usize = 16;
-    // `1 + 3 k1 s + 5 k2 s² + 7 k3 s³` without what adds to it falls all the way: above zero here, it is so before.
+    // `1 + 3 k1 s + 5 k2 s² + 7 k3 s³` without its positive terms decreases everywhere: above zero here, it is so before.
     let is_polynomial = k4 == 0.0 && k5 == 0.0 && k6 == 0.0;
     let least = 1.0 + s * (3.0 * k1.min(0.0) + s * (5.0 * k2.min(0.0) + s * 7.0 * k3.min(0.0)));
     let is_plain = is_polynomial && least > 0.0;
@@ -244,12 +245,12 @@ fn turns_back(&[k1, k2, k3, k4, k5, k6]: &[f64; 6], s: f64) -> bool {
         })
 }
 
-/// The ray whose place is given, by Newton's method from the axis outward.
+/// Ray of an image position, by Newton's method from the axis outward.
 fn unbent(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
     let mut slopes = place;
     let miss =
         |slopes: Vector2<f64>| brown(k, slopes.x, slopes.y).map(|bent| (bent.place - place, bent.by_ray));
-    // A start beyond the turn is brought back to where the lens still sees.
+    // A start beyond the turn is brought back into the field of view.
     for _ in 0..NEWTON {
         if miss(slopes).is_some() {
             break;
@@ -262,7 +263,7 @@ fn unbent(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
         let inverse =
             Matrix2::new(slope[(1, 1)], -slope[(0, 1)], -slope[(1, 0)], slope[(0, 0)]) / determinant;
         let mut step = inverse * error;
-        // Halved until it stays on this side of the turn and is nearer.
+        // The step is halved until it stays on this side of the turn and is nearer.
         let mut is_nearer = false;
         for _ in 0..NEWTON {
             is_nearer = miss(slopes - step).is_some_and(|(next, _)| next.norm() < error.norm());
@@ -280,7 +281,7 @@ fn unbent(k: &[f64; 8], place: Vector2<f64>) -> Option<Vector3<f64>> {
     (error.norm() < 1e-9).then(|| Vector3::new(slopes.x, slopes.y, 1.0))
 }
 
-/// The bent angle of an angle from the axis, and its slope.
+/// Distorted angle of an angle from the axis, and its slope.
 fn bent_angle(&[k1, k2, k3, k4]: &[f64; 4], angle: f64) -> (f64, f64) {
     let s = angle * angle;
     let value = angle * (1.0 + s * (k1 + s * (k2 + s * (k3 + s * k4))));
@@ -288,7 +289,7 @@ fn bent_angle(&[k1, k2, k3, k4]: &[f64; 4], angle: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// Kannala and Brandt: the place is `θ_d (x, y)/r` with `θ = atan2(r, z)` and `θ_d = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸)`.
+/// Kannala and Brandt: the position is `θ_d (x, y)/r` with `θ = atan2(r, z)` and `θ_d = θ (1 + k1 θ² + k2 θ⁴ + k3 θ⁶ + k4 θ⁸)`.
 fn fisheye(k: &[f64; 4], point: &Vector3<f64>) -> Option<Place> {
     let across = Vector2::new(point.x, point.y);
     let (r, d) = (across.norm(), point.norm_squared());
@@ -337,7 +338,7 @@ mod tests {
         ]
     }
 
-    /// Differences of 1e-6 leave about 1e-6 of derivatives of size 1e3: half of the digits.
+    /// Differences of 1e-6 have errors of about 1e-6 for derivatives of size 1e3: half of the digits.
     #[test]
     fn derivatives_are_those_of_differences() {
         let mut worst: f64 = 0.0;
@@ -387,7 +388,7 @@ mod tests {
         // r (1 - 0.3 r²) turns at r² = 1/0.9.
         assert!(strong.pixel(&Vector3::new(1.05, 0.0, 1.0)).is_some());
         assert_eq!(strong.pixel(&Vector3::new(1.06, 0.0, 1.0)), None);
-        // Beyond the zero of the polynomial its place comes back.
+        // Beyond the zero of the polynomial its image returns.
         assert_eq!(strong.pixel(&Vector3::new(3.0, 0.0, 1.0)), None);
         assert_eq!(strong.pixel(&Vector3::new(0.1, 0.0, -1.0)), None);
         assert_eq!(strong.pixel(&Vector3::zeros()), None);

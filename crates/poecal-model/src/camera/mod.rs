@@ -1,8 +1,8 @@
-//! Cameras: lenses, boards of known points, and the poses from which these look as they were seen.
+//! Cameras: lenses, boards of known points, and the poses of boards that fit pictures.
 //!
-//! `sighting.rs` finds the pose of a board that has its corners where they were seen, with what they determine of it; `pnp.rs` and `poses.rs` find all
-//! poses that a board may have, without a guess; `common.rs` has what the corners of one picture share. No robots, and no rows of a session: a picture
-//! becomes one row (`measurement/pictures.rs`), a pose with noise of the shape that its corners have.
+//! `sighting.rs` estimates the pose of a board that fits its corners, with its information; `pnp.rs` and `poses.rs` find all possible poses of a
+//! board, without a guess. `common.rs` has the shared error of the corners of one picture. Robots and rows of a session are not here: a picture
+//! becomes one row (`measurement/pictures.rs`), a pose whose noise has the shape of its corners.
 
 mod board;
 mod common;

@@ -1,11 +1,11 @@
-//! Points of printed patterns, with the names that `poecal detect` gives them.
+//! Points of printed patterns, with the names that `poecal detect` uses.
 
 use nalgebra::Vector3;
 
 use super::Board;
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// Most squares, dots or tags along a side: 250 of 4 mm make a metre.
+/// Largest number of squares, dots or tags along a side: 250 of 4 mm make a metre.
 const MOST: usize = 250;
 /// Corners of a tag from its middle, in halves of its side, y upwards: upper left, upper right, lower right, lower left.
 const AROUND: [[f64; 2]; 4] = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]];
@@ -27,7 +27,8 @@ fn long(what: &str, length_m: f64) -> Result<()> {
 }
 
 impl Board {
-    /// A chessboard of so many squares along x and y: its inner corners `corner0`, `corner1`, … along x first, in metres from the first one.
+    /// A chessboard with these numbers of squares along x and y: its inner corners `corner0`, `corner1`, … along x first, in metres from
+    /// the first one.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if it has fewer than two corners along a side, or its squares have no size.
@@ -38,8 +39,8 @@ impl Board {
         Ok(grid(name, "corner", places, square_m))
     }
 
-    /// A grid of so many dots in a row and so many rows, as OpenCV counts them: their middles `dot0`, `dot1`, … row by row, in metres from the first
-    /// one, with `pitch_m` from row to row. Dot `j` of row `i` is at `(j, i)` pitches, in an asymmetric grid at `(2 j + i mod 2, i)`.
+    /// A grid of dots in rows, with the numbers of columns and rows as OpenCV counts them. Its centres are `dot0`, `dot1`, … row by row, in metres
+    /// from the first one, with `pitch_m` from row to row. Dot `j` of row `i` is at `(j, i)` pitches, in an asymmetric grid at `(2 j + i mod 2, i)`.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if it has fewer than three dots along a side (two of an asymmetric one), or no size.
@@ -57,9 +58,9 @@ impl Board {
         Ok(grid(name, "dot", places, pitch_m))
     }
 
-    /// Kalibr's grid of so many tags in a row and so many rows: tag 0 is at the lower left, and its lower left corner is the origin, with x to the
-    /// right and y upwards, metres. Tags of a side of `size_m` are `spacing` of it apart. The corners of tag 7 are `tag7.0`, `tag7.1`, `tag7.2` and
-    /// `tag7.3`, as the board stands: upper left, upper right, lower right, lower left.
+    /// Kalibr's grid of tags in rows, with the numbers of columns and rows. Tag 0 is at the lower left, and its lower left corner is the origin,
+    /// with x to the right and y upwards, metres. Tags have a side of `size_m` and a gap of `spacing` times it. The corners of tag 7 are `tag7.0`,
+    /// `tag7.1`, `tag7.2` and `tag7.3` on the upright board: upper left, upper right, lower right, lower left.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if it has no tags, or no size.
@@ -82,8 +83,8 @@ impl Board {
         Ok(Board { name: name.to_owned(), names, points })
     }
 
-    /// A single tag: its corners `0` to `3` (upper left, upper right, lower right and lower left of the tag as it is printed), metres from its middle,
-    /// with x to the right and y upwards.
+    /// A single tag: its corners `0` to `3` (upper left, upper right, lower right and lower left of the printed tag), metres from its middle, with x
+    /// to the right and y upwards.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if it has no size.

@@ -1,4 +1,4 @@
-//! Pictures: corners of a board as a camera saw them.
+//! Pictures: measured corners of a board.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use poecal_arm::lie::Pose;
 /// A camera with its lens.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its lens.
+    /// Lens.
     pub lens: Lens,
-    /// Whether the lens is a first guess from the pictures.
+    /// True if the lens is a first guess from the pictures.
     #[serde(default)]
     pub is_guessed: bool,
 }
@@ -26,16 +26,16 @@ impl Camera {
     }
 }
 
-/// A point of a board as it was seen.
+/// A measured point of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Corner {
     /// Index of the board's point.
     pub point: u32,
-    /// Where it was seen, pixels.
+    /// Measured position, pixels.
     pub pixel: Vector2<f64>,
     /// Standard deviation of each of its coordinates, pixels, if it is stated.
     pub sigma_px: Option<f64>,
-    /// Its weight in the picture's pose: 1, or less down to 0 where it does not fit the others.
+    /// Weight in the picture's pose: 1, or less down to 0 if it does not fit the others.
     pub weight: f64,
     /// Line in the file of the row.
     pub line: u32,
@@ -54,21 +54,20 @@ pub struct Picture {
     pub image: Option<String>,
     /// The corners.
     pub corners: Vec<Corner>,
-    /// Poses of the board in the camera's frame from which its corners look as they were seen, the best first: a flat board that is far away
-    /// or small has two.
+    /// Poses of the board in the camera's frame that fit its corners, the best first: a flat board that is far away or small has two.
     pub poses: Vec<Pose>,
-    /// Whether the row is the camera in the frame of the board, since the camera is on the robot, instead of the board in the camera's.
+    /// True if the row is the camera in the frame of the board (since the camera is on the robot), instead of the board in the camera's.
     pub of_camera: bool,
 }
 
 impl Picture {
-    /// A picture of which no row and no pose is known yet.
+    /// A picture without a row and without a pose.
     #[must_use]
     pub fn new(camera: usize, board: usize, image: Option<String>, corners: Vec<Corner>) -> Self {
         Picture { row: 0, camera, board, image, corners, poses: Vec::new(), of_camera: false }
     }
 
-    /// The measurement of the row, as a pose of the board in the camera's frame, and the other way round.
+    /// Measurement of the row, from a pose of the board in the camera's frame, and the reverse.
     #[must_use]
     pub fn directed(&self, pose: &Pose) -> Pose {
         if self.of_camera { pose.inverse() } else { *pose }

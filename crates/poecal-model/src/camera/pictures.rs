@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{Board, Camera, CommonError, Picture, PictureNumber, View};
 
-/// Standard deviation of corners that state none, pixels, to begin with.
+/// Initial standard deviation of corners that state none, pixels.
 const USUAL_PX: f64 = 0.3;
 
-/// The pictures of a session with their cameras and boards. A picture is one row: the pose that fits its corners, with noise of the shape that
-/// they have, and with what they share (theory.md §4, *Pictures*).
+/// The pictures of a session with their cameras and boards. A picture is one row: the pose that fits its corners, with noise of the shape of
+/// its corners and of their shared error (theory.md §4, *Pictures*).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pictures {
     /// The cameras.
@@ -19,9 +19,9 @@ pub struct Pictures {
     pub all: Vec<Picture>,
     /// Standard deviation of corners that state none, pixels.
     pub sigma_px: f64,
-    /// What the corners of a picture share.
+    /// Shared error of a picture's corners.
     pub common: CommonError,
-    /// Numbers of cameras and boards that were found with the robot.
+    /// Numbers of cameras and boards that were estimated with the robot.
     #[serde(default)]
     pub found: Vec<PictureNumber>,
 }
@@ -40,13 +40,13 @@ impl Default for Pictures {
 }
 
 impl Pictures {
-    /// Whether there is none.
+    /// True if there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// A picture with its lens and board; `None` of one whose camera or board is not among these.
+    /// A picture with its lens and board; `None` if its camera or board is not among these.
     #[must_use]
     pub fn view<'a>(&'a self, picture: &'a Picture) -> Option<View<'a>> {
         let (camera, board) = (self.cameras.get(picture.camera)?, self.boards.get(picture.board)?);
@@ -59,7 +59,7 @@ impl Pictures {
         self.all.binary_search_by_key(&row, |picture| picture.row).ok()
     }
 
-    /// Those of some rows, which get new numbers in this order.
+    /// Pictures of some rows, which have new numbers in this order.
     pub(crate) fn only(&self, rows: &[u32]) -> Self {
         let of = |(new, &row): (u32, &u32)| {
             let picture = self.all.get(self.of_row(row)?)?;
@@ -68,7 +68,7 @@ impl Pictures {
         Pictures { all: (0..).zip(rows).filter_map(of).collect(), ..self.clone() }
     }
 
-    /// Adds others, whose first row has this number here.
+    /// Adds other pictures, whose first row has this number here.
     pub(crate) fn extend(&mut self, other: &Pictures, first: u32) {
         if self.is_empty() {
             (self.sigma_px, self.common) = (other.sigma_px, other.common);

@@ -1,4 +1,4 @@
-//! The pose of known points from the rays on which they were seen, without a guess.
+//! Pose of known points from their rays, without an initial guess.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
@@ -7,16 +7,16 @@ use poecal_arm::lie::{Pose, hat, rotation};
 type Matrix9 = SMatrix<f64, 9, 9>;
 type Vector9 = SVector<f64, 9>;
 
-/// Most steps from a start.
+/// Largest number of steps from a start.
 const STEPS: usize = 60;
 /// Two rotations that differ by less are one, rad.
 const SAME: f64 = 1e-3;
-/// Most poses.
+/// Largest number of poses.
 const MOST: usize = 4;
 
-/// Poses of a body in the frame of the rays, the best first: local minima over the rotations of `Σ |(I - f fᵀ)(R P + t)|²`, the squared
-/// distances of the points from their rays, with the best t of each R, all points in front. Of a plane there may be two, of three points four
-/// (theory.md §4, *Pictures*; terzakis2020). At least three points are needed.
+/// Poses of a body in the frame of the rays, the best first. They are the local minima over the rotations of `Σ |(I - f fᵀ)(R P + t)|²`, the
+/// squared distances of the points from their rays, with the best t of each R and all points in front. A plane may have two, three points
+/// four (theory.md §4, *Pictures*; terzakis2020). At least three points are needed.
 #[must_use]
 pub fn poses_of_rays(seen: &[(Vector3<f64>, Vector3<f64>)]) -> Vec<Pose> {
     let Some(quadric) = Quadric::new(seen) else { return Vec::new() };
@@ -69,7 +69,7 @@ impl Quadric {
         (r.transpose() * self.form * r)[0].max(0.0)
     }
 
-    /// The minimum that is reached from a start, by Levenberg-Marquardt on the rotation; `None` if it nears one that is known.
+    /// Minimum that is reached from a start, by Levenberg-Marquardt on the rotation; `None` if it nears one that is known.
     fn minimum(&self, start: Matrix3<f64>, known: &[(f64, Matrix3<f64>)]) -> Option<(f64, Matrix3<f64>)> {
         let (mut turn, mut cost, mut damping) = (start, self.cost(&start), 1e-3);
         let scale = self.form.trace() / 9.0;
@@ -79,7 +79,7 @@ impl Quadric {
                 &[0, 1, 2].map(|k| numbers(&(hat(&Vector3::ith(k, 1.0)) * turn))),
             );
             let gradient = slopes.transpose() * self.form * r;
-            // The second derivative of the rotation too: with it the minimum is a minimum, and not a saddle.
+            // The second derivative of the rotation is included: with it the minimum is a minimum, and not a saddle.
             let mut curvature: Matrix3<f64> = slopes.transpose() * self.form * slopes;
             let pull = self.form * r;
             for i in 0..3 {

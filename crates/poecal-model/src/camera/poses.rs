@@ -1,4 +1,4 @@
-//! All poses that a board may have in a picture.
+//! All possible poses of a board in a picture.
 
 use super::pnp::poses_of_rays;
 use super::sighting::View;
@@ -6,18 +6,18 @@ use super::{middle, normal};
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
 
-/// Fewest corners from which a pose is found: of three points there are up to four.
+/// Fewest corners from which a pose is computed: of three points there are up to four.
 const FEWEST: usize = 4;
-/// A second pose of a picture whose corners are off by more than this many times the first's is none.
+/// Factor of the first pose's error beyond which a second pose of a picture does not count.
 const WORSE: f64 = 20.0;
 /// Two poses that differ by less are one, m and rad.
 const SAME: f64 = 1e-4;
 
 impl View<'_> {
-    /// The poses from which the corners look as they were seen, the best first; a flat board that is far away or small has two.
+    /// Poses that fit the corners, the best first; a flat board that is far away or small has two.
     ///
     /// # Errors
-    /// Why there is none, in words.
+    /// A message with the reason why there is none.
     pub fn poses(&self) -> Result<Vec<Pose>, String> {
         let count = self.corners.len();
         if count < FEWEST {
@@ -59,7 +59,7 @@ impl View<'_> {
         }
     }
 
-    /// A flat board tilted as far the other way: its normal mirrored at the line of sight, its middle where it was.
+    /// A flat board tilted by as much in the opposite direction: its normal is mirrored at the line of sight, its middle stays.
     fn tilted_back(&self, pose: &Pose) -> Pose {
         let points: Vec<Vector3<f64>> = self.rays().iter().map(|(point, _)| *point).collect();
         let (middle, normal) = (middle(&points), pose.rotation * normal(&points));
@@ -71,7 +71,7 @@ impl View<'_> {
     }
 }
 
-/// What corners without weight cost a pose that others fit: as if each were at the bound.
+/// Cost of the corners without weight for a pose that others fit: as if each were at the bound.
 fn lost(weights: &[f64]) -> f64 {
     weights.iter().map(|weight| 36.0 * (1.0 - weight)).sum::<f64>() / weights.len().max(1) as f64
 }

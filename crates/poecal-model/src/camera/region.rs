@@ -1,13 +1,13 @@
-//! The part of a sensor that its pictures show, as `camera_info` of ROS states it beside the lens of the whole sensor.
+//! Region of a sensor in its pictures, as `camera_info` of ROS states it beside the lens of the whole sensor.
 
 use super::Lens;
 
 /// A region of a sensor whose pixels are joined in rectangles. The matrix `K` is that of the whole sensor, as `sensor_msgs/CameraInfo` has it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Region {
-    /// The first pixel of the region.
+    /// First pixel of the region.
     offset_px: [f64; 2],
-    /// Width and height of the region; 0 where it is the whole sensor.
+    /// Width and height of the region; 0 for the whole sensor.
     size_px: [f64; 2],
     /// Pixels that are joined to one along each axis.
     binning: [f64; 2],
@@ -21,7 +21,7 @@ impl Region {
     /// A region by the numbers of its keys, in the order of [`KEYS`]; 0 of a key that is absent.
     ///
     /// # Errors
-    /// In words, if numbers are none of a region.
+    /// A message, if numbers are none of a region.
     pub fn new(numbers: [f64; 6]) -> Result<Self, String> {
         let is_wrong = |it: &f64| *it < 0.0 || it.fract() != 0.0 || *it > f64::from(u32::MAX);
         if let Some((keys, number)) = KEYS.iter().zip(numbers).find(|(_, number)| is_wrong(number)) {
@@ -37,10 +37,10 @@ impl Region {
         Ok(Region { offset_px: [x, y], size_px: [width, height], binning: [by_x.max(1.0), by_y.max(1.0)] })
     }
 
-    /// The lens of the pictures of the region, from that of the whole sensor, with what was done in words if it is another one.
+    /// Lens of the pictures of the region, from that of the whole sensor, with a note on the change if there is one.
     ///
     /// # Errors
-    /// In words, if the region is not on the sensor.
+    /// A message, if the region is not on the sensor.
     pub fn applied(&self, lens: &Lens) -> Result<(Lens, Option<String>), String> {
         let Region { offset_px, size_px, binning } = *self;
         let is_part = size_px[0] > 0.0;

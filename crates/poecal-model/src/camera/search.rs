@@ -1,7 +1,7 @@
 //! An unknown lens from pictures whose poses are free (theory.md §4, *Pictures*).
 //!
-//! With the lens the bend of a flat board is found: a bend of a few tenths of a millimetre, that of paper on cardboard, is taken for a focal length
-//! that is off by a percent, many times what the noise of corners says of it.
+//! The bend of a flat board is estimated with the lens. Otherwise a bend of a few tenths of a millimetre, that of paper on cardboard, would be
+//! taken for a change of the focal length by a percent. That is many times its standard deviation by the noise of corners.
 
 use nalgebra::{DMatrix, DVector, Matrix6xX};
 
@@ -12,49 +12,49 @@ use super::{
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
 
-/// Most steps to the lens of pictures alone.
+/// Largest number of steps to the lens of pictures alone.
 const STEPS: usize = 60;
 /// Largest step of a number, standard deviations of its prior.
 const FARTHEST: f64 = 2.0;
-/// Squared standard deviations by which a step must be worth it.
+/// Least gain of a step, squared standard deviations.
 const LEAST: f64 = 1e-9;
-/// Standard deviations by which pictures must differ more than by the noise of their corners.
+/// Number of standard deviations by which pictures must differ more than by the noise of their corners.
 const SPREAD: f64 = 4.0;
 
-/// The search for the lens of the one camera of some pictures: what the corners say of it where the poses of the pictures are free.
+/// Search for the lens of the one camera of some pictures, by their corners with free poses of the pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LensSearch {
     unknowns: PictureUnknowns,
     count: usize,
     /// Numbers that stay as they are: the scales of the board, which the pictures do not determine.
     held: Vec<usize>,
-    /// By how much what the corners of a picture share makes their information of the numbers less.
+    /// Factor by which the shared error of a picture's corners reduces their information on the numbers.
     shared: f64,
 }
 
-/// Pictures with a lens, and what they say of another one.
+/// Pictures with a lens, and their information on another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LensState {
     /// The pictures with this lens, with the weights of their corners and the noise of them.
     pub pictures: Pictures,
-    /// The pose of the board in the camera's frame in each picture.
+    /// Pose of the board in the camera's frame in each picture.
     pub poses: Vec<Pose>,
-    /// How each of these poses moves (m, rad, in the camera's axes) by a standard deviation of the prior of each number.
+    /// Derivatives of each of these poses (m, rad, in the camera's axes) by each number, in standard deviations of its prior.
     pub follow: Vec<Matrix6xX<f64>>,
     /// The numbers, in standard deviations of their prior from the first guess.
     pub step: DVector<f64>,
     /// Information of the numbers in these deviations, with the prior.
     pub information: DMatrix<f64>,
-    /// Its pull.
+    /// Gradient.
     pub pull: DVector<f64>,
     /// Degrees of freedom of the corners' noise.
     pub freedom: f64,
-    /// How many times more than by independent noise of the corners the pictures differ in what they say of the numbers (variance).
+    /// Variance ratio of the pictures' information on the numbers: observed over that by independent noise of the corners.
     pub spread: f64,
 }
 
 impl LensSearch {
-    /// Of the camera of pictures, whose lens is a first guess; with the state there. `None` if there is no such camera.
+    /// Search for the camera of pictures, whose lens is a first guess; with its state. `None` if there is no such camera.
     #[must_use]
     pub fn from_pictures(pictures: &Pictures) -> Option<(Self, LensState)> {
         let first = pictures.all.first()?;
@@ -71,21 +71,21 @@ impl LensSearch {
         (count > 0).then_some((search, state))
     }
 
-    /// The state after a step of the numbers; each pose is the best one near that of this state, or near another one that is given.
+    /// State after a step of the numbers; each pose is the best one near that of this state, or near another one of `poses`.
     #[must_use]
     pub fn stepped(&self, from: &LensState, poses: &[Pose], by: &DVector<f64>) -> LensState {
         let by = by * (FARTHEST / by.amax().max(FARTHEST));
         self.at(&from.pictures, poses, &from.step + by)
     }
 
-    /// The search in which the pictures have the information by which they differ at a state: what the corners of a picture share, as a board or a
-    /// lens of another shape than is fitted, counts once in each picture.
+    /// The search with the information of the pictures reduced by their variance ratio at a state. The shared error of a picture's corners, by a
+    /// board or a lens of another shape than is fitted, counts once in each picture.
     #[must_use]
     pub fn with_spread_of(&self, state: &LensState) -> Self {
         LensSearch { shared: (self.shared * state.spread).max(1.0), ..self.clone() }
     }
 
-    /// The lens that the pictures determine by themselves. `None` where they do not.
+    /// Lens that the pictures determine by themselves; `None` if they do not.
     #[must_use]
     pub fn alone(&self, start: &LensState) -> Option<LensState> {
         let mut state = start.clone();
@@ -99,7 +99,7 @@ impl LensSearch {
         state.step.iter().all(|it| it.is_finite()).then_some(state)
     }
 
-    /// The numbers of the lens of a state, with these standard deviations in those of the prior.
+    /// Numbers of the lens of a state, with these standard deviations in units of those of the prior.
     #[must_use]
     pub fn numbers(&self, state: &LensState, deviations: &[f64]) -> Vec<PictureNumber> {
         self.unknowns.numbers(&state.step, deviations)
@@ -107,7 +107,7 @@ impl LensSearch {
 
     fn at(&self, before: &Pictures, poses: &[Pose], step: DVector<f64>) -> LensState {
         let mut pictures = before.clone();
-        // The boards stay flat: of a flat one other poses are known.
+        // The boards stay flat: for a flat one the second pose is known.
         let (cameras, bent) = self.unknowns.at(&step);
         pictures.cameras = cameras;
         let sightings: Vec<_> = (pictures.all.iter().zip(poses))
@@ -126,7 +126,7 @@ impl LensSearch {
                 .for_each(|(corner, weight)| corner.weight = *weight);
         }
         let freedom = freedom.max(1.0);
-        // Corners that state their noise are never better than that.
+        // Corners with a stated noise are never better than that.
         let states = pictures.all.iter().flat_map(|it| &it.corners).all(|corner| corner.sigma_px.is_some());
         let excess = squares / freedom;
         let excess = if states { excess.max(1.0) } else { excess.max(1e-6) };
@@ -162,13 +162,13 @@ impl LensSearch {
     }
 }
 
-/// A picture with boards as they are bent.
+/// A picture with bent boards.
 fn view<'a>(pictures: &'a Pictures, bent: &'a [Board], picture: &'a Picture) -> Option<View<'a>> {
     let lens = &pictures.cameras.get(picture.camera)?.lens;
     Some(View::new(picture, lens, bent.get(picture.board)?, pictures.sigma_px))
 }
 
-/// How many times larger the squares of the pulls of pictures are than their information says; 1 where that is no more than chance.
+/// Ratio of the squared gradients of pictures to their expectation by the information; 1 if it exceeds 1 by no more than chance.
 fn spread(
     information: &DMatrix<f64>,
     squared: &DMatrix<f64>,
@@ -178,7 +178,7 @@ fn spread(
     let count = information.nrows();
     let Some(factor) = linalg::cholesky(information.as_slice(), count, 0.0) else { return 1.0 };
     let inverse = DMatrix::from_row_slice(count, count, &linalg::inverse(&factor));
-    // Numbers that the prior determines do not count. At the best lens the pulls of all pictures cancel.
+    // Numbers that the prior determines do not count. At the best lens the gradients of all pictures cancel.
     let determined = (&inverse * expected).trace();
     let rows = pictures as f64;
     let ratio = (inverse * squared).trace() / determined * rows / (rows - 1.0).max(1.0);

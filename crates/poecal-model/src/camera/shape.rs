@@ -1,10 +1,10 @@
-//! The shape of a flat board: its scales along x and y, and its bend.
+//! Shape of a flat board: its scales along x and y, and its bend.
 
 use nalgebra::{Matrix3x4, Vector3};
 
 use super::board::{Board, dimensions, middle};
 
-/// The middle and half sides of a board in its plane.
+/// Middle and half sides of a board in its plane.
 pub(crate) struct Shape {
     middle: Vector3<f64>,
     pub(crate) half_m: [f64; 2],
@@ -19,7 +19,7 @@ impl Shape {
         Shape { middle, half_m: [half(0), half(1)] }
     }
 
-    /// How high a parabola of sagitta 1 through the ends of the board is at a point, along x and y.
+    /// Height of a parabola of sagitta 1 through the ends of the board at a point, along x and y.
     fn heights(&self, point: &Vector3<f64>) -> [f64; 2] {
         [0, 1].map(|axis| 1.0 - ((point[axis] - self.middle[axis]) / self.half_m[axis]).powi(2))
     }
@@ -41,7 +41,7 @@ impl Shape {
     }
 }
 
-/// Whether a board is flat in the plane of its x and y: its scales and its bend are along these.
+/// True if a board is flat in the plane of its x and y: its scales and its bend are along these.
 #[must_use]
 pub fn is_flat_sheet(board: &Board) -> bool {
     let z = board.points.first().map_or(0.0, |it| it.z);

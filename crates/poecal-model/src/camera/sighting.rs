@@ -1,4 +1,4 @@
-//! The pose of a board that fits its corners best, with what the corners determine of it (theory.md §4, *Pictures*).
+//! Pose of a board that fits its corners best, with the information of the corners on it (theory.md §4, *Pictures*).
 
 use nalgebra::{Matrix2x3, Matrix2x6, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
@@ -7,18 +7,18 @@ use super::{Board, Corner, Lens, Picture, dimensions};
 use poecal_arm::lie::{Pose, hat, rotation};
 use poecal_numerics::linalg;
 
-/// Standard deviations beyond which a corner has no weight.
+/// Number of standard deviations beyond which a corner has no weight.
 const FAR: f64 = 6.0;
 /// Median length of a vector of two normal numbers.
 const MEDIAN: f64 = 1.177_410;
-/// Fewest corners of which some may lose their weight: below, any of them bends the pose to itself.
+/// Fewest corners of which some may lose their weight: with fewer, any corner bends the pose to itself.
 const JUDGEABLE: usize = 8;
-/// Times their noise by which corners are off that are others.
+/// Multiple of their noise from which on corners count as other points.
 const ODD: f64 = 4.0;
-/// Most steps.
+/// Largest number of steps.
 const STEPS: usize = 40;
 
-/// A board as a picture shows it.
+/// A board in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sighting {
     /// Pose of the board in the camera's frame.
@@ -27,15 +27,15 @@ pub struct Sighting {
     pub information: Matrix6<f64>,
     /// Weights of the corners.
     pub weights: Vec<f64>,
-    /// Weighted sum of squares of what remains, in standard deviations.
+    /// Weighted sum of squares of the residuals, in standard deviations.
     pub cost: f64,
-    /// The same in pixels.
+    /// The same sum in square pixels.
     pub cost_px2: f64,
-    /// Numbers that remain: two a corner, by weight, less the six of the pose.
+    /// Degrees of freedom: two a corner, by weight, less the six of the pose.
     pub freedom: f64,
 }
 
-/// What a sighting is found from.
+/// Input of a sighting.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// The lens.
@@ -52,25 +52,25 @@ pub struct View<'a> {
 pub(crate) struct Seen {
     pub(crate) error: Vector2<f64>,
     pub(crate) by_motion: Matrix2x6<f64>,
-    /// By a motion of the point in the camera's frame, and by the numbers of the lens.
+    /// Derivative by a motion of the point in the camera's frame, and by the numbers of the lens.
     pub(crate) by_point: Matrix2x3<f64>,
     pub(crate) by_lens: [[f64; LENS_NUMBERS]; 2],
 }
 
 impl<'a> View<'a> {
-    /// Of a picture.
+    /// View of a picture.
     #[must_use]
     pub fn new(picture: &'a Picture, lens: &'a Lens, board: &'a Board, sigma_px: f64) -> Self {
         View { lens, board, corners: &picture.corners, sigma_px }
     }
 
-    /// Where a corner would be seen.
+    /// Predicted pixel of a corner.
     #[must_use]
     pub fn predicted(&self, corner: &Corner, camera_from_board: &Pose) -> Option<Vector2<f64>> {
         self.lens.pixel(&camera_from_board.act(self.board.points.get(corner.point as usize)?))
     }
 
-    /// Measured minus predicted pixel of each corner; none where it would not be in the picture.
+    /// Measured minus predicted pixel of each corner; `None` if it would not be in the picture.
     #[must_use]
     pub fn errors(&self, camera_from_board: &Pose) -> Vec<Option<Vector2<f64>>> {
         let error = |corner: &Corner| Some(corner.pixel - self.predicted(corner, camera_from_board)?);
@@ -81,7 +81,7 @@ impl<'a> View<'a> {
         corner.sigma_px.unwrap_or(self.sigma_px)
     }
 
-    /// The corners' points with the rays on which they were seen.
+    /// Points of the corners with their rays.
     #[must_use]
     pub fn rays(&self) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let of = |corner: &Corner| {
@@ -114,7 +114,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Weights by how far corners are off at a pose.
+    /// Weights by the residuals of corners at a pose.
     fn weights(&self, pose: &Pose) -> Vec<f64> {
         let lengths: Vec<Option<f64>> = self
             .corners
@@ -150,14 +150,14 @@ impl<'a> View<'a> {
         sums
     }
 
-    /// Information of a pose by corners of the weights that they have.
+    /// Information of a pose by corners with their current weights.
     #[must_use]
     pub fn information(&self, pose: &Pose) -> Matrix6<f64> {
         let weights: Vec<f64> = self.corners.iter().map(|corner| corner.weight).collect();
         self.sums(pose, &weights).0
     }
 
-    /// Whether corners are off a pose by so much more than their noise that one of them is another point.
+    /// True if the residuals at a pose exceed the noise of corners so much that one of them is another point.
     #[must_use]
     pub fn is_odd(&self, pose: &Pose) -> bool {
         let weights: Vec<f64> = self.corners.iter().map(|corner| corner.weight).collect();
@@ -165,7 +165,7 @@ impl<'a> View<'a> {
         self.sums(pose, &weights).2 > ODD * ODD * freedom.max(1.0)
     }
 
-    /// The nearest pose to a start that fits the corners best; `robust` takes weight off corners that do not fit the others. `None` where too
+    /// Nearest pose to a start that fits the corners best; `robust` reduces the weight of corners that do not fit the others. `None` if too
     /// few corners can be seen.
     #[must_use]
     pub fn sighting(&self, start: &Pose, robust: bool) -> Option<Sighting> {
@@ -187,8 +187,8 @@ impl<'a> View<'a> {
         Some(self.sighting_at(pose, information, cost, weights))
     }
 
-    /// What the corners say near a pose, to first order, where their best pose is another one: that of a flat board which is tilted the other
-    /// way looks almost the same.
+    /// Sighting near a pose, to first order, although the best pose of the corners is another one: a flat board that is tilted in the
+    /// opposite direction looks almost the same.
     #[must_use]
     pub fn near(&self, pose: &Pose) -> Option<Sighting> {
         let weights = self.weights(pose);
@@ -237,7 +237,7 @@ impl<'a> View<'a> {
             let found = self.sums(&next, weights);
             if found.2 < cost {
                 (pose, now, damping) = (next, found, damping * 0.1);
-                // What is left to gain is below a millionth of a standard deviation.
+                // The remaining gain is below a millionth of a standard deviation.
                 if gradient.dot(&step) < 1e-12 {
                     break;
                 }
@@ -255,12 +255,12 @@ impl<'a> View<'a> {
 
 /// Largest turn of a step to first order, rad.
 const MOST_TURN: f64 = 0.1;
-/// Standard deviations that a corner costs which the camera cannot see.
+/// Residual of a corner that the camera cannot see, in standard deviations.
 const UNSEEN: f64 = 1e4;
-/// Most rounds of weights.
+/// Largest number of rounds of weights.
 const ROUNDS: usize = 15;
 
-/// A pose whose origin is shifted and which is turned about it, in the axes of the frame that it is in.
+/// A pose after a shift of its origin and a rotation about it, in the axes of its parent frame.
 #[must_use]
 pub fn moved(pose: &Pose, step: &Vector6<f64>) -> Pose {
     let turn: Matrix3<f64> = rotation::exp(&Vector3::new(step[3], step[4], step[5]));

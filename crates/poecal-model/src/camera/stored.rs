@@ -1,4 +1,4 @@
-//! Cameras and boards as files of ours hold them, in pixels and millimetres.
+//! Cameras and boards in files of poecal, in pixels and millimetres.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -10,29 +10,29 @@ use poecal_numerics::error::{ErrorKind, Result};
 /// A body of known points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BoardEntry {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its points.
+    /// Points.
     pub points: Vec<PointEntry>,
 }
 
 /// A point of a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PointEntry {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its place in the frame of the body, millimetres.
+    /// Position in the frame of the body, millimetres.
     pub place_mm: [f64; 3],
 }
 
 /// A camera with its lens.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CameraEntry {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Focal lengths along u and v, pixels.
     pub focal_px: [f64; 2],
-    /// Where the axis meets the picture, pixels; the centre of the first pixel is (0, 0).
+    /// Intersection of the axis with the picture, pixels; the centre of the first pixel is (0, 0).
     pub centre_px: [f64; 2],
     /// `brown` with k1, k2, p1, p2, k3, k4, k5, k6 in OpenCV's order, or `fisheye` with k1 to k4.
     pub model: String,
@@ -43,7 +43,7 @@ pub struct CameraEntry {
 }
 
 impl BoardEntry {
-    /// Of a board.
+    /// Entry of a board.
     #[must_use]
     pub fn from_board(board: &Board) -> Self {
         let point = |(name, point): (&String, &Vector3<f64>)| PointEntry {
@@ -56,7 +56,7 @@ impl BoardEntry {
         }
     }
 
-    /// The board.
+    /// Board of the entry.
     #[must_use]
     pub fn board(&self) -> Board {
         let place = |point: &PointEntry| Vector3::from(point.place_mm) * 1e-3;
@@ -71,7 +71,7 @@ impl BoardEntry {
 /// Largest side of a picture, pixels.
 pub const LARGEST_SIDE: u32 = 100_000;
 
-/// Width and height of a camera's pictures, as a file states them; none if it does not state both.
+/// Width and height of a camera's pictures, as a file states them; `None` if it does not state both.
 ///
 /// # Errors
 /// [`ErrorKind::Measurement`] without a place, if they are not whole numbers of pixels.
@@ -87,7 +87,7 @@ pub fn size_of_pictures(stated: [Option<f64>; 2]) -> Result<Option<[u32; 2]>> {
 }
 
 impl CameraEntry {
-    /// The camera.
+    /// Camera of the entry.
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`] without a place, if the numbers are those of no camera.
@@ -109,7 +109,7 @@ impl CameraEntry {
         Ok(Camera::new(self.name.clone(), Lens { focal_px, centre_px, distortion, size_px }))
     }
 
-    /// Of a camera.
+    /// Entry of a camera.
     #[must_use]
     pub fn from_camera(camera: &Camera) -> Self {
         let lens = &camera.lens;

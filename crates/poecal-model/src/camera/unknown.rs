@@ -1,4 +1,4 @@
-//! What of cameras and boards is unknown beside the robot, and how corners depend on it (theory.md §4, *Pictures*).
+//! Unknowns of cameras and boards beside the robot, and the derivatives of corners by them (theory.md §4, *Pictures*).
 
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix2xX, Matrix6, Matrix6xX, Vector2, Vector3, Vector6};
 use schemars::JsonSchema;
@@ -11,7 +11,8 @@ use super::{Camera, Corner, View};
 use poecal_arm::lie::Pose;
 use poecal_numerics::linalg;
 
-/// Prior of focal lengths and of the centre, as shares of the focal length and of the picture's width; of a lens that was guessed.
+/// Prior of focal lengths and of the centre, as shares of the focal length and of the picture's width; the last factor is for a guessed
+/// lens.
 const FOCAL: f64 = 0.02;
 const CENTRE: f64 = 0.02;
 const GUESSED: f64 = 10.0;
@@ -20,44 +21,44 @@ const DISTORTION: f64 = 0.1;
 const TANGENTIAL: f64 = 0.01;
 /// Prior of the scales of a board and of the sagitta of its bend as a share of its half side.
 const SHAPE: f64 = 0.005;
-/// Prior of the place of a point of a body, metres.
+/// Prior of the position of a point of a body, metres.
 const PLACE_M: f64 = 1e-3;
 
-/// Something of a camera or of a board that is unknown.
+/// A group of unknowns of a camera or of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PictureUnknown {
-    /// The numbers of a camera's lens.
+    /// Numbers of a camera's lens.
     Lens(usize),
     /// Scales of a flat board along x and y, and its bend along both.
     Board(usize),
-    /// The places of the points of a body.
+    /// Positions of the points of a body.
     Markers(usize),
 }
 
-/// A number of a camera or of a board that was found.
+/// An estimated number of a camera or of a board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "FoundEntry")]
 pub struct PictureNumber {
-    /// What it is: `lens`, `board` or `markers`, then a name, and the number's own, as `lens.left.fx`.
+    /// Name: `lens`, `board` or `markers`, then a name, and the number's own, such as `lens.left.fx`.
     pub name: String,
-    /// Its unit, `px` or `mm`; empty of shares and of coefficients.
+    /// Unit, `px` or `mm`; empty for shares and for coefficients.
     pub unit: String,
-    /// As it was given.
+    /// Initial value.
     pub given: f64,
-    /// As it was found.
+    /// Estimated value.
     pub found: f64,
-    /// Standard deviation of what was known before.
+    /// Standard deviation of the prior.
     pub prior: f64,
-    /// Standard deviation of what was found, by the corners and what was known before.
+    /// Standard deviation of the estimate, by the corners and the prior.
     pub deviation: f64,
 }
 
-/// How many times better another lens explains the corners of single pictures from where on the stated one is that of other pictures: "three times"
+/// Factor by which another lens must explain the corners of single pictures better, for the stated one to be that of other pictures: "three times"
 /// to one digit.
 pub const OTHER_LENS: f64 = 2.5;
 
-/// The numbers that are farther than some standard deviations from what was given, in words.
+/// Numbers whose change exceeds some standard deviations, in words.
 #[must_use]
 pub fn changed_numbers(numbers: &[PictureNumber], deviations: f64) -> String {
     let changed = numbers.iter().filter(|it| (it.found - it.given).abs() > deviations * it.deviation);
@@ -70,7 +71,7 @@ pub fn changed_numbers(numbers: &[PictureNumber], deviations: f64) -> String {
     if words.is_empty() { "of several numbers".to_owned() } else { words.join(", ") }
 }
 
-/// Unknown numbers of cameras and boards as steps from what was given, in standard deviations of their prior.
+/// Unknown numbers of cameras and boards as steps from their initial values, in standard deviations of their prior.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureUnknowns {
     cameras: Vec<Camera>,
@@ -78,27 +79,27 @@ pub struct PictureUnknowns {
     parts: Vec<Part>,
 }
 
-/// The numbers of one unknown.
+/// Numbers of one unknown.
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     of: PictureUnknown,
     first: usize,
-    /// Of a lens the places among its numbers.
+    /// Indices of the unknown numbers of a lens.
     places: Vec<usize>,
     priors: Vec<f64>,
 }
 
-/// What corners of pictures say of the unknown numbers where the poses of the pictures are free: with the gradient of half their squares.
+/// Information of the corners of pictures on the unknown numbers, with free poses of the pictures, and the gradient of half their squares.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnInformation {
     /// Information, in deviations of the prior.
     pub gram: DMatrix<f64>,
-    /// Its pull.
+    /// Gradient.
     pub pull: DVector<f64>,
 }
 
 impl OwnInformation {
-    /// Nothing of so many numbers.
+    /// No information on `count` numbers.
     #[must_use]
     pub fn none(count: usize) -> Self {
         OwnInformation { gram: DMatrix::zeros(count, count), pull: DVector::zeros(count) }
@@ -106,7 +107,7 @@ impl OwnInformation {
 }
 
 impl PictureUnknowns {
-    /// The numbers of some unknowns, from these cameras and boards on.
+    /// Numbers of some unknowns, with these cameras and boards as initial values.
     #[must_use]
     pub fn new(cameras: &[Camera], boards: &[Board], unknowns: &[PictureUnknown]) -> Self {
         let mut parts: Vec<Part> = Vec::new();
@@ -126,7 +127,7 @@ impl PictureUnknowns {
         PictureUnknowns { cameras: cameras.to_vec(), boards: boards.to_vec(), parts }
     }
 
-    /// How many numbers are unknown.
+    /// Number of unknown numbers.
     #[must_use]
     pub fn count(&self) -> usize {
         self.parts.iter().map(|part| part.priors.len()).sum()
@@ -162,8 +163,8 @@ impl PictureUnknowns {
         (cameras, boards)
     }
 
-    /// Adds what the corners of a picture say beside its pose; returns how that pose follows the numbers, as motions of the board in the camera's
-    /// axes: `-H⁻¹ H_z`. `information` is that of the pose.
+    /// Adds the information of the corners of a picture beyond its pose; returns the derivatives of that pose by the numbers, as motions of the
+    /// board in the camera's axes: `-H⁻¹ H_z`. `information` is that of the pose.
     pub fn add(
         &self,
         (camera, board): (usize, usize),
@@ -215,13 +216,13 @@ impl PictureUnknowns {
         by
     }
 
-    /// The unknown numbers of a camera's lens: place among all, place among those of the lens, and prior.
+    /// Unknown numbers of a camera's lens: index among all, index among those of the lens, and prior.
     pub fn of_lens(&self, camera: usize) -> impl Iterator<Item = (usize, usize, f64)> {
         let own = self.parts.iter().filter(move |part| part.of == PictureUnknown::Lens(camera));
         own.flat_map(Part::lens)
     }
 
-    /// How each point of a board moves with the numbers, metres by a deviation of their prior: place among all and direction; empty if they are
+    /// Motion of each point of a board by the numbers, metres for a deviation of their prior: index among all and direction; empty if they are
     /// known.
     pub fn by_points(&self, board: usize) -> Vec<Vec<(usize, Vector3<f64>)>> {
         let Some(given) = self.boards.get(board) else { return Vec::new() };
@@ -241,7 +242,7 @@ impl PictureUnknowns {
         given.points.iter().enumerate().map(of).collect()
     }
 
-    /// The numbers after a step, with their standard deviations in those of the prior.
+    /// Numbers after a step, with their standard deviations in units of those of the prior.
     #[must_use]
     pub fn numbers(&self, step: &DVector<f64>, deviations: &[f64]) -> Vec<PictureNumber> {
         let mut all = Vec::with_capacity(self.count());
@@ -311,7 +312,7 @@ impl Part {
         }
     }
 
-    /// Derivatives of a corner's pixel by the numbers, in standard deviations of the corner and of the prior, with their places.
+    /// Derivatives of a corner's pixel by the numbers, in standard deviations of the corner and of the prior, with their indices.
     fn columns(
         &self,
         seen: &super::sighting::Seen,
@@ -334,13 +335,13 @@ impl Part {
         self.moves(at, (point, shape), |own, way, prior| out.push((own, on_board * way * prior)));
     }
 
-    /// The numbers of a lens: place among all, place among those of the lens, and prior.
+    /// Numbers of a lens: index among all, index among those of the lens, and prior.
     fn lens(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let both = self.places.iter().zip(&self.priors).enumerate();
         both.map(|(k, (&place, &prior))| (self.first + k, place, prior))
     }
 
-    /// How a point of a board moves with its numbers: place among all, direction, and prior of each.
+    /// Motion of a point of a board by its numbers: index among all, direction, and prior of each.
     fn moves(
         &self,
         at: usize,
@@ -362,7 +363,7 @@ impl Part {
     }
 }
 
-/// Which numbers of a lens are unknown, and their priors: focal lengths, centre, and the distortion that it has, at least k1, k2, p1, p2.
+/// Unknown numbers of a lens, and their priors: focal lengths, centre, and the coefficients of its distortion, at least k1, k2, p1, p2.
 fn lens_priors(camera: &Camera) -> (Vec<usize>, Vec<f64>) {
     let lens = &camera.lens;
     let numbers = lens.numbers();
@@ -391,7 +392,7 @@ mod tests {
     use crate::camera::Lens;
     use Vector6;
 
-    /// Own information and follow of a flat board against differences: the pose that fits its corners best, and its squares.
+    /// Information and derivatives of a flat board compared with differences: the pose that fits its corners best, and its squares.
     #[test]
     fn what_corners_say_of_lens_and_board_is_that_of_differences() {
         let size_px = Some([1920, 1200]);
@@ -415,7 +416,7 @@ mod tests {
         let count = unknowns.count();
         assert_eq!(count, 8 + 4 + 3 * 24);
         let (mut worst, mut worst_pull): (f64, f64) = (0.0, 0.0);
-        // Exact corners, and corners that are off: the gradient of their squares is not zero.
+        // Corners are exact, or have errors: then the gradient of their squares is not zero.
         for off in [0.0, 1.0] {
             let corners: Vec<Corner> = (0..).zip(&board.points).map(corner(off)).collect();
             let mut best = |step: &DVector<f64>| {
@@ -442,7 +443,7 @@ mod tests {
                 if off == 0.0 {
                     worst = worst.max((moved - follow.column(k)).norm() / follow.column(k).norm().max(1e-4));
                 } else {
-                    // Half the squares fall by the pull.
+                    // Half the squares decrease by the gradient.
                     worst_pull =
                         worst_pull.max((own.pull[k] + 0.25 * (more - less) / 1e-2).abs() / own.pull.amax());
                 }

@@ -1,16 +1,16 @@
-//! What the pictures of a camera have in common: how the board is tilted and turned in them, and where in the image its corners are.
+//! Statistics of the pictures of a camera: tilts and turns of the board, and the extent of its corners in the image.
 
 use nalgebra::{Vector2, Vector3};
 
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::linalg;
 
-/// Most poses of one board that are compared with each other.
+/// Largest number of poses of one board that are compared with each other.
 const COMPARED: usize = 48;
 /// Shares of the corners between which they are in the image.
 const ENDS: [f64; 2] = [0.02, 0.98];
 
-/// Poses of the boards that a camera saw, and where in its image their corners were.
+/// Poses of the boards that a camera saw, and positions of their corners in its image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Views {
     /// Poses of each board in the camera's frame.
@@ -20,7 +20,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// Largest angle between the normal of a board (its z) and the optical axis, rad; of nothing zero.
+    /// Largest angle between the normal of a board (its z) and the optical axis, rad; zero without boards.
     #[must_use]
     pub fn largest_tilt(&self) -> f64 {
         let tilt = |pose: &Pose| {
@@ -30,8 +30,8 @@ impl Views {
         self.poses.iter().flatten().map(tilt).fold(0.0, f64::max)
     }
 
-    /// By how much the boards turn from picture to picture, rad, root mean square over all pairs: about the axis of most turning, and about all
-    /// axes square to it.
+    /// Turns of the boards from picture to picture, rad, root mean square over all pairs: about the axis of most turning, and about all axes
+    /// perpendicular to it.
     #[must_use]
     pub fn turns(&self) -> [f64; 2] {
         let turns: Vec<Vector3<f64>> = self.poses.iter().flat_map(|poses| turns(poses)).collect();
@@ -39,7 +39,7 @@ impl Views {
         [most, second.hypot(third)]
     }
 
-    /// From and to where the corners are in the image, pixels along `u` and `v`: all but the outermost 2 % at each end.
+    /// Extent of the corners in the image, pixels along `u` and `v`: all but the outermost 2 % at each end.
     #[must_use]
     pub fn extent_px(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| {
@@ -51,7 +51,7 @@ impl Views {
     }
 }
 
-/// The turns between all pairs of some poses, in the frame that they are in.
+/// Turns between all pairs of some poses, in their parent frame.
 fn turns(poses: &[Pose]) -> Vec<Vector3<f64>> {
     let step = poses.len().div_ceil(COMPARED).max(1);
     let some: Vec<&Pose> = poses.iter().step_by(step).collect();

@@ -13,10 +13,10 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 const PARALLEL: f64 = 1e-12;
 /// Sine of the angle between two axes below which they are nearly parallel: their row is Hayati's.
 const NEARLY_PARALLEL: f64 = 0.1;
-/// Reaches beyond which an offset along an axis is none that a controller takes.
+/// Number of reaches beyond which no controller takes an offset along an axis.
 const MOST_REACHES: f64 = 10.0;
 
-/// How rows are written.
+/// Convention of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DhConvention {
@@ -29,7 +29,7 @@ pub enum DhConvention {
 }
 
 impl DhConvention {
-    /// The motion of a row, the joint's value within theta of a joint that turns and within d of one that slides.
+    /// Motion of a row, with the joint's value within theta of a revolute joint and within d of a prismatic one.
     #[must_use]
     pub fn formula(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl DhConvention {
     }
 }
 
-/// Which four numbers a row has.
+/// Set of the four numbers of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowKind {
@@ -57,9 +57,9 @@ pub enum RowKind {
 pub struct DhEntry {
     /// Name of the joint.
     pub joint: String,
-    /// Whether it turns or slides.
+    /// Kind of the joint.
     pub kind: JointKind,
-    /// Which numbers the row has.
+    /// Set of the numbers.
     pub row: RowKind,
     /// Angle about z at a joint value of zero, radians.
     pub theta_rad: f64,
@@ -69,7 +69,7 @@ pub struct DhEntry {
     pub a_m: f64,
     /// Angle about x, radians.
     pub alpha_rad: f64,
-    /// Angle about y, radians; zero of a row of Denavit and Hartenberg.
+    /// Angle about y, radians; zero in a row of Denavit and Hartenberg.
     pub beta_rad: f64,
 }
 
@@ -80,22 +80,22 @@ impl DhEntry {
         DhEntry { joint, kind, row, theta_rad: 0.0, d_m: 0.0, a_m: 0.0, alpha_rad: 0.0, beta_rad: 0.0 }
     }
 
-    /// About z and along z.
+    /// Motion about z and along z.
     fn of_joint(&self) -> Pose {
         Pose::new(rotation::about(2, self.theta_rad), Vector3::z() * self.d_m)
     }
 
-    /// Along x, about x, about y.
+    /// Motion along x, about x, about y.
     fn of_link(&self) -> Pose {
         let turn = rotation::about(0, self.alpha_rad) * rotation::about(1, self.beta_rad);
         Pose::new(turn, Vector3::x() * self.a_m)
     }
 }
 
-/// A serial robot by a table of rows: the way from base to tip is `B · rows · E`, with the joint values within the rows.
+/// A serial robot by a table of rows: the motion from base to tip is `B · rows · E`, with the joint values within the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DhTable {
-    /// How rows are written.
+    /// Convention of the rows.
     pub convention: DhConvention,
     /// Frame of the first row in the base.
     pub base_from_first: Pose,
@@ -106,13 +106,13 @@ pub struct DhTable {
 }
 
 impl DhTable {
-    /// Of a robot.
+    /// Table of a robot.
     ///
     /// # Errors
-    /// [`ErrorKind::Export`] as [`AxisFrames::of`], and if axes are nearly parallel, so that a row of Denavit and Hartenberg would have an offset
-    /// of more than ten reaches.
+    /// [`ErrorKind::Export`] as [`AxisFrames::of`], and if a row of Denavit and Hartenberg between nearly parallel axes would have an offset of
+    /// more than ten reaches.
     pub fn from_robot(robot: &Robot, convention: DhConvention) -> Result<Self> {
-        // Refuses what it refuses, and takes in offsets of readings.
+        // The call refuses the same robots, and absorbs offsets of readings.
         let plain = AxisFrames::from_robot(robot)?.robot(robot)?;
         let frames: Vec<Pose> = plain.joints.iter().map(along_axis).collect();
         let kinds: Vec<JointKind> = plain.joints.iter().map(|joint| joint.kind).collect();
@@ -152,11 +152,11 @@ impl DhTable {
         Ok(DhTable { convention, base_from_first, rows, last_from_tip })
     }
 
-    /// The same by frames with z along each axis.
+    /// The same robot by frames with z along each axis.
     #[must_use]
     pub fn frames(&self) -> AxisFrames {
         let mut joints = Vec::with_capacity(self.rows.len());
-        // What follows the joint before.
+        // The factor after the joint before.
         let mut before = self.base_from_first;
         for row in &self.rows {
             let (joint, link) = (row.of_joint(), row.of_link());
@@ -175,8 +175,8 @@ impl DhTable {
     }
 }
 
-/// A point on each axis: of one that turns, that of its frame; of one that slides, whose place means nothing, one on the next axis, so that
-/// the two meet.
+/// A point on each axis. For a revolute joint it is that of its frame. A prismatic joint has no position: its point is on the next axis, so
+/// that the two meet.
 fn points(frames: &[Pose], kinds: &[JointKind]) -> Vec<Vector3<f64>> {
     let mut points: Vec<Vector3<f64>> = frames.iter().map(|frame| frame.translation).collect();
     for at in (0..frames.len().saturating_sub(1)).rev() {
@@ -190,8 +190,8 @@ fn points(frames: &[Pose], kinds: &[JointKind]) -> Vec<Vector3<f64>> {
 }
 
 impl DhEntry {
-    /// Sets the numbers that lead from the joint's frame to one on the next axis, which goes through a point along a direction there; from a
-    /// joint that slides, the point in which its axis meets the next.
+    /// Sets the numbers that lead from the joint's frame to one on the next axis, which goes through a point along a direction there. For a
+    /// prismatic joint the point is the intersection of its axis with the next.
     fn lead_to(&mut self, convention: DhConvention, point: &Vector3<f64>, axis: &Vector3<f64>) {
         let across = Vector3::z().cross(axis);
         let sine = across.norm();

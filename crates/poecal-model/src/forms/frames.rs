@@ -6,24 +6,24 @@ use crate::robot::{Joint, JointKind, Limits, Robot};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// A frame's z nearer than this to its axis needs no turn.
+/// Angle between a frame's z and its axis below which no turn is needed.
 const ALONG: f64 = 1e-13;
 /// Share of the reach beyond which a frame is far along its axis from the frame before.
 const FAR: f64 = 0.5;
 
-/// A serial robot by frames with z along each axis: the joint turns about it, or slides along it. The way from the base to the tip is
-/// `T = A₁ Z(q₁) A₂ Z(q₂) … Aₙ Z(qₙ) E`, with `Z(q) = Rz(q)` or `Tz(q)`.
+/// A serial robot by frames with z along each axis: a joint rotates about it, or slides along it. The motion from the base to the tip
+/// is `T = A₁ Z(q₁) A₂ Z(q₂) … Aₙ Z(qₙ) E`, with `Z(q) = Rz(q)` or `Tz(q)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisFrames {
-    /// The frame of each joint in that of the joint before, of the first in the base, at zero.
+    /// Frame of each joint in that of the joint before, of the first in the base, at zero.
     pub joints: Vec<Pose>,
     /// The tip in the frame of the last joint.
     pub last_from_tip: Pose,
 }
 
 impl AxisFrames {
-    /// Of a robot: its own joint frames, shifted onto their axes, and turned least where z is not along the axis. Offsets of readings are taken
-    /// in.
+    /// Frames of a robot: its own joint frames, shifted onto their axes, and turned least if z is not along the axis. Offsets of readings are
+    /// absorbed.
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own.
@@ -34,7 +34,7 @@ impl AxisFrames {
         Self::with_followers(robot)
     }
 
-    /// The same of a robot whose joints may follow others of the chain: the offsets of these stay in their readings.
+    /// The same frames for a robot whose joints may follow others of the chain: the offsets of these stay in their readings.
     ///
     /// # Errors
     /// [`ErrorKind::Export`] if the robot is no chain of joints, each with a reading of its own or that of another joint.
@@ -59,7 +59,8 @@ impl AxisFrames {
         Ok(AxisFrames { joints, last_from_tip: before.inverse() * robot.home })
     }
 
-    /// Moves the last joint's frame along its axis, and turns it about that, to where it is nearest to the tip's: drivers take it for the flange.
+    /// Moves the last joint's frame along its axis, and turns it about that, to the pose nearest to the tip's: drivers take it for the
+    /// flange.
     pub fn end_at_tip(&mut self) {
         if let Some(last) = self.joints.last_mut() {
             let tip = &self.last_from_tip;
@@ -108,7 +109,7 @@ fn motion(kind: JointKind, value: f64) -> Pose {
     }
 }
 
-/// The joint's frame with its origin on the axis and z along it.
+/// Frame of the joint with its origin on the axis and z along it.
 pub(crate) fn along_axis(joint: &Joint) -> Pose {
     let Pose { rotation: turn, translation } = joint.frame;
     let origin = match joint.kind {
@@ -127,7 +128,7 @@ fn refuse<T>(found: &str) -> Result<T> {
     ))
 }
 
-/// Refuses what frames alone cannot say.
+/// Refuses robots that frames alone cannot represent.
 fn refuse_coupled(robot: &Robot) -> Result<()> {
     if !robot.is_serial() {
         return refuse("found a robot with branches");

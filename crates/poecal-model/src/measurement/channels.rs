@@ -1,10 +1,10 @@
-//! The numbers of a measurement: their names and quantities.
+//! Numbers of a measurement: their names and quantities.
 
 use std::ops::{Deref, Range};
 
 use super::{ByQuantity, Quantity};
 
-/// Most numbers of one measurement.
+/// Largest number of values of one measurement.
 pub const NUMBERS: usize = 6;
 
 /// One number of a measurement.
@@ -12,28 +12,28 @@ pub const NUMBERS: usize = 6;
 pub struct Channel {
     /// Name of the number in columns of files.
     pub name: &'static str,
-    /// Its quantity.
+    /// Quantity.
     pub quantity: Quantity,
 }
 
 impl Channel {
-    /// Its place among the components of its quantity.
+    /// Index among the components of its quantity.
     #[must_use]
     pub fn component(&self) -> usize {
         self.quantity.component_names().iter().position(|name| *name == self.name).unwrap_or_default()
     }
 }
 
-/// The numbers of a function, and where those of each quantity are.
+/// Numbers of a function, with the indices of those of each quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channels {
     all: &'static [Channel],
-    /// First place of each quantity, and how many follow.
+    /// First index of each quantity, and their number.
     parts: ByQuantity<(u8, u8)>,
 }
 
 impl Channels {
-    /// The channels of a function.
+    /// Channels of a function.
     ///
     /// # Panics
     /// With more than [`NUMBERS`] channels, or those of one quantity not one after the other: a constant of these does not compile.
@@ -54,7 +54,7 @@ impl Channels {
         Channels { all, parts: ByQuantity::of_values(parts) }
     }
 
-    /// Places of the numbers of a quantity; empty if it is not measured.
+    /// Indices of the numbers of a quantity; empty if it is not measured.
     #[must_use]
     #[inline]
     pub fn range(&self, quantity: Quantity) -> Range<usize> {
@@ -62,7 +62,7 @@ impl Channels {
         usize::from(first)..usize::from(first + count)
     }
 
-    /// Places of the numbers of a quantity with their components: in order where all are measured, else by name.
+    /// Indices of the numbers of a quantity with their components: in order if all are measured, else by name.
     #[inline]
     pub fn components(&self, quantity: Quantity) -> impl Iterator<Item = (usize, usize)> {
         let own = self.range(quantity);
@@ -70,7 +70,7 @@ impl Channels {
         own.map(move |k| (k, if all { k - first } else { self.all[k].component() }))
     }
 
-    /// Whether a number of this quantity is measured.
+    /// True if a number of this quantity is measured.
     #[must_use]
     #[inline]
     pub fn has(&self, quantity: Quantity) -> bool {

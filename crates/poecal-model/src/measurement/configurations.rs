@@ -11,12 +11,12 @@ const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
 const SAME: f64 = 1e-3;
 /// Rows above which only identical readings are of one configuration.
 pub const MANY: usize = 100_000;
-/// Rows that one thread looks at together.
+/// Number of rows that one thread compares together.
 const CHUNK: usize = 4096;
 
 impl Dataset {
-    /// What rows of one configuration measure again where it is the same of them: the target; of a distance, a height and all else that is neither a place
-    /// nor an orientation also the station, since each sees another part of the target's error.
+    /// Subject of a row: rows of one configuration with equal subjects repeat each other. For a position or an orientation it is the target. For
+    /// others, such as a distance or a height, it is also the station, since each measures another part of the target's error.
     #[must_use]
     pub fn subject(&self, row: u32) -> (usize, Option<usize>) {
         let Some(seen) = self.observations.get(row as usize) else { return (0, None) };
@@ -50,7 +50,7 @@ impl Dataset {
         class: impl Fn(u32) -> C,
     ) -> Vec<Vec<u32>> {
         let readings = |row: u32| self.of_joints(row);
-        // Rows of equal readings are neighbours in the order of any weighted sum; with these weights other rows seldom are, and hardly
+        // Rows of equal readings are neighbours in the order of any weighted sum. With these weights other rows seldom are, and hardly
         // ever in that of two such sums.
         let weight = |k: usize| 1.0 + 0.618_033_988_749_895 * (k as f64).sqrt();
         let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -68,7 +68,7 @@ impl Dataset {
             |a: u32, b: u32| readings(a).iter().zip(readings(b)).all(|(a, b)| (a - b).abs() <= same);
         // Both sums of rows that are alike differ by no more than the window, but for rounding.
         let wide = window * (1.0 + 1e-6);
-        // Places of the rows like that at `first`, which is the first.
+        // Indices of the rows like that at `first`, which is the first.
         let like = |first: usize| {
             let (class, (key, other), row) = order[first];
             let rest = order.get(first + 1..).unwrap_or_default();

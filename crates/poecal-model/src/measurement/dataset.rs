@@ -29,7 +29,7 @@ pub struct Dataset {
     pub(crate) readings: Vec<f64>,
     #[serde(default)]
     pub(crate) further_readings: Vec<f64>,
-    /// How many of the readings, the last ones, are of no joint.
+    /// Number of the last readings that belong to no joint.
     #[serde(default)]
     pub(crate) factors: usize,
     /// Names of the targets; `None` is the only one, which no row names ([`MEASURED`](crate::robot::MEASURED)).
@@ -49,7 +49,7 @@ pub struct Dataset {
     /// The pictures among the rows.
     #[serde(default)]
     pub pictures: Pictures,
-    /// How the readings are made of those that the controller counts, where they are not one by one.
+    /// Relation of the readings to those that the controller counts, if they are not equal one by one.
     #[serde(default)]
     pub controller: Option<Controller>,
     /// The rows.
@@ -70,13 +70,13 @@ impl Dataset {
         Dataset { reading_names, ..Dataset::default() }
     }
 
-    /// The same with so many of the readings, the last ones, of no joint: they make no other configuration.
+    /// The same data set with the last `count` readings of no joint: they do not distinguish configurations.
     #[must_use]
     pub fn with_factors(self, count: usize) -> Self {
         Dataset { factors: count, ..self }
     }
 
-    /// The readings of a row that are of joints: what makes a configuration.
+    /// Readings of a row that belong to joints: these define a configuration.
     pub(crate) fn of_joints(&self, row: u32) -> &[f64] {
         let readings = self.readings(row as usize);
         &readings[..readings.len().saturating_sub(self.factors)]
@@ -111,7 +111,8 @@ impl Dataset {
         Ok(())
     }
 
-    /// Some rows of one configuration as if they had been measured in others: what a plan is about. Their measured numbers are kept, and say nothing.
+    /// Some rows of one configuration as if they had been measured in others: the subject of a plan. Their measured numbers are kept, and
+    /// have no meaning.
     pub fn as_if_at(&self, rows: &[u32], readings: &[f64], width: usize) -> Result<Self> {
         let mut made = Dataset {
             readings: Vec::new(),
@@ -124,7 +125,7 @@ impl Dataset {
         };
         for own in readings.chunks(width.max(1)) {
             for &row in rows {
-                // What is of no joint is as it was.
+                // Readings of no joint stay.
                 let rest = self.readings(row as usize).get(own.len()..).unwrap_or_default();
                 let seen = self.observations[row as usize];
                 let seen = Observation { from: None, noise_shape: None, ..seen };
@@ -198,7 +199,7 @@ impl Dataset {
         self.noise_shapes.get(observation.noise_shape? as usize)
     }
 
-    /// Says of a row how fast its readings changed (rad/s, m/s), and when it was measured, seconds from the middle of all such rows.
+    /// States the rates of a row's readings (rad/s, m/s), and the time of its measurement, seconds from the middle of all such rows.
     pub fn state_motion(&mut self, row: usize, rates: &[f64], time_s: f64) {
         let Some(observation) = self.observations.get_mut(row) else { return };
         if rates.len() == self.reading_names.len() {
@@ -208,7 +209,7 @@ impl Dataset {
         }
     }
 
-    /// How fast the readings of a row changed (rad/s, m/s), and its time from the middle of all such rows, seconds, if it was measured in motion.
+    /// Rates of the readings of a row (rad/s, m/s), and its time from the middle of all such rows, seconds, if it was measured in motion.
     #[must_use]
     pub fn motion(&self, observation: &Observation) -> Option<(&[f64], f64)> {
         let (at, width) = (observation.moving? as usize, self.reading_names.len());
@@ -224,7 +225,7 @@ impl Dataset {
         self.targets.len() - 1
     }
 
-    /// The target that was seen most, the first of several; none without targets.
+    /// Target that was seen most, the first of several; `None` without targets.
     #[must_use]
     pub fn most_seen_target(&self) -> Option<usize> {
         let mut counts = vec![0_usize; self.targets.len()];
@@ -254,7 +255,7 @@ impl Dataset {
         self.stations.len() - 1
     }
 
-    /// Those of some rows that were measured from one station, in their order.
+    /// Rows, among some, that were measured from one station, in their order.
     #[must_use]
     pub fn seen_from(&self, station: usize, rows: &[u32]) -> Vec<u32> {
         if station == 0 && self.station_count() == 1 {
@@ -263,7 +264,7 @@ impl Dataset {
         rows.iter().copied().filter(|&row| self.observations[row as usize].station == station).collect()
     }
 
-    /// The first station of some rows, whose frame stays where the base frame is a choice.
+    /// First station of some rows, whose frame stays if the base frame is a choice.
     #[must_use]
     pub fn first_station(&self, rows: &[u32]) -> usize {
         if self.station_count() == 1 {
@@ -272,7 +273,7 @@ impl Dataset {
         rows.iter().map(|&row| self.observations[row as usize].station).min().unwrap_or_default()
     }
 
-    /// Writes the errors of measured frames in this way; without measured frames nothing changes.
+    /// Sets the formulation of the errors of measured frames; without measured frames nothing changes.
     pub fn write_poses_by(&mut self, pose_residual: Option<&'static dyn PoseResidual>) {
         let has_frames = self.observations.iter().any(|row| row.measurement.sees_orientation());
         self.pose_residual = pose_residual.filter(|_| has_frames);
@@ -284,7 +285,7 @@ impl Dataset {
         self.observations.len()
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.observations.is_empty()
@@ -325,13 +326,13 @@ impl Dataset {
         self.readings.chunks_exact_mut(width).take(before as usize).for_each(change);
     }
 
-    /// Configurations in which instruments stood while their targets were seen in others, readings one after the other.
+    /// Configurations of instruments while their targets were measured in others, readings one after the other.
     #[must_use]
     pub fn further_readings(&self) -> &[f64] {
         &self.further_readings
     }
 
-    /// Adds a configuration in which an instrument stood, and returns its index for [`Observation::from`].
+    /// Adds a configuration of an instrument, and returns its index for [`Observation::from`].
     ///
     /// # Errors
     /// [`ErrorKind::Measurement`] if the number of readings is wrong, or a number is not finite.
@@ -342,7 +343,7 @@ impl Dataset {
         Ok(u32::try_from(index).unwrap_or(u32::MAX))
     }
 
-    /// Changes each configuration in which an instrument stood.
+    /// Changes each configuration of an instrument.
     pub fn change_further(&mut self, change: impl FnMut(&mut [f64])) {
         let width = self.reading_names.len().max(1);
         self.further_readings.chunks_exact_mut(width).for_each(change);

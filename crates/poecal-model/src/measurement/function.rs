@@ -1,4 +1,4 @@
-//! What can be measured: functions of the pose of a target in the device's frame.
+//! Measurable functions of the pose of a target in the device's frame.
 
 use std::fmt;
 
@@ -7,20 +7,20 @@ use nalgebra::Vector3;
 use super::{Channels, Quantity};
 use poecal_arm::lie::{Freedom, Pose};
 
-/// The numbers that a function needs of a measurement, metres and radians; zero where it needs fewer. A pose is the one that needs all: its
-/// place, then the columns of its rotation.
+/// Numbers of a measurement that a function needs, metres and radians; zero if it needs fewer. A pose needs all: its position, then the
+/// columns of its rotation.
 pub type Values = [f64; 12];
 
 /// Change of a predicted number by a motion of the target: by its translation, then by its rotation about its own origin, device axes.
 pub type Sensitivity = [f64; 6];
 
-/// A function that is measured: residual `e = measured ⊖ predicted` and sensitivity S of the *prediction*, which moves by `S · twist` under a
-/// target twist (theory.md §4 (14) to (17)), neither of them whitened; and what else must be known of it. Its row in
-/// [`FUNCTIONS`](super::FUNCTIONS) adds columns of files and simulated sessions; everything else asks these two.
+/// A measured function: residual `e = measured ⊖ predicted` and sensitivity S of the *prediction*, with further properties. The prediction
+/// moves by `S · twist` under a target twist (theory.md §4 (14) to (17)); neither is whitened. Its row in [`FUNCTIONS`](super::FUNCTIONS)
+/// adds columns of files and simulated sessions; all other code uses these two.
 pub struct Function {
-    /// Its name: what one of them is.
+    /// Name of a single measurement.
     pub name: &'static str,
-    /// What several of them are.
+    /// Name of several measurements.
     pub plural: &'static str,
     /// The quantities of its numbers.
     pub quantities: &'static [Quantity],
@@ -30,29 +30,30 @@ pub struct Function {
     pub residual: fn(&Values, &Pose, &mut [f64]),
     /// Writes the sensitivity of each predicted number.
     pub sensitivity: fn(&Values, &Pose, &mut [Sensitivity]),
-    /// Whether the second derivative of `½ |e|²` along a target twist is that of the target's place and turn, under the whitened residual as
-    /// force and torque, to first order in the residual (theory.md §6 (31a)). Without it the solver does not use the full Hessian.
+    /// True if the second derivative of `½ |e|²` along a target twist is that of the target's position and rotation, under the whitened
+    /// residual as force and torque. It holds to first order in the residual (theory.md §6 (31a)). Without it the solver does not use the
+    /// full Hessian.
     pub is_wrench: bool,
-    /// How many of the values, the first ones, are lengths that were read.
+    /// Number of the values, the first ones, that are lengths that were read.
     pub lengths: usize,
-    /// The same measurement with its angles times a factor, where these are what was read.
+    /// The same measurement with its angles times a factor, if angles were read.
     pub with_angles_times: Option<fn(&Values, f64) -> Values>,
-    /// The form in which kernels take it.
+    /// Form of the measurement in kernels.
     pub kernel: Kernel,
-    /// What the device is.
+    /// Kind of the device.
     pub device: Device,
-    /// Whether the zero of the readings is an unknown of the device.
+    /// True if the zero of the readings is an unknown of the device.
     pub zero_is_unknown: bool,
-    /// The motions of the device that a measurement shows.
+    /// Motions of the device that a measurement determines.
     pub device_freedom: fn(&Values) -> Freedom,
-    /// The motions of the target that a measurement shows.
+    /// Motions of the target that a measurement determines.
     pub target_freedom: fn(&Values) -> Freedom,
-    /// What a measurement says by itself, from which a fit starts in closed form.
+    /// Information of a single measurement, from which a fit starts in closed form.
     pub clue: fn(&Values) -> Clue,
 }
 
 impl Function {
-    /// What most have: a device and a target of which the whole frame is seen, numbers that kernels take as they come, and no clue.
+    /// Usual properties: the whole frame of device and target is measured, kernels take the numbers unchanged, and there is no clue.
     pub(crate) const USUAL: Function = Function {
         name: "",
         plural: "",
@@ -71,13 +72,13 @@ impl Function {
         clue: |_| Clue::None,
     };
 
-    /// Whether it depends on the target's orientation, at some numbers at least.
+    /// True if it depends on the target's orientation, for some numbers at least.
     #[must_use]
     pub fn sees_orientation(&self) -> bool {
         (self.target_freedom)(&[0.0; 12]).turns()
     }
 
-    /// The quantity of its first number.
+    /// Quantity of its first number.
     #[must_use]
     pub fn leading(&self) -> Quantity {
         self.quantities.first().copied().unwrap_or(Quantity::Position)
@@ -98,12 +99,12 @@ impl fmt::Debug for Function {
     }
 }
 
-/// The form in which kernels take a function's rows.
+/// Form of a function's rows in kernels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// A pose.
     Pose,
-    /// Three numbers of a target's place, the first three values.
+    /// Three numbers of a target's position, the first three values.
     Place,
     /// The first value, along the device's z.
     Height,
@@ -113,14 +114,14 @@ pub enum Kernel {
     Any,
 }
 
-/// What a device is. A station of which all rows say the same is called so.
+/// Kind of a device. A station is called by it if all its rows agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Device {
-    /// Something with a frame of its own.
+    /// An instrument with a frame of its own.
     Instrument,
-    /// A place from which distances are measured.
+    /// A point from which distances are measured.
     Anchor,
-    /// Where a ball rests, or a fixed point.
+    /// The seat of a ball, or a fixed point.
     Socket,
     /// A plane, the device's xy.
     Plane,
@@ -144,7 +145,7 @@ impl Device {
         Device::Pair,
     ];
 
-    /// Its word in files.
+    /// Word in files.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -159,30 +160,30 @@ impl Device {
     }
 }
 
-/// What a measurement says by itself of its target and its device: for starts in closed form, and for all that moves or draws measured
-/// places and orientations.
+/// Information of a single measurement on its target and its device: for starts in closed form, and for all code that moves or plots
+/// measured positions and orientations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clue {
     /// The target's frame in the device's.
     Frame(Pose),
-    /// Components of the target's place in the device's frame, metres; none of those that were not measured.
+    /// Components of the target's position in the device's frame, metres; `None` for those that were not measured.
     Place([Option<f64>; 3]),
     /// The target's distance from the device's origin, metres.
     Range(f64),
-    /// The target is at the device's origin, but for this, metres; the device has no axes.
+    /// The target is at the device's origin, except for this vector, metres; the device has no axes.
     Middle,
     /// A point of the target, metres in its axes, is at this height over the device's xy, metres; the device's z in the target's axes, if it
-    /// is seen.
+    /// is measured.
     Height {
         /// The point.
         point: Vector3<f64>,
-        /// Its height.
+        /// Height.
         height: f64,
         /// The direction.
         up: Option<Vector3<f64>>,
     },
     /// The device's z in the target's axes.
     Up(Vector3<f64>),
-    /// Nothing by itself.
+    /// No information of a single measurement.
     None,
 }

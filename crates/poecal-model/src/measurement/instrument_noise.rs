@@ -8,14 +8,15 @@ use super::{Dataset, Measurement, NoiseShape, Quantity};
 use poecal_numerics::error::{Error, ErrorKind, Result, first_few};
 use poecal_numerics::named_unit::positive_length_m;
 
-/// Noise of an instrument that looks along a line of sight, as `tracker:10um+5um/m`: 10 µm in all directions, and across the line of sight 5 µm
-/// more for each metre of distance (added as squares), as angular encoders and air make it. Without a name it is that of all instruments.
+/// Noise of an instrument that looks along a line of sight, such as `tracker:10um+5um/m`. It is 10 µm in all directions, and across the line of
+/// sight 5 µm more for each metre of distance (added as squares). Angular encoders and air cause the latter. Without a name it is that of all
+/// instruments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InstrumentNoise {
     name: Option<String>,
     /// Standard deviation in all directions, metres.
     everywhere_m: f64,
-    /// That across the line of sight, for each metre of distance.
+    /// Standard deviation across the line of sight, for each metre of distance.
     per_metre: f64,
 }
 
@@ -62,7 +63,7 @@ impl InstrumentNoise {
         for row in 0..data.len() {
             let observation = &data.observations[row];
             let is_own = station.is_none_or(|station| station == observation.station);
-            // A pair shows a step between two configurations, which has no line of sight.
+            // A pair measures a step between two configurations, which has no line of sight.
             if !is_own || observation.from.is_some() || observation.stated.get(Quantity::Position).is_some() {
                 continue;
             }
@@ -89,7 +90,7 @@ impl InstrumentNoise {
     }
 }
 
-/// The error for a row without a whole position, whose distance is not known.
+/// Error of a row without a whole position, whose distance is not known.
 fn incomplete(data: &Dataset, row: usize, seen: &Measurement) -> Error {
     let missing =
         ["x", "y", "z"].into_iter().zip(seen.position_components()).find(|(_, value)| value.is_none());

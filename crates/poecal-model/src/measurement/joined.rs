@@ -120,7 +120,7 @@ impl Dataset {
         Ok(())
     }
 
-    /// The ids of rows that were added, and of those before where these have none.
+    /// Adds the ids of new rows, and empty ones for earlier rows without ids.
     fn extend_ids(&mut self, other: &Dataset) {
         if !self.ids.is_empty() || !other.ids.is_empty() {
             let known = self.len() - other.len();

@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::{Channels, Clue, Device, Function, Quantity, Sensitivity, Values};
 use poecal_arm::lie::{Freedom, Pose, rotation};
 
-/// One measurement of a target in the measuring device's frame: a function and its numbers. What it shows depends on the predicted pose of the
-/// target alone, not on joints or parameters.
+/// One measurement of a target in the measuring device's frame: a function and its numbers. Its prediction depends on the predicted pose of
+/// the target alone, not on joints or parameters.
 ///
 /// ```
 /// # mod poecal {
@@ -24,28 +24,28 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Of a function, with its first numbers.
+    /// Measurement of a function, with its first numbers.
     pub(crate) fn new(function: &'static Function, first: &[f64]) -> Self {
         let mut values = [0.0; 12];
         values.iter_mut().zip(first).for_each(|(value, first)| *value = *first);
         Measurement { function, values }
     }
 
-    /// What was measured.
+    /// Function that was measured.
     #[must_use]
     #[inline]
     pub fn function(&self) -> &'static Function {
         self.function
     }
 
-    /// Its numbers.
+    /// Numbers.
     #[must_use]
     #[inline]
     pub fn values(&self) -> &Values {
         &self.values
     }
 
-    /// Its numbers, to change them.
+    /// Numbers, mutable.
     #[inline]
     pub fn values_mut(&mut self) -> &mut Values {
         &mut self.values
@@ -56,14 +56,14 @@ impl Measurement {
         Measurement { function, ..self }
     }
 
-    /// The numbers that are compared with predicted ones.
+    /// Numbers that are compared with predicted ones.
     #[must_use]
     #[inline]
     pub fn channels(&self) -> &'static Channels {
         (self.function.channels)(&self.values)
     }
 
-    /// How many of them there are.
+    /// Number of these.
     #[must_use]
     #[inline]
     pub fn dim(&self) -> usize {
@@ -82,42 +82,42 @@ impl Measurement {
         (self.function.sensitivity)(&self.values, predicted, out);
     }
 
-    /// The motions of the device that it shows.
+    /// Motions of the device that it determines.
     #[must_use]
     #[inline]
     pub fn device_freedom(&self) -> Freedom {
         (self.function.device_freedom)(&self.values)
     }
 
-    /// The motions of the target that it shows.
+    /// Motions of the target that it determines.
     #[must_use]
     #[inline]
     pub fn target_freedom(&self) -> Freedom {
         (self.function.target_freedom)(&self.values)
     }
 
-    /// Whether it depends on the target's orientation, so that the target is a frame and not only a point.
+    /// True if it depends on the target's orientation, so that the target is a frame and not only a point.
     #[must_use]
     #[inline]
     pub fn sees_orientation(&self) -> bool {
         self.target_freedom().turns()
     }
 
-    /// Whether a number of this quantity was measured.
+    /// True if a number of this quantity was measured.
     #[must_use]
     #[inline]
     pub fn has(&self, quantity: Quantity) -> bool {
         self.channels().has(quantity)
     }
 
-    /// What it says by itself.
+    /// Information of this measurement alone.
     #[must_use]
     #[inline]
     pub fn clue(&self) -> Clue {
         (self.function.clue)(&self.values)
     }
 
-    /// Measured components of the position, metres, device frame; none of those that were not measured.
+    /// Measured components of the position, metres, device frame; `None` for those that were not measured.
     #[must_use]
     pub fn position_components(&self) -> [Option<f64>; 3] {
         match self.clue() {
@@ -156,13 +156,13 @@ impl Measurement {
         self.frame().map(|pose| pose.rotation)
     }
 
-    /// The measured `device_from_target`, with the identity for what was not measured.
+    /// Measured `device_from_target`, with the identity for parts that were not measured.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.frame().unwrap_or_else(|| self.position().map_or_else(Pose::identity, Pose::from_translation))
     }
 
-    /// Measured distance of the target from the device's origin, metres, if that is what was measured.
+    /// Measured distance of the target from the device's origin, metres, if it is a distance.
     #[must_use]
     pub fn range(&self) -> Option<f64> {
         match self.clue() {
@@ -182,38 +182,38 @@ impl Measurement {
         self.values.get(..self.function.lengths).unwrap_or_default()
     }
 
-    /// Whether what it measures has a length, by which the size of the robot shows: a place, or a length other than zero.
+    /// True if a measured quantity has a length, which determines the size of the robot: a position, or a length other than zero.
     #[must_use]
     pub fn has_length(&self) -> bool {
         self.has(Quantity::Position) || self.lengths().iter().any(|length| *length != 0.0)
     }
 
-    /// Whether it has a length of this quantity, which its first numbers are of.
+    /// True if it has a length of this quantity, which its first numbers are of.
     #[must_use]
     pub fn has_length_of(&self, quantity: Quantity) -> bool {
         self.function.leading() == quantity && self.has_length()
     }
 
-    /// The lengths that were read, to change them.
+    /// Lengths that were read, mutable.
     pub fn lengths_mut(&mut self) -> &mut [f64] {
         self.values.get_mut(..self.function.lengths).unwrap_or_default()
     }
 
-    /// The same with the angles that were read times a factor; as it is where none were.
+    /// The same measurement with the angles that were read times a factor; unchanged if there were none.
     #[must_use]
     pub fn with_angles_times(self, factor: f64) -> Self {
         let values = self.function.with_angles_times.map_or(self.values, |times| times(&self.values, factor));
         Measurement { values, ..self }
     }
 
-    /// What the device is.
+    /// Kind of the device.
     #[must_use]
     pub fn device(&self) -> Device {
         let is_sphere = self.function.zero_is_unknown && self.range() == Some(0.0);
         if is_sphere { Device::Sphere } else { self.function.device }
     }
 
-    /// How far apart two measurements of the same numbers are: metres, and radians of orientations. `None` of different ones.
+    /// Difference of two measurements of the same numbers: metres, and radians of orientations. `None` if their functions differ.
     #[must_use]
     pub fn apart(&self, other: &Measurement) -> Option<(f64, f64)> {
         let angle = |a: Vector3<f64>, b: Vector3<f64>| a.cross(&b).norm().atan2(a.dot(&b));
@@ -232,7 +232,7 @@ impl Measurement {
         (are_places || are_alike).then(|| (metres(), turned))
     }
 
-    /// Whether all numbers are finite.
+    /// True if all numbers are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.values.iter().all(|number| number.is_finite())

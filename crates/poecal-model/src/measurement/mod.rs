@@ -1,14 +1,14 @@
-//! Measurements by an external device: the table of what is measured, and the rows of a session.
+//! Measurements by an external device: the table of measured functions, and the rows of a session.
 //!
-//! A row is a target, fixed to some body, that an instrument, fixed to some body, sees in a configuration, or in two. A measurement is a function and
-//! its numbers: a `Function` (`function.rs`) has residual and sensitivity of the predicted pose of its target, what it shows of device and target,
-//! the form in which kernels take it, and the clue from which a fit starts in closed form. Its row in [`FUNCTIONS`] (`functions/`, a file a sensor)
-//! adds its columns in files and the sessions that simulate and plan it. Files, words, templates, starts, kernels, diagnosis and report ask the row;
-//! none of them has a list of sensors.
+//! A row is a target, fixed to some body, that an instrument, fixed to some body, measures in a configuration, or in two. A measurement is a function
+//! and its numbers. A `Function` (`function.rs`) has residual and sensitivity of the predicted pose of its target. It also has the motions of device
+//! and target that it determines, its form in kernels, and the clue from which a fit starts in closed form. Its row in [`FUNCTIONS`] (`functions/`, a
+//! file a sensor) adds its columns in files and the sessions that simulate and plan it. Files, words, templates, starts, kernels, diagnosis and
+//! report use the row; none of them has a list of sensors.
 //!
 //! A function has channels, and each channel a quantity (`quantity.rs`: position, rotation, distance). Noise, robust scale, discrepancy, coverage and
-//! accuracies are values [`ByQuantity`]; no code outside the table in `quantity.rs` matches on quantities, but for what is about a place or an
-//! orientation, as predictions are. Pictures stand beside the rows (`pictures.rs`). No joints, screws or parameters here.
+//! accuracies are values [`ByQuantity`]. No code outside the table in `quantity.rs` matches on quantities, except code about a position or an
+//! orientation, such as predictions. Pictures are beside the rows (`pictures.rs`). Joints, screws and parameters are elsewhere.
 
 mod channels;
 mod columns;

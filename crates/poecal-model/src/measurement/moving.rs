@@ -1,9 +1,9 @@
-//! What was measured while the robot moved: how fast each reading changed, and when.
+//! Measurements while the robot moved: rates of the readings, and times.
 
 use serde::{Deserialize, Serialize};
 
-/// Clock of an instrument beside that of the joint readings, by which readings of rows in motion were found: a measurement at the time t of its
-/// instrument belongs to the readings at `t - l - d (t - m)`, with the lag l, the drift d, and the middle m of all such rows.
+/// Clock of an instrument relative to that of the joint readings, with which readings of rows in motion were computed. A measurement at the
+/// time t of its instrument belongs to the readings at `t - l - d (t - m)`. Here l is the lag, d the drift, and m the middle of all such rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// The instrument: index into [`Dataset::stations`](crate::measurement::Dataset::stations).
@@ -19,7 +19,7 @@ pub struct Clock {
 /// Rows that were measured while the robot moved.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Moving {
-    /// How fast each reading changes, rad/s or m/s: those of one row after the other.
+    /// Rate of each reading, rad/s or m/s: those of one row after the other.
     pub rates: Vec<f64>,
     /// Time of each row from the middle of all, by the clock of its instrument, seconds.
     pub times_s: Vec<f64>,
@@ -34,7 +34,7 @@ impl Moving {
         self.clocks.iter().find(|it| it.station == station)
     }
 
-    /// Adds those of another data set, whose instruments have other indices here.
+    /// Adds the rows of another data set, whose instruments have other indices here.
     pub(crate) fn extend(&mut self, other: &Moving, station_of: impl Fn(usize) -> usize) {
         self.rates.extend_from_slice(&other.rates);
         self.times_s.extend_from_slice(&other.times_s);

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{Channels, NUMBERS, Quantity};
 
-/// Shape of the covariance Σ of a position, or of a whole pose: `σ Σ^{-1/2}`, which makes noise of one standard deviation σ in all directions of
-/// it (theory.md §4 (17a)); of a pose `diag(σ_p, σ_r) Σ^{-1/2}`, of the shift and then the turn about the target.
+/// Shape of the covariance Σ of a position, or of a whole pose: `σ Σ^{-1/2}`, which transforms the noise to one standard deviation σ in all
+/// directions (theory.md §4 (17a)). For a pose it is `diag(σ_p, σ_r) Σ^{-1/2}`, of the shift and then the turn about the target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoiseShape(Matrix6<f64>);
 
 impl NoiseShape {
-    /// Of a covariance with these standard deviations of its components, metres, none of those that were not measured: the σ of all of them,
-    /// their geometric mean, and the shape. `None` without a component.
+    /// Shape of a covariance with these standard deviations of its components, metres, `None` for those that were not measured. Returns the
+    /// σ of all of them, their geometric mean, and the shape. `None` without a component.
     #[must_use]
     pub fn by_component(sigmas: [Option<f64>; 3]) -> Option<(f64, NoiseShape)> {
         let measured: Vec<f64> = sigmas.into_iter().flatten().collect();
@@ -28,7 +28,8 @@ impl NoiseShape {
         [0, 1, 2].map(|at| Some(self.0[(at, at)]).filter(|it| *it > 0.0).map(|factor| sigma_m / factor))
     }
 
-    /// Of a standard deviation along a unit vector and another one across it, metres: the σ of both, with their geometric mean, and the shape.
+    /// Shape of a standard deviation along a unit vector and another one across it, metres: the σ of both, with their geometric mean, and
+    /// the shape.
     #[must_use]
     pub fn across(sight: &Vector3<f64>, along_m: f64, across_m: f64) -> (f64, NoiseShape) {
         let mean = (along_m * across_m * across_m).cbrt();
@@ -37,7 +38,7 @@ impl NoiseShape {
         (mean, NoiseShape::of_position(&shape))
     }
 
-    /// Of what whitens a pose, `Σ^{-1/2}` (1/m and 1/rad), with the standard deviations of its components, m and rad.
+    /// Shape of the whitening of a pose, `Σ^{-1/2}` (1/m and 1/rad), with the standard deviations of its components, m and rad.
     #[must_use]
     pub fn of_pose(whitening: &Matrix6<f64>, [shift_m, turn_rad]: [f64; 2]) -> NoiseShape {
         let mut shape = *whitening;
@@ -46,7 +47,7 @@ impl NoiseShape {
         NoiseShape(shape)
     }
 
-    /// What whitens a pose, by the standard deviations of its components: the inverse of [`NoiseShape::of_pose`].
+    /// Whitening of a pose, by the standard deviations of its components: the inverse of [`NoiseShape::of_pose`].
     #[must_use]
     pub fn whitening(&self, [shift_m, turn_rad]: [f64; 2]) -> Matrix6<f64> {
         let mut whitening = self.0;
@@ -61,13 +62,13 @@ impl NoiseShape {
         NoiseShape(whole)
     }
 
-    /// A vector whose noise has this shape, as one whose noise has none.
+    /// A vector whose noise has this shape, transformed to equal noise in all directions.
     #[must_use]
     pub fn whitened(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         self.0.fixed_view::<3, 3>(0, 0) * vector
     }
 
-    /// The same for numbers of a measurement: those of its pose change, others stay. Each of them has `N` parts.
+    /// The same transformation for numbers of a measurement: those of its pose change, others stay. Each of them has `N` parts.
     pub fn whiten<const N: usize>(&self, channels: &Channels, numbers: &mut [[f64; N]]) {
         let mut before = [[0.0; N]; NUMBERS];
         before[..channels.len()].copy_from_slice(&numbers[..channels.len()]);

@@ -23,7 +23,7 @@ pub enum Set {
     HeldOut,
 }
 
-/// Where a row came from: index into [`Dataset::files`](crate::measurement::Dataset::files) and line (from 1; 0 if it has none).
+/// Source of a row: index into [`Dataset::files`](crate::measurement::Dataset::files) and line (from 1; 0 if it has none).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Source {
     /// Index into [`Dataset::files`](crate::measurement::Dataset::files).
@@ -47,20 +47,23 @@ pub struct Source {
 pub struct Observation {
     /// Index into [`Dataset::targets`](crate::measurement::Dataset::targets).
     pub target: usize,
-    /// Index into [`Dataset::stations`](crate::measurement::Dataset::stations); 0 where there is one device frame only.
+    /// Index into [`Dataset::stations`](crate::measurement::Dataset::stations); 0 if there is one device frame only.
     #[serde(default)]
     pub station: usize,
-    /// The instrument's own configuration, if it differs from the target's: index into [`Dataset::further_readings`](crate::measurement::Dataset::further_readings).
+    /// Instrument's own configuration, if it differs from the target's. It is an index into
+    /// [`Dataset::further_readings`](crate::measurement::Dataset::further_readings).
     #[serde(default)]
     pub from: Option<u32>,
     /// The measurement.
     pub measurement: Measurement,
-    /// Standard deviations of each component, metres or radians, where the row states them.
+    /// Standard deviations of each component, metres or radians, if the row states them.
     pub stated: Stated,
-    /// Shape of the noise of its position, if it is not the same in all directions: index into [`Dataset::noise_shapes`](crate::measurement::Dataset::noise_shapes).
+    /// Shape of the noise of its position, if it is not the same in all directions. It is an index into
+    /// [`Dataset::noise_shapes`](crate::measurement::Dataset::noise_shapes).
     #[serde(default)]
     pub noise_shape: Option<u32>,
-    /// Its place among the rows that were measured in motion: index into the times of [`Dataset::moving`](crate::measurement::Dataset::moving).
+    /// Index of the row among those that were measured in motion: into the times of
+    /// [`Dataset::moving`](crate::measurement::Dataset::moving).
     #[serde(default)]
     pub moving: Option<u32>,
     /// Set of the row, if it states it.
@@ -86,7 +89,7 @@ impl Observation {
         }
     }
 
-    /// The noise that the row states; `usual` for a standard deviation that it does not state.
+    /// Stated noise of the row; `usual` for a standard deviation that it does not state.
     #[must_use]
     pub fn noise_or(&self, usual: Noise) -> Noise {
         ByQuantity::from_fn(|quantity| self.stated.get(quantity).unwrap_or(usual[quantity]))

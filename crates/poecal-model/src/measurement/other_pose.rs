@@ -1,4 +1,4 @@
-//! The residual of a measured frame in another formulation than that of its function, which is given from outside.
+//! Residual of a measured frame in another formulation than that of its function, which the caller supplies.
 
 use std::fmt::Debug;
 
@@ -8,7 +8,7 @@ use poecal_arm::lie::Pose;
 /// Formulation of the residuals of measured frames as six numbers, of position and rotation. It holds for all frames of a data set
 /// ([`Dataset::pose_residual`](super::Dataset::pose_residual)). Such a problem is solved without the full Hessian.
 pub trait PoseResidual: Debug + Sync {
-    /// Its name; residuals of one name are equal.
+    /// Name; residuals of one name are equal.
     fn name(&self) -> &'static str;
 
     /// As [`Measurement::residual`], for a measured `device_from_target`.
@@ -38,12 +38,12 @@ impl<'a> Written<'a> {
         Written { measurement, other: other.and_then(|other| Some((measurement.frame()?, other))) }
     }
 
-    /// Whether it is that of its function.
+    /// True if it is that of its function.
     pub fn is_usual(&self) -> bool {
         self.other.is_none()
     }
 
-    /// Whether the wrench of its residual has its second derivative.
+    /// True if the wrench of its residual has its second derivative.
     pub fn is_wrench(&self) -> bool {
         self.is_usual() && self.measurement.function().is_wrench
     }

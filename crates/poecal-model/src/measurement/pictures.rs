@@ -13,14 +13,14 @@ use poecal_numerics::linalg;
 
 /// Smallest standard deviation of a corner, pixels: below it is rounding.
 const FINEST_PX: f64 = 1e-3;
-/// Pictures whose corners are off by more than this many times the others' do not count in the noise.
+/// Factor of the others' residuals beyond which the corners of a picture do not count in the noise.
 const ODD: f64 = 3.0;
 
 impl Dataset {
-    /// Adds a picture as a row: of its board as the target, as its camera sees it.
+    /// Adds a picture as a row: of its board as the target, measured by its camera.
     ///
     /// # Errors
-    /// As [`Dataset::push`]; inside, why no pose of the board has its corners where they were seen, in words, and nothing is added.
+    /// As [`Dataset::push`]. The inner result is a message if no pose of the board fits its corners; then nothing is added.
     pub fn push_picture(
         &mut self,
         readings: &[f64],
@@ -51,7 +51,8 @@ impl Dataset {
         Ok(Ok(()))
     }
 
-    /// Finds the noise of corners that state none, by what the poses of their pictures leave, and makes each picture the row of its pose.
+    /// Estimates the noise of corners that state none, by the residuals of the poses of their pictures. It makes each picture the row of
+    /// its pose.
     pub fn settle_pixels(&mut self) {
         let data = self;
         if data.pictures.is_empty() {
@@ -65,7 +66,7 @@ impl Dataset {
         data.state_pictures();
     }
 
-    /// What the corners of a picture share, as another session has shown it.
+    /// The data with the shared error of a picture's corners from another session.
     pub fn with_common(&self, common: CommonError) -> Cow<'_, Self> {
         if self.pictures.is_empty() || self.pictures.common == common {
             return Cow::Borrowed(self);
@@ -76,7 +77,7 @@ impl Dataset {
         Cow::Owned(data)
     }
 
-    /// A picture as its row has it.
+    /// Sighting of a picture at the pose of its row.
     fn sighting(&self, at: usize) -> Option<Sighting> {
         let picture = self.pictures.all.get(at)?;
         let measured = self.observations.get(picture.row as usize)?.measurement.pose();
@@ -91,7 +92,8 @@ impl Dataset {
         }
     }
 
-    /// Noise of corners that state none, pixels, by what sightings of which a fit took so many unknowns leave; `None` if all state it.
+    /// Noise of corners that state none, pixels, by the residuals of sightings of which a fit used `unknowns` degrees of freedom; `None` if
+    /// all state it.
     pub fn corner_noise(&self, sightings: &[Sighting], unknowns: f64) -> Option<f64> {
         let mut corners = self.pictures.all.iter().flat_map(|it| &it.corners);
         if corners.all(|corner| corner.sigma_px.is_some()) {
@@ -102,12 +104,12 @@ impl Dataset {
         let usual = median(found.iter().map(|(cost, freedom)| cost / freedom)).unwrap_or(0.0);
         let usual_ones = found.iter().filter(|(cost, freedom)| cost / freedom <= ODD * ODD * usual);
         let (cost, freedom) = usual_ones.fold((0.0, 0.0), |sum, it| (sum.0 + it.0, sum.1 + it.1));
-        // At least half of the numbers are left, whatever was taken.
+        // At least half of the degrees of freedom are left.
         let left = (freedom - unknowns).max(0.5 * freedom);
         (left > 0.0).then(|| (cost / left).sqrt().max(FINEST_PX))
     }
 
-    /// What whitens the row of a picture, as it is stated.
+    /// Whitening of the row of a picture, as it is stated.
     pub fn whitening_of_picture(&self, row: u32) -> Option<Matrix6<f64>> {
         let observation = self.observations.get(row as usize)?;
         let own = observation.noise_or(Noise::new(1.0, 1.0));
@@ -144,7 +146,8 @@ impl Dataset {
     }
 }
 
-/// What whitens the row of a picture: by the pose of its board in the camera's frame with its information, and by what the corners share.
+/// Whitening of the row of a picture: by the pose of its board in the camera's frame with its information, and by the shared error of the
+/// corners.
 #[must_use]
 pub fn picture_whitening(
     common: CommonError,
@@ -157,14 +160,14 @@ pub fn picture_whitening(
 
 /// A sighting as motions about a centre: of the board in the camera's frame, or of the camera in the board's.
 pub struct SightingAbout {
-    /// What the corners determine of these motions.
+    /// Information of the corners on these motions.
     pub information: Matrix6<f64>,
     centre: Centre,
     camera_from_board: Pose,
 }
 
 impl SightingAbout {
-    /// About one of the two.
+    /// Sighting about one of the two.
     #[must_use]
     pub fn new((camera_from_board, information): (&Pose, Matrix6<f64>), centre: Centre) -> Self {
         let camera_from_board = *camera_from_board;
@@ -189,9 +192,9 @@ impl SightingAbout {
     }
 }
 
-/// Standard deviations of the components of a pose by what whitens it, `√(tr Σ/3)` of its shift (m) and of its turn (rad).
+/// Standard deviations of the components of a pose by its whitening, `√(tr Σ/3)` of its shift (m) and of its turn (rad).
 fn spread(whitening: &Matrix6<f64>) -> [f64; 2] {
-    // Metres and radians as alike as their information is.
+    // Metres and radians are scaled to equal information.
     let size = |first: usize| whitening.fixed_columns::<3>(first).norm().max(f64::MIN_POSITIVE);
     let length_m = size(3) / size(0);
     let mut information = whitening.transpose() * whitening;
@@ -207,7 +210,8 @@ fn spread(whitening: &Matrix6<f64>) -> [f64; 2] {
     }
 }
 
-/// How a measured pose is off a predicted one: shift, and turn about its origin, in the axes of the frame that both are in (theory.md §4 (16)).
+/// Deviation of a measured pose from a predicted one: shift, and turn about its origin, in the axes of their common parent (theory.md §4
+/// (16)).
 #[must_use]
 pub fn deviation(measured: &Pose, predicted: &Pose) -> Vector6<f64> {
     let shift = measured.translation - predicted.translation;

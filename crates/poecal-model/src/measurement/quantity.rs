@@ -1,4 +1,4 @@
-//! What is measured: quantities, and values of each of them.
+//! Measured quantities, and values of each of them.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ macro_rules! key {
     };
 }
 
-/// Makes an enum of quantities from their table, a line for each: name, unit, names of its components, and what its residuals are.
+/// Makes an enum of quantities from their table, a line for each: name, unit, names of its components, and the meaning of its residuals.
 macro_rules! quantities {
     ($(#[$attribute:meta])* pub enum $Quantity:ident {
         $($(#[$doc:meta])* $variant:ident = ($name:literal, $unit:ident, [$($component:literal),+], $residuals:literal),)+
@@ -34,7 +34,7 @@ macro_rules! quantities {
             /// All quantities, in the order of every table.
             pub const ALL: [$Quantity; [$($name),+].len()] = [$($Quantity::$variant),+];
 
-            /// What is stated of it: the only place that tells quantities apart.
+            /// Properties of a quantity: the only place that distinguishes quantities.
             const fn entry(self) -> Entry {
                 match self {
                     $($Quantity::$variant => Entry {
@@ -63,13 +63,13 @@ quantities! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Place of a target.
+    /// Position of a target.
     Position = ("position", Metre, ["x", "y", "z"], "of positions along these axes"),
     /// Orientation of a target.
     Rotation = ("rotation", Radian, ["rx", "ry", "rz"], "of rotations about these axes"),
     /// Distance of a target from the instrument.
     Distance = ("distance", Metre, ["distance"], "of distances, above zero where more was measured"),
-    /// Place of a ball from the middle of its socket.
+    /// Position of a ball from the middle of its socket.
     Contact = (
         "contact",
         Metre,
@@ -83,7 +83,7 @@ pub enum Quantity {
 }
 }
 
-/// What is stated of a quantity.
+/// Properties of a quantity.
 struct Entry {
     name: &'static str,
     key: &'static str,
@@ -102,16 +102,16 @@ const _: () = {
 };
 
 impl Quantity {
-    /// Most components of a quantity.
+    /// Largest number of components of a quantity.
     pub const MOST_COMPONENTS: usize = 3;
 
-    /// Its name.
+    /// Name.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.entry().name
     }
 
-    /// Its name with the unit of files: a key of `calibration.json`.
+    /// Name with the unit of files: a key of `calibration.json`.
     #[must_use]
     pub fn key(self) -> &'static str {
         self.entry().key
@@ -123,25 +123,25 @@ impl Quantity {
         self.entry().components
     }
 
-    /// Number of components that a measurement of it has, at most [`Quantity::MOST_COMPONENTS`].
+    /// Number of components of its measurement, at most [`Quantity::MOST_COMPONENTS`].
     #[must_use]
     pub fn components(self) -> usize {
         self.component_names().len()
     }
 
-    /// What its residuals are, in words.
+    /// Meaning of its residuals, in words.
     #[must_use]
     pub fn residual_words(self) -> &'static str {
         self.entry().residuals
     }
 
-    /// Its unit.
+    /// Unit.
     #[must_use]
     pub fn unit(self) -> Unit {
         self.entry().unit
     }
 
-    /// Whether it is a part of a pose. Files have a place for these also where they were not measured.
+    /// True if it is a part of a pose. Files have a place for these also if they were not measured.
     #[must_use]
     pub fn is_of_pose(self) -> bool {
         [Quantity::Position, Quantity::Rotation].contains(&self)
@@ -158,20 +158,20 @@ impl<T> ByQuantity<T> {
         ByQuantity(values)
     }
 
-    /// The value that `of` gives for each quantity.
+    /// Value that `of` returns for each quantity.
     #[inline]
     pub fn from_fn(mut of: impl FnMut(Quantity) -> T) -> Self {
         // Unlike `map`, this is inlined.
         ByQuantity(std::array::from_fn(|k| of(Quantity::ALL[k])))
     }
 
-    /// What `to` gives for each value.
+    /// Value that `to` returns for each value.
     #[inline]
     pub fn map<U>(self, to: impl FnMut(T) -> U) -> ByQuantity<U> {
         ByQuantity(self.0.map(to))
     }
 
-    /// The same with another value of one quantity.
+    /// The same values with another one of one quantity.
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: T) -> Self {
         self[quantity] = value;
@@ -183,7 +183,7 @@ impl<T> ByQuantity<T> {
         Quantity::ALL.into_iter().zip(&self.0)
     }
 
-    /// The values, to change them.
+    /// Values, mutable.
     pub fn values_mut(&mut self) -> impl Iterator<Item = (Quantity, &mut T)> {
         Quantity::ALL.into_iter().zip(&mut self.0)
     }
@@ -203,7 +203,7 @@ impl<T> IndexMut<Quantity> for ByQuantity<T> {
     }
 }
 
-/// Standard deviation of each component of each quantity, metres or radians, by which residuals are whitened: theory.md §4 (17).
+/// Standard deviation of each component of each quantity, metres or radians, with which residuals are whitened: theory.md §4 (17).
 ///
 /// ```
 /// # mod poecal {
@@ -231,12 +231,12 @@ impl Noise {
         ByQuantity(values)
     }
 
-    /// The first of all lengths', metres: that of a position.
+    /// Standard deviation of lengths, metres: that of a position.
     pub fn of_lengths(self) -> f64 {
         self[Quantity::Position]
     }
 
-    /// The same with another value for all lengths.
+    /// The same noise with another value for all lengths.
     pub fn without_lengths(self, length_m: f64) -> Self {
         ByQuantity::from_fn(|quantity| match quantity.unit() {
             Unit::Metre => length_m,
@@ -245,11 +245,11 @@ impl Noise {
     }
 }
 
-/// A positive number for each quantity of which it is stated: kept for every row, so that it is small.
+/// A positive number for each quantity for which it is stated. It is kept for every row, and therefore small.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "ByQuantity<Option<f64>>", into = "ByQuantity<Option<f64>>")]
 pub struct Stated {
-    /// Zero where nothing is stated.
+    /// Zero if nothing is stated.
     values: ByQuantity<f64>,
 }
 
@@ -302,7 +302,7 @@ impl From<Stated> for ByQuantity<Option<f64>> {
 pub struct Measured<T>(ByQuantity<Option<T>>);
 
 impl<T: Copy> Measured<T> {
-    /// What `of` gives for each quantity.
+    /// Value that `of` returns for each quantity.
     pub fn from_fn(of: impl FnMut(Quantity) -> Option<T>) -> Self {
         Measured(ByQuantity::from_fn(of))
     }
@@ -318,12 +318,12 @@ impl<T: Copy> Measured<T> {
         self.0.iter().filter_map(|(quantity, value)| Some((quantity, (*value)?)))
     }
 
-    /// What `to` gives for each value.
+    /// Value that `to` returns for each value.
     pub fn map<U: Copy>(self, mut to: impl FnMut(Quantity, T) -> U) -> Measured<U> {
         Measured::from_fn(|quantity| self.get(quantity).map(|value| to(quantity, value)))
     }
 
-    /// The first measured quantity, lengths before angles: that by which a model is judged.
+    /// First measured quantity, lengths before angles: that by which a model is judged.
     #[must_use]
     pub fn leading(&self) -> Option<(Quantity, T)> {
         self.iter().find(|(quantity, _)| quantity.unit() == Unit::Metre).or_else(|| self.iter().next())

@@ -1,4 +1,4 @@
-//! Sessions that can be simulated and planned: what is measured, from where, and how numbers with noise come about.
+//! Sessions that can be simulated and planned: measured quantities, stations, and measurements with noise.
 
 use std::fmt;
 
@@ -7,51 +7,51 @@ use nalgebra::Vector3;
 use super::{Function, Measurement, Quantity};
 use poecal_arm::lie::Pose;
 
-/// What is known of a kind of session.
+/// Properties of a kind of session.
 pub struct Session {
-    /// Its word.
+    /// Word.
     pub word: &'static str,
-    /// The word of what will be measured, where a project can begin with it.
+    /// Word of the future measurements, if a project can begin with it.
     pub plural: Option<&'static str>,
-    /// What it is, in a few words.
+    /// Short description.
     pub help: &'static str,
-    /// What is measured.
+    /// Measured function.
     pub function: &'static Function,
-    /// Names of the places from which it is measured.
+    /// Names of the stations.
     pub places: &'static [&'static str],
-    /// Where these are.
+    /// Positions of the stations.
     pub stands: Stands,
-    /// How measurements come about.
+    /// Generation of measurements.
     pub drawn: Draw,
     /// Columns of its numbers in a file, with their units.
     pub columns: &'static [&'static str],
-    /// What they are, as comments of a file.
+    /// Description of the numbers, as comments of a file.
     pub about: &'static str,
 }
 
-/// Where the places of a session are.
+/// Positions of the stations of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stands {
-    /// One device that sees all that the robot does.
+    /// One device that measures the whole workspace of the robot.
     Anywhere,
     /// Around the robot, beyond its reach.
     Around,
-    /// In the middle of what it reaches.
+    /// In the middle of the workspace.
     Within,
-    /// Likewise, beside each other.
+    /// In the middle of the workspace, beside each other.
     InARow,
-    /// Nowhere: a direction that is nearly the base's z.
+    /// No position: a direction that is nearly the base's z.
     Upward,
-    /// Where the target itself was in another configuration.
+    /// At the target itself in another configuration.
     Before,
 }
 
-/// How measurements come about.
+/// Generation of measurements.
 #[derive(Clone, Copy)]
 pub enum Draw {
-    /// In any configuration, of the target's pose in the device's frame.
+    /// In any configuration, from the target's pose in the device's frame.
     Seen(fn(&Pose, &mut Drawn<'_>) -> Measurement),
-    /// In configurations in which a constraint is fulfilled: the constraint with its noise, and what is said of it.
+    /// In configurations that fulfil a constraint: the constraint with its noise, and the recorded measurement.
     Touched(fn(&mut Drawn<'_>) -> [Measurement; 2]),
 }
 
@@ -71,7 +71,7 @@ pub struct Drawn<'a> {
     pub uniform: &'a mut dyn FnMut() -> f64,
 }
 
-/// Kind of a session: what is measured, and from where.
+/// Kind of a session: measured quantities and stations.
 ///
 /// ```
 /// # mod poecal {
@@ -84,12 +84,12 @@ pub struct Drawn<'a> {
 pub struct Kind(&'static Session);
 
 impl Kind {
-    /// Of a session.
+    /// Kind of a session.
     pub(crate) const fn new(session: &'static Session) -> Self {
         Kind(session)
     }
 
-    /// What is known of it.
+    /// Session of the kind.
     #[must_use]
     pub fn session(self) -> &'static Session {
         self.0
@@ -101,43 +101,43 @@ impl Kind {
         self.0.word
     }
 
-    /// Whether a device with a frame of its own measures.
+    /// True if a device with a frame of its own measures.
     #[must_use]
     pub fn has_device(self) -> bool {
         self.0.stands == Stands::Anywhere
     }
 
-    /// Whether each measurement is of two configurations.
+    /// True if each measurement is of two configurations.
     #[must_use]
     pub fn is_paired(self) -> bool {
         self.0.stands == Stands::Before
     }
 
-    /// Whether something is touched, so that a configuration fulfils a constraint.
+    /// True if it is a contact, so that a configuration fulfils a constraint.
     #[must_use]
     pub fn is_touched(self) -> bool {
         matches!(self.0.drawn, Draw::Touched(_))
     }
 
-    /// Whether its configurations can be chosen freely: what is touched, or in pairs, is not.
+    /// True if its configurations can be chosen freely: those of contacts and of pairs cannot.
     #[must_use]
     pub fn is_chosen_freely(self) -> bool {
         !self.is_touched() && !self.is_paired()
     }
 
-    /// What it measures.
+    /// Measured quantities.
     #[must_use]
     pub fn quantities(self) -> &'static [Quantity] {
         self.0.function.quantities
     }
 
-    /// Whether some rows at least measure a quantity.
+    /// True if some rows at least measure a quantity.
     #[must_use]
     pub fn has(self, quantity: Quantity) -> bool {
         self.quantities().contains(&quantity)
     }
 
-    /// Whether some rows at least measure the orientation of the tip.
+    /// True if some rows at least measure the orientation of the tip.
     #[must_use]
     pub fn sees_orientation(self) -> bool {
         self.0.function.sees_orientation()

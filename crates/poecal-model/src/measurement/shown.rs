@@ -1,4 +1,4 @@
-//! What the rows of a session show of its devices and targets.
+//! Motions of devices and targets that the rows of a session determine.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,7 @@ use super::{Dataset, Device, Observation, Quantity};
 use poecal_arm::lie::Freedom;
 
 impl Dataset {
-    /// What a station is: a socket, a plane and so on, if all its rows say so; a pair, if each of its rows is of two configurations; else an
+    /// Word of a station: a socket, a plane and so on, if all its rows agree; a pair, if each of its rows is of two configurations; else an
     /// instrument.
     #[must_use]
     pub fn station_word(&self, station: usize) -> &'static str {
@@ -23,7 +23,7 @@ impl Dataset {
         found.word()
     }
 
-    /// The one distance that all rows of a station have, if it has several rows and they are distances alone: its targets are on a sphere.
+    /// Common distance of all rows of a station, if it has several rows and they are distances alone: its targets are on a sphere.
     #[must_use]
     pub fn sphere_reading(&self, station: usize) -> Option<f64> {
         let own = self.observations.iter().filter(|it| it.station == station);
@@ -43,13 +43,13 @@ impl Dataset {
         }
     }
 
-    /// Whether some row measured this target's orientation.
+    /// True if some row measured this target's orientation.
     #[must_use]
     pub fn target_is_frame(&self, target: usize) -> bool {
         self.observations.iter().any(|row| row.target == target && row.measurement.sees_orientation())
     }
 
-    /// For each target, whether some of these rows measured its orientation.
+    /// For each target, true if some of these rows measured its orientation.
     #[must_use]
     pub fn frames(&self, rows: &[u32]) -> Vec<bool> {
         let mut frames = vec![false; self.targets.len()];
@@ -67,14 +67,14 @@ impl Dataset {
         frames
     }
 
-    /// What some of these rows show of a station; of no rows, its frame.
+    /// Motions of a station that some of these rows determine; without rows, its frame.
     #[must_use]
     pub fn device_freedom(&self, station: usize, rows: &[u32]) -> Freedom {
         let own = rows.iter().map(|&row| &self.observations[row as usize]).filter(|it| it.station == station);
         own.map(|it| it.measurement.device_freedom()).reduce(Freedom::with).unwrap_or(Freedom::FRAME)
     }
 
-    /// Whether some of these rows are readings of a station whose zero is unknown.
+    /// True if some of these rows are readings of a station whose zero is unknown.
     #[must_use]
     pub fn zero_is_unknown(&self, station: usize, rows: &[u32]) -> bool {
         let mut own =
@@ -82,14 +82,14 @@ impl Dataset {
         own.any(|it| it.measurement.function().zero_is_unknown)
     }
 
-    /// Whether a station's rows are all distances, so that it has a zero and a scale.
+    /// True if a station's rows are all distances, so that it has a zero and a scale.
     #[must_use]
     pub fn is_ranging(&self, station: usize) -> bool {
         let mut own = self.observations.iter().filter(|it| it.station == station);
         own.all(|it| it.measurement.range().is_some())
     }
 
-    /// What some of these rows show of each target; of one that none sees, its place.
+    /// Motions of each target that some of these rows determine; for a target without rows, its position.
     #[must_use]
     pub fn target_freedoms(&self, rows: &[u32]) -> Vec<Freedom> {
         let mut found: Vec<Option<Freedom>> = vec![None; self.targets.len()];
@@ -113,7 +113,7 @@ impl Dataset {
         found.into_iter().map(|it| it.unwrap_or(Freedom::PLACE)).collect()
     }
 
-    /// Number of rotations of targets that some of these rows show.
+    /// Number of rotations of targets that some of these rows determine.
     #[must_use]
     pub fn turns_of_targets(&self, rows: &[u32]) -> usize {
         let turns = |freedom: Freedom| freedom.motions().iter().filter(|&&motion| motion >= 3).count();
@@ -151,7 +151,7 @@ impl Dataset {
         rows.iter().map(move |&row| of(row)).filter(|components| components.iter().any(Option::is_some))
     }
 
-    /// Whether some row measured a quantity.
+    /// True if some row measured a quantity.
     #[must_use]
     pub fn has(&self, quantity: Quantity) -> bool {
         self.observations.iter().any(|row| row.measurement.has(quantity))

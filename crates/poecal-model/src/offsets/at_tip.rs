@@ -1,4 +1,4 @@
-//! The offsets, base and tool with which the tip itself comes nearest, in place and turn.
+//! Offsets, base and tool with which the tip itself comes nearest, in position and orientation.
 
 use nalgebra::{Matrix3, Vector3, Vector6};
 
@@ -10,36 +10,36 @@ use poecal_arm::lie::{Pose, Twist, hat, rotation};
 use poecal_numerics::error::Result;
 use poecal_numerics::linalg;
 
-/// Most steps; five do where the robots differ by degrees.
+/// Largest number of steps; five are enough if the robots differ by degrees.
 const STEPS: usize = 30;
 
 /// Distance that is rounding, over a length of the arm.
 const EXACT_M: f64 = 1e-12;
 
-/// Length (m) at which a turn of the tip counts: that of a tool beyond it. By the tip's place alone the joints of a wrist, whose axes pass near it,
-/// would be turned by degrees for tenths of a millimetre.
+/// Length (m) at which a rotation of the tip counts: that of a tool beyond it. By the tip's position alone the joints of a wrist, whose axes pass
+/// near it, would be turned by degrees for tenths of a millimetre.
 const TOOL_M: f64 = 0.1;
 
 /// Offsets and base motion, and the tip's motion.
 type State = (OffsetState, Pose);
 
-/// Least squares of the tip's places and turns in the configurations in which predictions are compared, theory.md §8 (38d).
+/// Least squares of the tip's positions and rotations in the configurations in which predictions are compared, theory.md §8 (38d).
 pub(crate) struct TipFit<'a> {
     pub(crate) nominal: &'a Robot,
     pub(crate) predictions: &'a Predictions,
     pub(crate) options: &'a OffsetOptions,
-    /// Whether the offsets move, or the ends that are free alone.
+    /// True if the offsets move; otherwise only the free ends do.
     pub(crate) moves_offsets: bool,
     /// Metres that a radian counts.
     pub(crate) length_m: f64,
 }
 
 impl TipFit<'_> {
-    /// The state with the tip nearest to the actual one, from one with the screws nearest, the tip's motion and what is left. Where no tip
-    /// decides, the screws have.
+    /// State with the tip nearest to the actual one, from the state with the nearest screws; with the tip's motion and the remaining
+    /// error. If the tip does not determine a part, that of the screws stays.
     pub(crate) fn nearest(&self, start: OffsetState) -> Result<(OffsetState, Pose, TipError)> {
         let (tip, left) = self.compared(&start)?;
-        // Robots that differ by offsets alone: the start is exact.
+        // The robots differ by offsets alone: the start is exact.
         if self.scales().is_empty() || left.rms_m <= EXACT_M * self.length_m {
             return Ok((start, tip, left));
         }
@@ -49,7 +49,7 @@ impl TipFit<'_> {
         Ok(if cost(&less) < cost(&left) { (state, nearer, less) } else { (start, tip, left) })
     }
 
-    /// The best motion of the tip at a state, and what it leaves.
+    /// Best motion of the tip at a state, and the remaining error.
     pub(crate) fn compared(&self, state: &OffsetState) -> Result<(Pose, TipError)> {
         Ok(self.predictions.compare(&into_screws(self.nominal, &state.offsets)?, &state.base))
     }
@@ -82,7 +82,7 @@ impl TipFit<'_> {
         Ok(state)
     }
 
-    /// Metres that a unit of each unknown counts: of offsets, base and tip, as far as they move.
+    /// Metres that a unit of each unknown counts: of offsets, base and tip, if they move.
     fn scales(&self) -> Vec<f64> {
         let joint = |kind| match kind {
             JointKind::Revolute => self.length_m,
@@ -131,7 +131,7 @@ impl TipFit<'_> {
         next
     }
 
-    /// Normal equations of the tip's places and turns.
+    /// Normal equations of the tip's positions and rotations.
     fn normal(&self, (state, tip): &State) -> Result<Normal> {
         let robot = into_screws(self.nominal, &state.offsets)?;
         let scales = self.scales();
@@ -149,7 +149,7 @@ impl TipFit<'_> {
             let place = pose.translation;
             let turn = rotation::log(&(pose.rotation * actual.rotation.transpose()));
             let residual = [place - actual.translation, turn * TOOL_M];
-            // The tip's motion by that of a joint, of the base, and of the tip in its own frame.
+            // Motion of the tip by that of a joint, of the base, and of the tip in its own frame.
             let mut columns: Vec<[Vector3<f64>; 2]> = Vec::with_capacity(n);
             let zero = Vector3::zeros();
             if self.moves_offsets {

@@ -1,5 +1,5 @@
-//! How each joint of one robot differs from another's: joint offset, tilt and shift, with directions, and how these follow small motions
-//! of the axes.
+//! Changes of each joint of one robot from another: joint offset, tilt and shift, with directions, and their derivatives by small
+//! motions of the axes.
 
 use nalgebra::{Vector3, Vector6};
 
@@ -9,39 +9,39 @@ use super::{End, OffsetOptions};
 use crate::robot::{JointKind, Robot};
 use poecal_numerics::error::Result;
 
-/// Cosine of the angle from a direction of the base below which a direction is told by its components: 20 degrees.
+/// Cosine of the angle from a direction of the base below which a direction is stated by its components: 20 degrees.
 const NEAR: f64 = 0.94;
 /// Standard deviations below which a change is no more than noise.
 const SIGMAS: f64 = 2.0;
-/// Changes that are none (m, rad): rounding.
+/// Rounding: smaller changes (m, rad) do not count.
 const NONE: f64 = 1e-9;
 
-/// How a joint differs from another model's, in three parts (theory.md §8 (38e)): the joint offset, and the tilt and shift of its axis that
-/// offsets and base do not explain. In the base frame at zero joint values.
+/// Change of a joint from another model's, in three parts (theory.md §8 (38e)): the joint offset, and the tilt and shift of its axis that
+/// offsets and base do not explain. It is in the base frame at zero joint values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointChange {
     /// Kind of the joint.
     pub kind: JointKind,
-    /// The point of the axis for which the shift is stated: the nearest to the joint's origin, metres.
+    /// Point of the axis for which the shift is stated: the nearest to the joint's origin, metres.
     pub at: Vector3<f64>,
-    /// What is to be added to the joint's value, radians or metres; `None` where base or tool can take its place.
+    /// Correction of the joint's value, radians or metres; `None` if base or tool can take its place.
     pub offset: Option<f64>,
     /// Tilt of the axis, a rotation vector across it, radians.
     pub tilt: Vector3<f64>,
-    /// Shift of the axis across itself, metres; zero of a sliding joint.
+    /// Shift of the axis across itself, metres; zero for a prismatic joint.
     pub shift: Vector3<f64>,
-    /// Standard deviation of the offset, radians or metres; `None` where it is not determined.
+    /// Standard deviation of the offset, radians or metres; `None` if it is not determined.
     pub sigma_offset: Option<f64>,
     /// Root mean square error of the tilt, radians.
     pub sigma_tilt: Option<f64>,
     /// Root mean square error of the shift, metres.
     pub sigma_shift: Option<f64>,
-    /// Whether standard deviations are known: a part without one is then not determined.
+    /// True if standard deviations are known: a part without one is then not determined.
     pub is_estimated: bool,
 }
 
 impl JointChange {
-    /// In words: `2.00 ± 0.31 mm toward +x, tilt 0.700 ± 0.020 deg about +y, offset −0.900 ± 0.030 deg`.
+    /// Description: `2.00 ± 0.31 mm toward +x, tilt 0.700 ± 0.020 deg about +y, offset −0.900 ± 0.030 deg`.
     #[must_use]
     pub fn words(&self) -> String {
         let shift = (self.kind == JointKind::Revolute).then(|| self.shift_words());
@@ -75,7 +75,7 @@ impl JointChange {
     }
 }
 
-/// How a part is told.
+/// Format of a part in words.
 struct Told {
     factor: f64,
     unit: &'static str,
@@ -113,7 +113,7 @@ impl Told {
         self.sigma.map_or_else(String::new, |sigma| format!(" ± {:.decimals$}", sigma * factor))
     }
 
-    /// What is told of a part that is no more than noise, or not determined.
+    /// Text of a part that is no more than noise, or not determined.
     fn nothing(&self, name: &str, size: f64) -> Option<String> {
         if !self.is_determined {
             return Some(format!("{name} not determined"));
@@ -150,7 +150,7 @@ impl Told {
     }
 }
 
-/// The direction of the base that a vector is near to.
+/// Direction of the base that is near to a vector.
 pub fn direction(value: &Vector3<f64>) -> Option<&'static str> {
     const NAMES: [[&str; 2]; 3] = [["+x", "−x"], ["+y", "−y"], ["+z", "−z"]];
     let (axis, largest) = value.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
@@ -158,12 +158,12 @@ pub fn direction(value: &Vector3<f64>) -> Option<&'static str> {
     is_near.then(|| NAMES[axis][usize::from(*largest < 0.0)])
 }
 
-/// How the joints of a robot differ from another's, and how that follows motions of its axes.
+/// Changes of the joints of a robot from another, and their derivatives by motions of its axes.
 pub struct Changes {
-    /// The change of each joint.
+    /// Change of each joint.
     pub joints: Vec<JointChange>,
     length_m: f64,
-    /// Directions of the other robot's axes where offsets and base have brought them.
+    /// Directions of the other robot's axes after offsets and base motion.
     directions: Vec<Vector3<f64>>,
     blocks: Vec<(usize, Block)>,
     normal: Normal,
@@ -173,16 +173,16 @@ pub struct Changes {
 
 /// Derivatives of a joint's change by each of some motions.
 pub struct ChangeBySteps {
-    /// Of its offset, radians or metres a unit of the motion.
+    /// Derivative of its offset, radians or metres for a unit of the motion.
     pub offset: Vec<f64>,
-    /// Of the tilt of its axis, radians a unit of the motion.
+    /// Derivative of the tilt of its axis, radians for a unit of the motion.
     pub tilt: [Vec<f64>; 3],
-    /// Of the shift of its axis, metres a unit of the motion.
+    /// Derivative of the shift of its axis, metres for a unit of the motion.
     pub shift: [Vec<f64>; 3],
 }
 
 impl Changes {
-    /// From `nominal` to `actual`, with the tool as it is best and with `base` free or not.
+    /// Changes from `nominal` to `actual`, with the best tool and with `base` free or not.
     ///
     /// # Errors
     /// As [`explain`](super::explain).
@@ -227,12 +227,12 @@ impl Changes {
         })
     }
 
-    /// Metres that a radian counts beside shifts: a third of the arm's length.
+    /// Metres that a radian counts relative to shifts: a third of the arm's length.
     pub fn length_m(&self) -> f64 {
         self.length_m
     }
 
-    /// Derivatives of each joint's change by some motions of the actual robot's axes: of each a spatial twist for every joint.
+    /// Derivatives of each joint's change by some motions of the actual robot's axes; each motion has a spatial twist for every joint.
     pub fn by_steps(&self, steps: &[Vec<Vector6<f64>>]) -> Vec<ChangeBySteps> {
         let zeros = || vec![0.0; steps.len()];
         let none = || ChangeBySteps {
@@ -243,7 +243,7 @@ impl Changes {
         let mut found: Vec<ChangeBySteps> = self.joints.iter().map(|_| none()).collect();
         let n = self.scales.len();
         for (step, motions) in steps.iter().enumerate() {
-            // What the axes do, and what of it offsets and base follow.
+            // Motions of the axes, and the part that offsets and base follow.
             let mut moved = Vec::with_capacity(3 * self.blocks.len());
             for (joint, (_, derivative)) in &self.blocks {
                 let motion = motions.get(*joint).copied().unwrap_or_else(Vector6::zeros);
@@ -267,7 +267,7 @@ impl Changes {
                     continue;
                 };
                 let left = Vector3::new(left[0], left[1], left[2]);
-                // Of each joint the tilt comes first.
+                // For each joint the tilt comes first.
                 let is_tilt = earlier != Some(*joint);
                 earlier = Some(*joint);
                 let (part, into) = if is_tilt {
@@ -331,7 +331,7 @@ mod tests {
             }
         }
         println!("derivatives of offsets, tilts and shifts differ from differences by {worst:.1e}");
-        // The neglected second order: the size of the changes themselves, 0.02 of 0.01 and of 0.4 rad.
+        // The tolerance is for the neglected second order: the size of the changes themselves, 0.02 of 0.01 and of 0.4 rad.
         assert!(worst < 0.03, "{worst}");
     }
 

@@ -9,10 +9,10 @@ use crate::robot::{Joint, JointKind, Robot};
 use poecal_arm::lie::{Pose, Screw, Twist, by_turn, by_twist, hat};
 use poecal_numerics::linalg;
 
-/// Share of the largest eigenvalue of the normal equations below which a direction is open: models are written with rounded angles
-/// (1.5708), which must not decide an offset.
+/// Share of the largest eigenvalue of the normal equations below which a direction is undetermined: models are written with
+/// rounded angles (1.5708), which must not determine an offset.
 const OPEN: f64 = 1e-8;
-/// Smallest share of a joint in an open direction for which it is named, well above rounding.
+/// Smallest share of a joint in an undetermined direction for which it is named, well above rounding.
 const NAMED: f64 = 1e-3;
 
 /// Offsets (radians, metres) and the motion of the nominal robot in the base frame.
@@ -40,11 +40,11 @@ pub(crate) struct Normal {
     vectors: DMatrix<f64>,
 }
 
-/// A residual and its derivative by a spatial motion of everything from a joint on.
+/// A residual and its derivative by a spatial motion of all joints from one on.
 pub(crate) type Block = (Vector3<f64>, Matrix3x6<f64>);
 
 impl Normal {
-    /// By the upper half of the normal matrix.
+    /// Normal equations from the upper half of the normal matrix.
     pub(crate) fn new(gram: &[f64], gradient: Vec<f64>, residuals: &[f64]) -> Self {
         let (values, vectors) = linalg::symmetric_eigen(gram, gradient.len());
         let cost = residuals.iter().map(|residual| residual * residual).sum();
@@ -55,17 +55,17 @@ impl Normal {
         self.values.last().copied().unwrap_or(0.0)
     }
 
-    /// Number of open directions, which are the first eigenvectors.
+    /// Number of undetermined directions, which are the first eigenvectors.
     fn open(&self) -> usize {
         self.values.iter().take_while(|&&value| value <= OPEN * self.largest()).count()
     }
 
-    /// The damped step, none in open directions.
+    /// Damped step, zero in undetermined directions.
     pub(crate) fn step(&self, damping: f64) -> Vec<f64> {
         self.step_by(&self.gradient, damping)
     }
 
-    /// The same for another gradient.
+    /// The same step for another gradient.
     pub(crate) fn step_by(&self, gradient: &[f64], damping: f64) -> Vec<f64> {
         let n = gradient.len();
         let mut step = vec![0.0; n];
@@ -82,7 +82,7 @@ impl<'a> Comparison<'a> {
         Comparison { nominal, actual, options, length_m: nominal.arm_m() / 3.0, offsets_free: true }
     }
 
-    /// The best state that is reached from no offsets and from those in closed form; angles are in (-π, π].
+    /// Best state that is reached from zero offsets and from those in closed form; angles are in (-π, π].
     pub(crate) fn best(&self) -> OffsetState {
         let mut starts = vec![self.sequential(End::Kept), self.unmoved()];
         if self.options.base == End::Free {
@@ -91,7 +91,7 @@ impl<'a> Comparison<'a> {
         self.best_of(starts)
     }
 
-    /// The best state in which all offsets are zero.
+    /// Best state in which all offsets are zero.
     pub(crate) fn best_without_offsets(&self) -> OffsetState {
         let base_only = Comparison { offsets_free: false, ..*self };
         let by_first_screws =
@@ -109,7 +109,7 @@ impl<'a> Comparison<'a> {
         best.unwrap_or_else(|| self.unmoved())
     }
 
-    /// The joints that have a part in open directions.
+    /// Joints that have a part in undetermined directions.
     pub(crate) fn undetermined(&self, state: &OffsetState) -> Vec<usize> {
         let normal = self.normal(state);
         let open = normal.open();
@@ -130,7 +130,7 @@ impl<'a> Comparison<'a> {
         (screws, motion * self.nominal.home)
     }
 
-    /// Descends, makes open offsets as small as they can be, and descends again until nothing moves.
+    /// Descends, makes undetermined offsets as small as they can be, and descends again until nothing moves.
     fn refine(&self, start: OffsetState) -> OffsetState {
         let mut state = start;
         if self.dim() == 0 {
@@ -180,7 +180,7 @@ impl<'a> Comparison<'a> {
         state
     }
 
-    /// The step in open directions that makes the offsets smallest; the base is free to follow.
+    /// Step in undetermined directions that makes the offsets smallest; the base is free to follow.
     fn open_step(&self, state: &OffsetState) -> Vec<f64> {
         let n = self.dim();
         let mut step = vec![0.0; n];
@@ -194,7 +194,7 @@ impl<'a> Comparison<'a> {
             self.scales().iter().zip(&state.offsets).map(|(scale, offset)| scale * offset).collect();
         let parts: Vec<Vec<f64>> =
             (0..open).map(|k| normal.vectors.column(k).iter().take(count).copied().collect()).collect();
-        // The damping settles motions of the base alone.
+        // The damping determines motions of the base alone.
         if let Some(coefficients) = linalg::combination(&parts, &scaled) {
             for (&coefficient, vector) in coefficients.iter().zip(normal.vectors.column_iter()) {
                 step.iter_mut().zip(vector.iter()).for_each(|(s, a)| *s += coefficient * a);
@@ -244,7 +244,7 @@ impl<'a> Comparison<'a> {
         next
     }
 
-    /// The residuals of the joints in order, then of the home pose, each with the number of joints that move it.
+    /// Residuals of the joints in order, then of the home pose, each with the number of joints that move it.
     pub(crate) fn blocks(&self, state: &OffsetState) -> (Vec<Screw>, Vec<(usize, Block)>) {
         let (screws, home) = self.moved(state);
         let mut blocks = Vec::new();
@@ -254,7 +254,7 @@ impl<'a> Comparison<'a> {
         if self.options.tip == End::Kept {
             let goal = &self.actual.home;
             blocks.push((screws.len(), (home.translation - goal.translation, by_twist(&home.translation))));
-            // Chords between the axes of the two frames: for small angles the square of the turn, and smooth for large ones.
+            // Chords between the axes of the two frames: for small angles the square of the rotation, and smooth for large ones.
             let weight = self.length_m / SQRT_2;
             for (axis, goal) in home.rotation.column_iter().zip(goal.rotation.column_iter()) {
                 blocks.push((
@@ -282,7 +282,7 @@ impl<'a> Comparison<'a> {
         let n = scales.len();
         let (mut rows, mut residuals) = (Vec::new(), Vec::new());
         for (movers, (residual, derivative)) in blocks {
-            // An offset moves all later screws and the home pose by the joint's own screw at its current place.
+            // An offset moves all later screws and the home pose by the joint's own screw at its current pose.
             let mut columns: Vec<Vector3<f64>> = Vec::with_capacity(n);
             if self.offsets_free {
                 columns.extend(screws.iter().enumerate().map(|(index, screw)| {
@@ -304,7 +304,7 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// Tilt (as a chord at `length_m`) and shift of a screw against the actual joint's, as seen from that one's origin.
+/// Tilt (as a chord at `length_m`) and shift of a screw from the actual joint's, relative to the origin of that one.
 fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<Item = Block> + use<> {
     let direction = screw.direction();
     let tilt = ((direction - actual.screw.direction()) * length_m, by_turn(&-hat(&direction), length_m));
@@ -313,7 +313,7 @@ fn screw_blocks(screw: &Screw, actual: &Joint, length_m: f64) -> impl Iterator<I
         let at = screw.nearest_point(&origin);
         let off = at - origin;
         let across = Matrix3::identity() - direction * direction.transpose();
-        // The nearest point slides along an axis that tilts.
+        // The nearest point moves along an axis that tilts.
         let sliding = by_turn(&(direction * off.cross(&direction).transpose()), 1.0);
         (off, across * by_twist(&at) + sliding)
     });
@@ -324,7 +324,7 @@ fn norm(step: &[f64]) -> f64 {
     step.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-/// The same angle in (-π, π]; one that is there stays as it is, to the last digit.
+/// The same angle in (-π, π]; an angle in this interval is unchanged, to the last digit.
 pub(crate) fn wrapped(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;

@@ -1,5 +1,5 @@
-//! Joint offsets and the screws that are equivalent to them: a robot with offsets written without, and the offsets that explain best
-//! how one robot differs from another (theory.md §8, lou2009 equations 11 to 15).
+//! Joint offsets and the equivalent screws: a robot with offsets written without, and the offsets that explain best the difference
+//! of one robot from another (theory.md §8, lou2009 equations 11 to 15).
 
 mod at_tip;
 mod changes;
@@ -29,7 +29,7 @@ use screws::check_same_joints;
 pub struct JointRemainder {
     /// Angle between the directions, radians.
     pub tilt_rad: f64,
-    /// Distance of the axis from the actual joint's origin, metres; none for a sliding joint.
+    /// Distance of the axis from the actual joint's origin, metres; `None` for a prismatic joint.
     pub shift_m: Option<f64>,
 }
 
@@ -42,41 +42,42 @@ pub struct HomeRemainder {
     pub rotation_rad: f64,
 }
 
-/// The offsets with which one robot comes nearest to another, and the remaining differences.
+/// Offsets with which one robot comes nearest to another, and the remaining differences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
-    /// How the robots were compared.
+    /// Options of the comparison.
     pub options: OffsetOptions,
     /// Offset of each joint's value, radians in (-π, π] or metres.
     pub offsets: Vec<f64>,
     /// Joints (by index) whose offsets are not determined, alone or in combination; theirs are the smallest that explain as much.
     pub undetermined: Vec<usize>,
-    /// Motion of the nominal robot in the base frame; none where the base is kept.
+    /// Motion of the nominal robot in the base frame; the identity if the base is kept.
     pub base_motion: Pose,
-    /// `tip_from_tip` from the nominal tip to the actual one; none where the tip is kept.
+    /// `tip_from_tip` from the nominal tip to the actual one; the identity if the tip is kept.
     pub tip_motion: Pose,
     /// Remaining difference of each joint.
     pub joints: Vec<JointRemainder>,
-    /// Remaining difference of the home pose; none where the tip is free.
+    /// Remaining difference of the home pose; `None` if the tip is free.
     pub home: Option<HomeRemainder>,
-    /// Error of the nominal robot's tip against the actual one's, with the best base and tip where these are free.
+    /// Error of the nominal robot's tip relative to the actual one's, with the best base and tip if these are free.
     pub without_offsets: TipError,
-    /// The same with the offsets put in.
+    /// The same error with the offsets applied.
     pub with_offsets: TipError,
 }
 
-/// The offsets, and the motions of base and tip where these are free, with which the tip of `nominal` comes nearest to that of `actual`: least
-/// squares of its places and of its turns, at a tenth of a metre, in random configurations within the limits of `nominal` (theory.md §8 (38d)), from
-/// those with which the screws and the home pose come nearest (38b), which also decide where no tip does. Offsets may be of any size. It is what a controller gains that takes
-/// offsets, a base and a tool, and nothing else.
+/// Offsets, and motions of base and tip if these are free, with which the tip of `nominal` comes nearest to that of `actual`. They are the least
+/// squares of its positions and of its rotations, at a tenth of a metre. The configurations are random within the limits of `nominal` (theory.md §8
+/// (38d)). The start is the state with the nearest screws and home pose (38b), which also determines the parts without effect on the tip. Offsets may
+/// be of any size. The result is the improvement by a controller that takes offsets, a base and a tool, and nothing else.
 ///
 /// # Errors
-/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if the robots do not have the same joints (number, names in order, kinds and readings), or have branches.
+/// [`ErrorKind::Option`](poecal_numerics::error::ErrorKind::Option) if the robots do not have the same joints (number, names in order,
+/// kinds and readings), or have branches.
 pub fn explain(nominal: &Robot, actual: &Robot, options: &OffsetOptions) -> Result<Explanation> {
     explained(nominal, actual, options, true)
 }
 
-/// The same by the screws alone, (38b): where [`explain`] starts.
+/// The same offsets by the screws alone, (38b): the start of [`explain`].
 ///
 /// # Errors
 /// As [`explain`].

@@ -1,11 +1,11 @@
-//! What may move while offsets are explained.
+//! Options of the explanation of offsets.
 
-/// Whether one end of the robot may move to explain a difference.
+/// State of one end of the robot in the explanation of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// Both robots have the same frame there.
     Kept,
-    /// The frame is found with the offsets.
+    /// The frame is estimated with the offsets.
     Free,
 }
 
@@ -20,15 +20,15 @@ impl End {
     }
 }
 
-/// Configurations in which the tips are compared: what remains is within 1 %.
+/// Number of configurations in which the tips are compared: the remaining error is within 1 %.
 const CONFIGURATIONS: usize = 10_000;
 
 /// Options of [`explain`](super::explain).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OffsetOptions {
-    /// The base frame: free where the actual robot's is a choice.
+    /// Base frame: free if the actual robot's is a choice.
     pub base: End,
-    /// The tip frame: free where the tool was changed or refitted.
+    /// Tip frame: free if the tool was changed or refitted.
     pub tip: End,
     /// Number of random configurations in which the tips are compared.
     pub configurations: usize,

@@ -39,12 +39,12 @@ impl Predictions {
         Predictions { readings, actual, tip: options.tip }
     }
 
-    /// The readings of each configuration with the actual tip.
+    /// Readings of each configuration with the actual tip.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = (&[f64], &Pose)> {
         self.readings.iter().map(Vec::as_slice).zip(&self.actual)
     }
 
-    /// The best motion of the tip where it is free, and the errors between the tips of `robot`, moved by `base`, and the actual one.
+    /// Best motion of the tip if it is free, and the errors between the tips of `robot`, moved by `base`, and the actual one.
     pub(crate) fn compare(&self, robot: &Robot, base: &Pose) -> (Pose, TipError) {
         let tips: Vec<Pose> =
             self.readings.iter().map(|readings| *base * robot.forward_kinematics(readings)).collect();
@@ -73,7 +73,7 @@ impl Predictions {
     }
 }
 
-/// The pose with the least sum of squares of distances and of chords between rotations to all of them (theory.md §8
+/// Pose with the least sum of squares of distances and of chords between rotations to all of them (theory.md §8
 /// (38c)).
 fn mean(poses: impl Iterator<Item = Pose>) -> Pose {
     let (mut sum, mut products, mut count) = (Vector3::zeros(), Matrix4::zeros(), 0.0);

@@ -4,8 +4,8 @@ use crate::robot::{Body, Robot};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint):
-/// `ξ'ᵢ = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
+/// The robot without offsets that is exactly `robot` with `offsets` added to its joint values (radians, metres; one a joint). `ξ'ᵢ
+/// = Ad(Gᵢ₋₁) ξᵢ`, `M' = Gₙ M` with `Gᵢ = exp(ξ₁δ₁) … exp(ξᵢδᵢ)`, so that `f'(θ) = f(θ + δ)` for every θ (theory.md §8 (38a)).
 ///
 /// A joint's frame is fixed to the link that the joint moves and moves by `Gᵢ`, its own rotation included. Limits stay, since they bound
 /// readings. The offset of a mimic joint is that of its own value.
@@ -22,7 +22,7 @@ pub fn into_screws(robot: &Robot, offsets: &[f64]) -> Result<Robot> {
         ));
     }
     let mut equivalent = robot.clone();
-    // Of each joint's link, from its place without offsets.
+    // Motion of each joint's link from its pose without offsets.
     let mut motions: Vec<Pose> = Vec::with_capacity(offsets.len());
     let of = |motions: &[Pose], body: Body| {
         body.joint().and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)

@@ -1,5 +1,4 @@
-//! Offsets in closed form, joint by joint: exact where the robots differ by offsets alone, and a start for the least squares where
-//! they differ by more.
+//! Offsets in closed form, joint by joint: exact if the robots differ by offsets alone, otherwise a start for the least squares.
 
 use nalgebra::Vector3;
 
@@ -11,8 +10,8 @@ use poecal_arm::lie::{Pose, Screw, hat};
 const LEAST_MOTION: f64 = 1e-3;
 
 impl Comparison<'_> {
-    /// Each offset turns the next screw that it moves as near as possible to the actual one; a free base first takes the first screw
-    /// there.
+    /// State in which each offset turns the next screw that it moves as near as possible to the actual one; a free base first takes
+    /// the first screw there.
     pub(crate) fn sequential(&self, base: End) -> OffsetState {
         let base = match base {
             End::Kept => Pose::identity(),
@@ -30,7 +29,7 @@ impl Comparison<'_> {
         OffsetState { offsets, base }
     }
 
-    /// The motion that takes the first screw to the actual one, with the rotation about it and the shift along it that fit the next screws.
+    /// Motion that takes the first screw to the actual one, with the rotation about it and the shift along it that fit the next screws.
     fn base_by_first_screws(&self) -> Pose {
         let (Some(from), Some(to)) = (self.nominal.joints.first(), self.actual.joints.first()) else {
             return Pose::identity();
@@ -43,7 +42,7 @@ impl Comparison<'_> {
         slide.exp(self.by_next_screw(&slide, 0, &turned).unwrap_or(0.0)) * turned
     }
 
-    /// The value of `about` by the first screw after joint `index` that it moves; later screws are moved by `motion`.
+    /// Value of `about` by the first screw after joint `index` that it moves; later screws are moved by `motion`.
     fn by_next_screw(&self, about: &Screw, index: usize, motion: &Pose) -> Option<f64> {
         let pairs = self.nominal.joints.iter().zip(&self.actual.joints).skip(index + 1);
         let mut values = pairs.map(|(nominal, actual)| {
@@ -54,7 +53,7 @@ impl Comparison<'_> {
         values.find_map(|value| value)
     }
 
-    /// The value of `about` that brings the home pose, moved by `motion`, nearest; none where the tip is free.
+    /// Value of `about` that brings the home pose, moved by `motion`, nearest; `None` if the tip is free.
     fn by_home(&self, about: &Screw, motion: &Pose) -> Option<f64> {
         if self.options.tip == End::Free {
             return None;
@@ -64,15 +63,15 @@ impl Comparison<'_> {
         if about.is_prismatic() {
             return Some(direction.dot(&(goal.translation - home.translation)));
         }
-        // tr(exp(φŵ) A) = cos φ (tr A - w·Aw) + sin φ tr(ŵA) + const is largest where the rotations are nearest.
+        // tr(exp(φŵ) A) = cos φ (tr A - w·Aw) + sin φ tr(ŵA) + const is largest for the nearest rotations.
         let between = home.rotation * goal.rotation.transpose();
         let sine = (hat(&direction) * between).trace();
         Some(sine.atan2(between.trace() - direction.dot(&(between * direction))))
     }
 }
 
-/// The value by which `about` brings `moving` nearest to `to`, an axis as seen from `origin`; `None` if it does not move it. Directions
-/// decide, and places where directions do not move: motions of at least `least_motion_m` (metres).
+/// Value by which `about` brings `moving` nearest to `to`, an axis relative to `origin`; `None` if it does not move it. Directions
+/// decide, and positions if directions do not move: motions of at least `least_motion_m` (metres).
 fn nearest_value(
     about: &Screw,
     moving: &Screw,

@@ -6,7 +6,7 @@ use crate::robot::Robot;
 use poecal_arm::lie::{Pose, Twist, by_twist, hat};
 use poecal_numerics::linalg::combination;
 
-/// Steps of the fit: the motions are small.
+/// Number of steps of the fit: the motions are small.
 const STEPS: usize = 2;
 
 /// Motions of a nominal robot's base and tool that take its tips `N` nearest to the actual robot's `A`: `B N T ≈ A`.
@@ -18,7 +18,7 @@ pub struct Taught {
 }
 
 impl Taught {
-    /// Least squares of `log((B N T)⁻¹ A)` over pairs of tips, a radian counting as so many metres. A base that is known is held.
+    /// Least squares of `log((B N T)⁻¹ A)` over pairs of tips; `radian_m` metres count as a radian. A known base is held.
     pub fn from_tips(tips: &[(Pose, Pose)], radian_m: f64, base_is_known: bool) -> Self {
         Taught::with_points(tips, &[], radian_m, base_is_known)
     }
@@ -72,7 +72,7 @@ impl Taught {
         taught
     }
 
-    /// The same by the places of the tips alone: least squares of their distances over base and the tool's shift.
+    /// The same fit by the positions of the tips alone: least squares of their distances over base and the tool's shift.
     pub fn of_places(tips: &[(Pose, Pose)], base_is_known: bool) -> Self {
         let mut taught = Taught { base: Pose::identity(), tool: Pose::identity() };
         for _ in 0..STEPS {
@@ -99,7 +99,7 @@ impl Taught {
         taught
     }
 
-    /// The tip of the nominal robot with these frames.
+    /// Tip of the nominal robot with these frames.
     pub fn tip(&self, nominal: &Pose) -> Pose {
         self.base * *nominal * self.tool
     }
@@ -133,7 +133,7 @@ mod tests {
             .map(|(nominal, actual)| (taught.tip(nominal).translation - actual.translation).norm())
             .fold(0.0, f64::max);
         println!("left of 20 mm and 1.5 degrees after {STEPS} steps: {worst:.1e} m");
-        // The third order of what was moved.
+        // The tolerance is for the third order of the motions.
         assert!(worst < 1e-6);
         let held = Taught::from_tips(&tips, 0.3, true);
         assert!((held.base.translation).norm() == 0.0);

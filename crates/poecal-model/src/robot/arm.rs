@@ -10,9 +10,9 @@ use super::{JointTerm, Limits, Robot, Statics};
 use poecal_numerics::error::{ErrorKind, Result};
 
 impl Robot {
-    /// The joints from the base to the tip, their terms at these values of the factors, and the limits of their readings, for forward and
-    /// inverse kinematics; beside it, of each of the arm's readings the index among the robot's ([`Robot::reading_names`]). Joints of other
-    /// branches are at zero.
+    /// Joints from the base to the tip, for forward and inverse kinematics, with their terms at these values of the factors and the limits
+    /// of their readings. The second result has the index of each of the arm's readings among the robot's ([`Robot::reading_names`]).
+    /// Joints of other branches are at zero.
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip, or one of them does not move it.
@@ -28,7 +28,7 @@ impl Robot {
         self.arm_holding(factors, &[])
     }
 
-    /// The same where some readings, each by its index among the robot's, stay at a value (rad, m): they are none of the arm's.
+    /// The same arm with some readings, each by its index among the robot's, held at a value (rad, m): they are none of the arm's.
     ///
     /// # Errors
     /// As [`Robot::arm`].
@@ -47,7 +47,7 @@ impl Robot {
         Ok((arm, readings))
     }
 
-    /// What [`Robot::arm`] is made of.
+    /// Model of [`Robot::arm`].
     ///
     /// # Errors
     /// [`ErrorKind::Model`] if more than [`MOST_JOINTS`] readings move the tip.
@@ -120,15 +120,15 @@ impl Robot {
 struct Values<'a> {
     robot: &'a Robot,
     statics: Option<Statics<'a>>,
-    /// The joints of the arm but gives.
+    /// Joints of the arm except compliant joints.
     moving: &'a [usize],
-    /// Of each reading of the arm the index among the robot's.
+    /// For each reading of the arm, the index among the robot's.
     readings: &'a [usize],
-    /// Of each joint the index of its reading.
+    /// For each joint, the index of its reading.
     indices: &'a [usize],
-    /// Readings that stay at a value.
+    /// Readings that are held at a value.
     held: &'a [(usize, f64)],
-    /// The factors, from their references.
+    /// Factors, from their references.
     factors: Vec<f64>,
 }
 
@@ -160,7 +160,7 @@ impl Values<'_> {
         value
     }
 
-    /// The value of a joint by its reading: a constant, and the arm's reading with a factor.
+    /// Value of a joint by its reading: a constant, and the arm's reading with a factor.
     fn by_reading(&self, joint: usize) -> (f64, Option<(usize, f64)>) {
         let (own, reading) = (&self.robot.joints[joint].reading, self.indices[joint]);
         let of_arm = self.readings.iter().position(|it| *it == reading);
@@ -173,7 +173,7 @@ impl Values<'_> {
         }
     }
 
-    /// Adds a term that is a function of the value of a joint, of a give that of the joint which gives.
+    /// Adds a term that is a function of the value of a joint; for a compliant joint, of the value of the joint that it belongs to.
     fn add_of_value(&self, value: &mut JointValue, term: Term, coefficient: f64, of: usize) {
         let Some(joint) = self.robot.joints.get(of) else { return };
         let (constant, linear) = self.by_reading(joint.give_of.unwrap_or(of));
@@ -201,12 +201,12 @@ impl Values<'_> {
         }
     }
 
-    /// The factor of a term's number, from its reference.
+    /// Factor of a term's number, from its reference.
     fn factor(&self, term: Term) -> f64 {
         self.factors.get(term.index()).copied().unwrap_or(0.0)
     }
 
-    /// The moments about a joint that terms are functions of, by these coefficients.
+    /// Moments about a joint that terms are functions of, by these coefficients.
     fn pull(&self, joint: usize, terms: &[(Term, f64)]) -> Option<Pull> {
         let weights = self.robot.gravity.as_ref()?.weights.len();
         let (mut sags, mut of_masses) = (vec![0.0; weights], 0.0);
@@ -224,7 +224,7 @@ impl Values<'_> {
     }
 }
 
-/// Waves with those of one order as one.
+/// Waves with those of one order joined.
 fn together(waves: &[Wave]) -> Vec<Wave> {
     let mut out: Vec<Wave> = Vec::new();
     for wave in waves {

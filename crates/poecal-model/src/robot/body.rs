@@ -25,7 +25,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// The joint that moves it; none for the base.
+    /// Joint that moves it; `None` for the base.
     #[must_use]
     pub fn joint(self) -> Option<usize> {
         match self {
@@ -35,33 +35,33 @@ impl Body {
     }
 }
 
-/// A frame on a body: where an instrument or a target stands.
+/// A frame on a body: that of an instrument or a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mount {
     /// Name of the instrument or target.
     pub name: String,
-    /// Its body.
+    /// Body.
     pub body: Body,
-    /// Its pose in the frame of the joint that moves the body, or in the base.
+    /// Pose in the frame of the joint that moves the body, or in the base.
     pub pose: Pose,
 }
 
 impl Robot {
-    /// The body on which a joint stands.
+    /// Body that carries a joint.
     #[must_use]
     pub fn body_before(&self, joint: usize) -> Body {
         let before = joint.checked_sub(1).map_or(Body::Base, Body::Link);
         self.joints.get(joint).and_then(|joint| joint.stands_on).unwrap_or(before)
     }
 
-    /// The body of the tip.
+    /// Body of the tip.
     #[must_use]
     pub fn tip_body(&self) -> Body {
         let last = self.joints.len().checked_sub(1).map_or(Body::Base, Body::Link);
         self.tip.unwrap_or(last)
     }
 
-    /// The joints between the base and a body, from the base on.
+    /// Joints between the base and a body, from the base on.
     #[must_use]
     pub fn joints_to(&self, body: Body) -> Vec<usize> {
         let mut joints: Vec<usize> =
@@ -70,7 +70,7 @@ impl Robot {
         joints
     }
 
-    /// Whether each joint stands on the link of the one before, and the tip is on the last: a robot without branches.
+    /// True if each joint is on the link of the one before, and the tip on the last: a robot without branches.
     #[must_use]
     pub fn is_serial(&self) -> bool {
         self.joints_to(self.tip_body()).len() == self.joints.len()
@@ -101,7 +101,7 @@ impl Robot {
         Robot { tip: Some(mount.body), home: self.base_from(mount), ..self.clone() }
     }
 
-    /// Whether a target stands where the tip is.
+    /// True if a target is at the tip.
     pub fn is_at_tip(&self, mount: &Mount) -> bool {
         let place = self.base_from(mount);
         let apart = (place.translation - self.home.translation).amax();
@@ -109,7 +109,7 @@ impl Robot {
         mount.body == self.tip_body() && apart < SAME && turned < SAME
     }
 
-    /// Where a target stands, by its name, without one [`MEASURED`]: its body, and `base_from_target` at zero joint values. A target that the
+    /// Pose of a target by its name, or of [`MEASURED`] without one: its body, and `base_from_target` at zero joint values. A target that the
     /// model does not name is at the tip.
     pub fn places_of_targets(&self) -> impl Fn(Option<&str>) -> (Body, Pose) {
         let tip = self.tip_body();
@@ -123,7 +123,7 @@ impl Robot {
         move |name| known.get(name.unwrap_or(MEASURED)).copied().unwrap_or((tip, self.home))
     }
 
-    /// Checks that every joint stands on a body before it, and that tip and mounts stand on bodies of this robot.
+    /// Checks that every joint is on a body before it, and that tip and mounts are on bodies of this robot.
     ///
     /// # Errors
     /// [`ErrorKind::Model`].

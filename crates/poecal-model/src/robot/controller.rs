@@ -1,4 +1,4 @@
-//! What a controller counts: readings of which those of the model are sums.
+//! Readings of a controller, whose sums are the readings of the model.
 
 use std::collections::BTreeMap;
 
@@ -9,25 +9,25 @@ use serde::{Deserialize, Serialize};
 use super::{JointKind, Robot};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
-/// How the readings of a controller make those of the model, `reading = Σ factor · counted + offset`: as where the third axis counts from the
-/// level. Kept in `calibration.json` where they are not the same one by one.
+/// Relation of a controller's readings to those of the model, `reading = Σ factor · counted + offset`. An example is a third axis that counts
+/// from the horizontal. It is kept in `calibration.json` if they are not equal one by one.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Controller {
-    /// From where the third axis counts, where that was stated; absent where it was not.
+    /// Reference of the third axis, if it was stated; absent otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub third_axis: Option<ThirdAxis>,
-    /// The readings of the model's joints, in their order.
+    /// Readings of the model's joints, in their order.
     pub readings: Vec<ControllerReading>,
 }
 
-/// How a reading of the model is made.
+/// Composition of a reading of the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControllerReading {
-    /// Its name.
+    /// Name.
     pub reading: String,
-    /// Columns of the measurement files that were summed; none for a constant.
+    /// Columns of the measurement files that were summed; empty for a constant.
     pub columns: BTreeMap<String, ControllerColumn>,
-    /// What is added, radians or metres.
+    /// Offset, radians or metres.
     #[serde(default)]
     pub offset: f64,
 }
@@ -35,25 +35,25 @@ pub struct ControllerReading {
 /// A column of the controller's readings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControllerColumn {
-    /// What it is multiplied with.
+    /// Factor.
     pub factor: f64,
     /// Unit of its numbers in the measurement files.
     pub unit: String,
 }
 
-/// From where a third axis counts.
+/// Reference of a third axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "ThirdAxisWord")]
 pub enum ThirdAxis {
-    /// From the lower arm, as joints of models do.
+    /// The lower arm, as for joints of models.
     Arm,
-    /// From the level: the second axis turns it with it.
+    /// The horizontal: the second axis does not change it.
     Level,
 }
 
 impl ThirdAxis {
-    /// Its word.
+    /// Word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -66,8 +66,8 @@ impl ThirdAxis {
 /// Cosine of the angle between two axes that count as parallel (25°).
 const PARALLEL: f64 = 0.9;
 
-/// What the second axis adds to a reading of the third that counts from the level: the readings (their names) of both, and the factor with
-/// which `third = counted - factor · second`. `None` of robots whose second and third axes are not parallel.
+/// Part of the second axis in a reading of the third that counts from the horizontal: the readings (their names) of both, and the factor
+/// with which `third = counted - factor · second`. `None` if second and third axes are not parallel.
 #[must_use]
 pub fn level(robot: &Robot) -> Option<(String, String, f64)> {
     let own: Vec<_> = robot.joints.iter().filter(|joint| joint.give_of.is_none()).take(3).collect();
@@ -84,7 +84,7 @@ pub fn level(robot: &Robot) -> Option<(String, String, f64)> {
 }
 
 impl Controller {
-    /// Of a controller that counts as the model does.
+    /// Relation for a controller that counts as the model does.
     #[must_use]
     pub fn plain(robot: &Robot) -> Self {
         let reading = |name: String| {
@@ -98,7 +98,7 @@ impl Controller {
         Controller { third_axis: None, readings }
     }
 
-    /// Checks that it is of a robot's readings, with numbers that make sense.
+    /// Checks that it is of a robot's readings, with meaningful numbers.
     ///
     /// # Errors
     /// [`ErrorKind::Model`].
@@ -123,16 +123,16 @@ impl Controller {
         }
     }
 
-    /// Whether each reading is one the controller counts, of whatever name.
+    /// True if each reading is one that the controller counts, of whatever name.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.readings.iter().all(ControllerReading::is_plain)
     }
 
-    /// The same with a third axis that counts so.
+    /// The same relation with this reference of the third axis.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] of a robot whose second and third axes are not parallel; as [`Controller::counting`].
+    /// [`ErrorKind::Option`] for a robot whose second and third axes are not parallel; as [`Controller::counting`].
     pub fn with_third_axis(mut self, robot: &Robot, counts: ThirdAxis) -> Result<Self> {
         let Some((second, third, factor)) = level(robot) else {
             return ErrorKind::Option.refuse(format!(
@@ -161,7 +161,8 @@ impl Controller {
         Ok(self)
     }
 
-    /// Of each reading, the column that the controller counts for this axis: readings and columns are paired one by one, where only one is left.
+    /// For each reading, the column that the controller counts for this axis: readings and columns are paired one by one, where only one
+    /// remains.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if they cannot be paired.
@@ -200,10 +201,10 @@ impl Controller {
         ))
     }
 
-    /// The way from counted readings to those of the model, and back.
+    /// Transformation from counted readings to those of the model, and its inverse.
     ///
     /// # Errors
-    /// [`ErrorKind::Option`] if the sums cannot be taken apart again.
+    /// [`ErrorKind::Option`] if the sums cannot be separated again.
     pub fn counting(&self) -> Result<Counting> {
         let (names, pairs) = (self.axes()?, self.pairs()?);
         let count = names.len();
@@ -224,7 +225,7 @@ impl Controller {
         Ok(Counting { names, forward, offsets, back })
     }
 
-    /// The sums in words; empty where each reading is counted by itself.
+    /// Sums in words; empty if each reading is counted by itself.
     #[must_use]
     pub fn words(&self) -> String {
         let sums = self.readings.iter().filter(|it| !it.is_plain()).map(ControllerReading::words);
@@ -267,7 +268,7 @@ impl ControllerReading {
     }
 }
 
-/// Readings that a controller counts, and those of the model that they make: `r = A·c + b`.
+/// Transformation of counted readings to those of the model: `r = A·c + b`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Counting {
     names: Vec<String>,
@@ -277,7 +278,7 @@ pub struct Counting {
 }
 
 impl Counting {
-    /// Names of the counted readings, in the order of the model's whose axes they are.
+    /// Names of the counted readings, in the order of the model's axes.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
@@ -316,7 +317,7 @@ impl Counting {
         self.offsets.iter().enumerate().map(row).collect()
     }
 
-    /// What the controller counts at the model's readings (rad, m).
+    /// Counted readings at the model's readings (rad, m).
     #[must_use]
     pub fn counted(&self, readings: &[f64]) -> Vec<f64> {
         let from: Vec<f64> =
@@ -324,14 +325,14 @@ impl Counting {
         self.change(&from)
     }
 
-    /// Counted readings once those of the model go from some to others.
+    /// Counted readings after a change of those of the model.
     #[must_use]
     pub fn moved(&self, counted: &[f64], from: &[f64], to: &[f64]) -> Vec<f64> {
         let change: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         counted.iter().zip(self.change(&change)).map(|(it, change)| it + change).collect()
     }
 
-    /// By how much counted readings change where those of the model change by so much: where these do not change, not at all.
+    /// Change of counted readings by a change of those of the model; zero if these do not change.
     #[must_use]
     pub fn change(&self, of_readings: &[f64]) -> Vec<f64> {
         let count = self.names.len();
@@ -422,7 +423,7 @@ mod tests {
         assert!((robot.forward_kinematics(&readings).rotation - flat).norm() < 1e-12);
         let again = level.with_third_axis(&robot, ThirdAxis::Arm).unwrap();
         assert!(again.is_plain());
-        // Also where the second and the third start elsewhere; stated twice it is the same.
+        // The second and the third may start elsewhere; stated twice, the result is the same.
         let mut shifted = Controller::plain(&robot);
         for reading in &mut shifted.readings {
             reading.offset = if reading.reading == second { 0.2 } else { 0.0 };

@@ -1,4 +1,4 @@
-//! The robot whose joints and links give, with all terms that its model allows.
+//! Robot with compliant joints and links, with all terms that its model allows.
 
 use nalgebra::Vector3;
 
@@ -7,12 +7,12 @@ use super::{
     TermKind,
 };
 
-/// How far the model of what joints do reaches.
+/// Extent of the model of errors beyond geometry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Highest order of the harmonics of gears and encoders.
     pub orders: u8,
-    /// In which directions bearings and links give. Where they give in all, first harmonics are among their terms.
+    /// Compliant directions of bearings and links. If they are all directions, first harmonics are among their terms.
     pub gives: Gives,
 }
 
@@ -22,20 +22,20 @@ impl Default for Extent {
     }
 }
 
-/// A robot with gives and terms whose coefficients are zero, each term of a group.
+/// A robot with compliant joints and terms whose coefficients are zero, each term of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectionModel {
-    /// The robot with its gives, its gravity and its terms.
+    /// Robot with its compliant joints, its gravity and its terms.
     pub robot: Robot,
-    /// Index there of each joint of the robot without gives.
+    /// Index there of each joint of the rigid robot.
     pub places: Vec<usize>,
-    /// Group of each term of `robot.terms`, and its share of the variance there: several weights share one size. Those that the model has
-    /// itself come first and have none.
+    /// Group of each term of `robot.terms`, and its share of the variance there: several weights share one size. Terms of the model
+    /// itself come first and have no group.
     pub groups: Vec<(TermGroup, f64)>,
 }
 
 impl CorrectionModel {
-    /// The model of a robot in gravity of a direction (base frame); of joints that do not move no terms of their own values.
+    /// Model of a robot with gravity in a direction (base frame); joints that do not move have no terms of their own values.
     #[must_use]
     pub fn new(robot: &Robot, gravity: Vector3<f64>, moves: &[bool], extent: Extent) -> Self {
         let mut robot = robot.clone();
@@ -59,7 +59,7 @@ impl CorrectionModel {
         CorrectionModel { robot, places, groups }
     }
 
-    /// The same without the terms of groups of size 0.
+    /// The same model without the terms of groups of size 0.
     #[must_use]
     pub fn with_sizes(&self, sizes: &Sizes) -> Self {
         let mut kept = self.clone();
@@ -71,7 +71,7 @@ impl CorrectionModel {
         kept
     }
 
-    /// Number of terms that the model has itself.
+    /// Number of terms of the model itself.
     fn own(&self) -> usize {
         self.robot.terms.len() - self.groups.len()
     }
@@ -81,33 +81,33 @@ impl CorrectionModel {
         self.groups.iter().map(|(group, share)| sizes[*group] * share.sqrt())
     }
 
-    /// The joints and terms of the groups.
+    /// Joints and terms of the groups.
     pub fn terms(&self) -> impl Iterator<Item = (usize, Term)> {
         self.robot.terms.iter().skip(self.own()).map(|it| (it.joint, it.term))
     }
 
-    /// The gives.
+    /// Compliant joints.
     pub fn gives(&self) -> impl Iterator<Item = usize> {
         (0..self.robot.joints.len()).filter(|&joint| self.robot.joints[joint].give_of.is_some())
     }
 
-    /// The joints and terms of the groups of a size above 0.
+    /// Joints and terms of the groups of a size above 0.
     pub fn terms_of(&self, sizes: &Sizes) -> impl Iterator<Item = (usize, Term)> {
         let used = self.terms().zip(&self.groups).filter(|(_, (group, _))| sizes[*group] > 0.0);
         used.map(|(term, _)| term)
     }
 }
 
-/// A joint or a give of a robot in gravity, as the table of terms asks for it.
+/// A joint or a compliant joint of a robot in gravity, as input of the table of terms.
 struct Corrected<'a> {
     robot: &'a Robot,
     statics: &'a Statics<'a>,
     extent: Extent,
     joint: usize,
     is_give: bool,
-    /// Whether it is a give that slides.
+    /// True if it is a prismatic compliant joint.
     shifts: bool,
-    /// Whether the joint, or the one that gives, turns.
+    /// True if the joint, or the one that the compliant joint belongs to, is revolute.
     turns: bool,
     /// Indices of the weights that it carries.
     carried: Vec<usize>,
@@ -130,7 +130,7 @@ impl<'a> Corrected<'a> {
         }
     }
 
-    /// Its terms, each with its group and its share of the variance of that; those of its own value only if it moves.
+    /// Terms, each with its group and its share of the variance of that; those of its own value only if it moves.
     fn terms(&self, is_moving: bool) -> Vec<(Term, TermGroup, f64)> {
         let arguments =
             [Argument::Masses, Argument::Weight, Argument::Payload, Argument::Factor, Argument::OwnValue];
@@ -147,13 +147,13 @@ impl<'a> Corrected<'a> {
         found
     }
 
-    /// Numbers of its terms of this argument, 0 of those without: a joint that slides has none but those of its gives under weight.
+    /// Numbers of its terms of this argument, 0 for those without: a prismatic joint has only those of its compliant joints under weight.
     fn numbers(&self, argument: Argument) -> Vec<usize> {
         let is_loaded = self.is_give || self.turns;
         let counted = |index: usize| index + 1;
         match argument {
             Argument::Masses if is_loaded && self.statics.carries_masses(self.joint) => vec![0],
-            // All weights pull alike where a link shifts.
+            // All weights act alike where a link shifts.
             Argument::Weight if self.shifts => {
                 self.carried.last().copied().map(counted).into_iter().collect()
             }
@@ -189,14 +189,14 @@ impl<'a> Corrected<'a> {
             .map(|(index, _)| index)
     }
 
-    /// The group of a term, if it is among corrections; of a factor by its name.
+    /// Group of a term, if it is among corrections; of a factor by its name.
     fn group(&self, term: Term) -> Option<TermGroup> {
         let group = term.kind().row().groups[usize::from(self.is_give) + usize::from(self.shifts)]?;
         let factor = self.robot.factors.get(term.index()).filter(|_| term.argument() == Argument::Factor);
         Some(factor.map_or(group, |it| it.group()))
     }
 
-    /// Share of a term in the variance of its group. Masses of a drawing are estimates: half of what is believed of a moment.
+    /// Share of a term in the variance of its group. Nominal masses are estimates: half of the prior of a moment.
     fn share(&self, term: Term) -> f64 {
         let is_moment = matches!(term.kind().row().function, Function::Identity) && !self.shifts;
         let believed = if self.statics.carries_masses(self.joint) { 0.5 } else { 1.0 };

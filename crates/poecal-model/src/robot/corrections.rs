@@ -1,26 +1,26 @@
-//! Which terms a calibration fits beside the screws, by words.
+//! Terms that a calibration fits beside the screws, by words.
 
 use std::str::FromStr;
 
 use super::{Gives, Sizes, TermGroup};
 use poecal_numerics::error::nearest;
 
-/// Which terms a calibration fits beside the screws, and how large they may be.
+/// Terms that a calibration fits beside the screws, and their sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Corrections {
-    /// Those that predict rows best which were not fitted; none if geometry alone does as well.
+    /// Those that predict held-out rows best; none if geometry alone does as well.
     #[default]
     Auto,
-    /// The same where bearings and links give in all directions ([`Gives::All`]).
+    /// The same choice with bearings and links compliant in all directions ([`Gives::All`]).
     All,
-    /// None.
+    /// No terms.
     Off,
     /// Groups of these sizes.
     Sizes(Sizes),
 }
 
 impl Corrections {
-    /// In which directions bearings and links give.
+    /// Compliant directions of bearings and links.
     #[must_use]
     pub fn gives(&self) -> Gives {
         match self {
@@ -34,7 +34,7 @@ impl Corrections {
 impl FromStr for Corrections {
     type Err = String;
 
-    /// `auto`, `all`, `off`, or groups with commas between, each with its size behind an equals sign or of the common one.
+    /// Parses `auto`, `all`, `off`, or groups with commas between, each with its size behind an equals sign or of the common one.
     fn from_str(words: &str) -> Result<Self, String> {
         match words.trim() {
             "auto" => return Ok(Corrections::Auto),

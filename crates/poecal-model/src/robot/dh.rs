@@ -6,7 +6,7 @@ use super::{Joint, JointKind, Robot};
 use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::Result;
 
-/// Which of the two conventions a table follows.
+/// Convention of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DhConvention {
     /// `A_i = Rz(θ_i) Tz(d_i) Tx(a_i) Rx(α_i)`: the joint turns about z of the *previous* frame.
@@ -30,7 +30,7 @@ pub struct DhRow {
     pub d_m: f64,
     /// Joint angle θ at zero reading, radians.
     pub theta_rad: f64,
-    /// A pose that follows the row and never moves: the next row, or the tip, stands in the frame after it.
+    /// A pose that follows the row and never moves: the next row, or the tip, is in the frame after it.
     pub fixed: Pose,
 }
 

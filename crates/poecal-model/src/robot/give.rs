@@ -1,4 +1,4 @@
-//! Joints whose bearings and links give.
+//! Joints with compliant bearings and links.
 
 use nalgebra::Vector3;
 
@@ -6,20 +6,21 @@ use super::gravity::axes;
 use super::{Body, Joint, JointKind, Mount, Reading, Robot, Weight};
 use poecal_arm::lie::{Screw, rotation};
 
-/// In which directions links and bearings give.
+/// Compliant directions of links and bearings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gives {
-    /// They tilt.
+    /// Tilts.
     #[default]
     Tilting,
-    /// They tilt, and shift along three axes.
+    /// Tilts, and shifts along three axes.
     All,
 }
 
 impl Robot {
-    /// The same robot whose joints and links give: behind each of these joints stand gives about two axes across its own through its pivot
-    /// ([`Robot::pivots`]), of a prismatic joint also about its own; and, where asked, along three axes. A give is a joint at zero, which moves
-    /// by its terms alone (theory.md §3, *Gives*). Beside the robot, the new index of each of its joints.
+    /// The same robot with compliant joints and links. Behind each of these joints there are compliant joints about two axes across its own
+    /// through its pivot ([`Robot::pivots`]). A prismatic joint also has one about its own; with [`Gives::All`] there are three more along
+    /// three axes. A compliant joint is at zero, and moves by its terms alone (theory.md §3, *Gives*). The second result has the new index of
+    /// each of the robot's joints.
     #[must_use]
     pub fn giving(&self, joints: &[usize], directions: Gives) -> (Robot, Vec<usize>) {
         let mut robot = self.clone();
@@ -61,12 +62,12 @@ impl Robot {
 }
 
 impl Robot {
-    /// The same robot without gives and their terms, and without weights and the terms that need them.
+    /// The same robot without compliant joints and their terms, and without weights and the terms that need them.
     #[must_use]
     pub fn rigid(&self) -> Robot {
         let mut robot = self.clone();
         let is_own = |joint: usize| self.joints.get(joint).is_some_and(|it| it.give_of.is_none());
-        // The joint that a link is left with, and its index among those that stay.
+        // The joint that remains for a link, and its index among the remaining ones.
         let left = |joint: usize| (0..joint).filter(|&it| is_own(it)).count();
         let own = |joint: usize| self.joints.get(joint).and_then(|it| it.give_of).unwrap_or(joint);
         let moved = |body: Body| match body {
@@ -86,7 +87,7 @@ impl Robot {
     }
 }
 
-/// The gives of a joint of this index, through a pivot.
+/// Compliant joints of a joint of this index, through a pivot.
 fn gives(joint: &Joint, index: usize, pivot: Vector3<f64>, directions: Gives) -> impl Iterator<Item = Joint> {
     let z = joint.screw.direction();
     let x = rotation::perpendicular(&z);

@@ -8,30 +8,30 @@ use serde::{Deserialize, Serialize};
 use super::{Body, JointKind, Robot};
 use poecal_arm::lie::Screw;
 
-/// Direction of gravity, and the weights whose moments bend the robot. How heavy they are is not known: only products of mass, lever and
-/// give show (theory.md §3, *Sag*).
+/// Direction of gravity, and the weights whose moments bend the robot. Their masses are unknown: only products of mass, lever and
+/// compliance are determined (theory.md §3, *Sag*).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gravity {
-    /// Where weights are pulled, in the base frame, of length 1.
+    /// Direction of gravity, in the base frame, of length 1.
     pub direction: Vector3<f64>,
-    /// The weights; payloads are where the last one is, at the tip.
+    /// Weights; payloads are at the last one, at the tip.
     pub weights: Vec<Weight>,
-    /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are counted, at zero joint values: those of the drawing, whatever is
-    /// found.
+    /// Screw and pivot ([`Robot::pivots`]) of each joint by which moments are computed, at zero joint values: those of the nominal model,
+    /// whatever is estimated.
     pub axes: Vec<(Screw, Vector3<f64>)>,
 }
 
-/// Where weights are pulled.
+/// Source of the direction of gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GravityDirection {
-    /// In this direction of the base frame, of any length above 0.
+    /// Known direction in the base frame, of any length above 0.
     Known(Vector3<f64>),
-    /// Where the terms leave the least noise.
+    /// Direction with which the terms leave the least noise.
     Found,
 }
 
 impl Default for GravityDirection {
-    /// Against z.
+    /// Direction against z.
     fn default() -> Self {
         GravityDirection::Known(-Vector3::z())
     }
@@ -55,7 +55,7 @@ impl FromStr for GravityDirection {
 }
 
 impl GravityDirection {
-    /// Whether a vector has a direction.
+    /// True if a vector has a direction.
     #[must_use]
     pub fn is_direction(vector: &Vector3<f64>) -> bool {
         (1e-100..=1e100).contains(&vector.norm())
@@ -65,28 +65,28 @@ impl GravityDirection {
 /// A mass of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mass {
-    /// Its body.
+    /// Body.
     pub body: Body,
-    /// Its centre at zero joint values, base frame, metres.
+    /// Centre at zero joint values, base frame, metres.
     pub place: Vector3<f64>,
-    /// How heavy it is, kg.
+    /// Mass, kg.
     pub kg: f64,
 }
 
 impl Mass {
-    /// Whether a number of kilograms is that of a mass.
+    /// True if a number of kilograms is that of a mass.
     pub fn is_mass(kg: f64) -> bool {
         kg > 0.0 && kg <= 1e6
     }
 }
 
-/// Mass that programs write which export models and know none, kg; fewest links and their share with exactly it that say so.
+/// Placeholder mass of programs that export models without known masses, kg; fewest links and their share with exactly this mass that are
+/// evidence of it.
 const PLACEHOLDER_KG: f64 = 1.0;
 const FEWEST_PLACEHOLDERS: usize = 2;
 
 impl Robot {
-    /// That most links of the model have a mass of exactly 1 kg, as models have that nobody weighed, a sentence; what sags is then judged by weights that
-    /// are none.
+    /// Statement that most links of the model have a mass of exactly 1 kg, as in models that nobody weighed; sag is then computed with wrong weights.
     #[must_use]
     pub fn placeholder_masses(&self) -> Option<String> {
         let alike = self.masses.iter().filter(|it| it.kg == PLACEHOLDER_KG).count();
@@ -103,11 +103,11 @@ impl Robot {
 /// A weight on the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
-    /// What it is at: the name of a joint, or of the tip.
+    /// Position: the name of a joint, or of the tip.
     pub name: String,
-    /// Its body.
+    /// Body.
     pub body: Body,
-    /// Its place at zero joint values, base frame, metres.
+    /// Position at zero joint values, base frame, metres.
     pub place: Vector3<f64>,
 }
 
@@ -135,8 +135,8 @@ pub(crate) fn axes(robot: &Robot) -> Vec<(Screw, Vector3<f64>)> {
 }
 
 impl Robot {
-    /// A point of each joint's axis that is the same in whatever form the model is written: the nearest to the pivot of the joint that it
-    /// carries, of the last one to the tip; of a sliding joint that pivot itself. At zero joint values, base frame, metres.
+    /// A point of each joint's axis that is the same in all forms of the model, at zero joint values, base frame, metres. It is the point
+    /// nearest to the pivot of the joint that it carries, for the last one to the tip; for a prismatic joint it is that pivot itself.
     #[must_use]
     pub fn pivots(&self) -> Vec<Vector3<f64>> {
         let on_the_way = self.joints_to(self.tip_body());
@@ -157,13 +157,13 @@ impl Robot {
                 JointKind::Revolute | JointKind::Prismatic => toward,
             };
             if let Some(before) = self.body_before(index).joint().and_then(|before| next.get_mut(before)) {
-                // Where links branch, the way to the tip counts, else the last branch.
+                // If links branch, the chain to the tip counts, else the last branch.
                 if before.is_none() || on_the_way.contains(&index) {
                     *before = Some(pivots[index]);
                 }
             }
         }
-        // Gives stand at the pivot of their joint.
+        // Compliant joints are at the pivot of their joint.
         for index in 0..pivots.len() {
             if let Some(pivot) = self.joints[index].give_of.and_then(|of| pivots.get(of)).copied() {
                 pivots[index] = pivot;

@@ -16,10 +16,10 @@ use poecal_arm::lie::{Pose, Screw, rotation};
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "KindWord", description = "Kind of a joint.")]
 pub enum JointKind {
-    /// Turns about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
+    /// Rotates about an axis; value in radians. URDF's continuous joints are revolute ones without limits.
     #[schemars(description = "Turns.")]
     Revolute,
-    /// Slides along a direction; value in metres.
+    /// Translates along a direction; value in metres.
     #[schemars(description = "Slides.")]
     Prismatic,
 }
@@ -34,7 +34,7 @@ impl JointKind {
         }
     }
 
-    /// The screw of a joint of this kind: about an axis through a point, or along it.
+    /// Screw of a joint of this kind: about an axis through a point, or along it.
     pub fn screw(self, direction: &Vector3<f64>, point: &Vector3<f64>) -> Screw {
         match self {
             JointKind::Revolute => Screw::revolute(direction, point),
@@ -58,14 +58,14 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits where none are known.
+    /// Stroke of a prismatic joint beyond which its limits are placeholders: files demand limits even if none are known.
     pub const PLACEHOLDER_M: f64 = 100.0;
     /// One turn (rad), with room for rounded numbers.
     pub const TURN_RAD: f64 = std::f64::consts::TAU + 1e-3;
-    /// Number (rad, m) beyond which a limit is none: files write 1e16 or infinity where there is none.
+    /// Number (rad, m) beyond which a limit is none: files write 1e16 or infinity if there is none.
     pub const NONE_BEYOND: f64 = 1e5;
 
-    /// Limits as files state them; `None` of an empty range, as exporters write unknown ones, and of numbers that are no limits.
+    /// Limits as files state them; `None` for an empty range, as exporters write unknown ones, and for numbers that are no limits.
     #[must_use]
     pub fn between(lower: f64, upper: f64) -> Option<Self> {
         let is_limit = |it: f64| it.abs() < Self::NONE_BEYOND;
@@ -73,8 +73,8 @@ impl Limits {
     }
 }
 
-/// A joint's value as a function of a reading: `θ = multiplier · reading + offset`, with multiplier 1 and offset 0 but for mimic joints
-/// (theory.md §2 (7)).
+/// A joint's value as a function of a reading: `θ = multiplier · reading + offset`, with multiplier 1 and offset 0 except for mimic
+/// joints (theory.md §2 (7)).
 ///
 /// ```
 /// let own = poecal_model::robot::Reading::own("joint1");
@@ -115,27 +115,27 @@ impl Reading {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
-    /// Of each component of the direction, radians.
+    /// Standard deviation of each component of the direction, radians.
     pub angle_rad: f64,
-    /// Of each component of the place, metres.
+    /// Standard deviation of each component of the position, metres.
     pub length_m: f64,
 }
 
 impl Tolerance {
-    /// So wide that the measurements alone decide: 30° and 0.3 m.
+    /// A tolerance so wide that the measurements alone decide: 30° and 0.3 m.
     pub const WIDE: Tolerance = Tolerance { angle_rad: 0.5, length_m: 0.3 };
-    /// Nothing is known.
+    /// No prior knowledge.
     pub const NONE: Tolerance = Tolerance { angle_rad: f64::INFINITY, length_m: f64::INFINITY };
 }
 
 impl Default for Tolerance {
-    /// Half a degree and 5 mm: wider than machining, so that the prior hardly matters where the data determine the axis.
+    /// Half a degree and 5 mm: wider than machining, so that the prior has hardly any effect if the data determine the axis.
     fn default() -> Self {
         Tolerance { angle_rad: 0.5f64.to_radians(), length_m: 5e-3 }
     }
 }
 
-/// A moving joint. Its frame is fixed to the link that it moves; at zero joint value it stands at `base_from_joint`, with the
+/// A moving joint. Its frame is fixed to the link that it moves; at zero joint value it is at `base_from_joint`, with the
 /// origin on the axis.
 ///
 /// ```
@@ -166,11 +166,11 @@ pub struct Joint {
     /// Tolerance of its axis, if it differs from the common one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<Tolerance>,
-    /// The body on which it stands, if that is not the link of the joint before.
+    /// Body that carries it, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stands_on: Option<Body>,
-    /// Index of the joint whose bearing or link gives, of a give: a joint without a reading of its own, which stands at the values of its
-    /// terms.
+    /// For a compliant joint, the index of the joint to which its bearing or link belongs. It has no reading of its own; its value is
+    /// that of its terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub give_of: Option<usize>,
 }

@@ -9,7 +9,7 @@ use poecal_arm::lie::{Pose, Screw, hat};
 use poecal_numerics::kernels::{self as lanes, SimdLevel, WIDTH};
 
 impl Robot {
-    /// Joint values of a configuration given as readings (order of [`Robot::reading_names`]); mimic joints follow their leader,
+    /// Joint values of a configuration by its readings (order of [`Robot::reading_names`]); mimic joints follow their leader,
     /// and terms are added: theory.md §2 (7).
     #[must_use]
     pub fn joint_values(&self, readings: &[f64]) -> Vec<f64> {
@@ -39,14 +39,14 @@ impl Robot {
         values.iter_mut().zip(more).for_each(|(value, more)| *value += more);
     }
 
-    /// `base_from_tip`, theory.md §2 (6), at a configuration given as readings (radians, metres; order of [`Robot::reading_names`]).
+    /// `base_from_tip`, theory.md §2 (6), at a configuration by its readings (radians, metres; order of [`Robot::reading_names`]).
     #[must_use]
     pub fn forward_kinematics(&self, readings: &[f64]) -> Pose {
         self.motion(&self.joint_values(readings)) * self.home
     }
 
-    /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other: the same numbers, sooner, since eight
-    /// configurations are computed side by side.
+    /// [`Robot::forward_kinematics`] of several configurations, their readings one after the other. The numbers are the same; it is
+    /// faster, since eight configurations are computed side by side.
     pub fn forward_kinematics_of(&self, readings: &[f64]) -> impl Iterator<Item = Pose> {
         let path = self.joints_to(self.tip_body());
         let (joints, indices) = self.path(&path, &self.reading_indices());
@@ -70,8 +70,8 @@ impl Robot {
         })
     }
 
-    /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, at a configuration given as readings (radians, metres;
-    /// order of [`Robot::reading_names`]), for pictures of the robot.
+    /// Frames of the joints in the base, `exp(ξ₁θ₁) … exp(ξᵢθᵢ) base_from_joint_i`, for drawings of the robot. The configuration is passed
+    /// as readings (radians, metres; order of [`Robot::reading_names`]).
     #[must_use]
     pub fn joint_poses(&self, readings: &[f64]) -> Vec<Pose> {
         let mut base_from_links: Vec<Pose> = Vec::with_capacity(self.joints.len());
@@ -88,14 +88,14 @@ impl Robot {
         path.iter().filter_map(|&at| Some((self.joints.get(at)?, *of_all.get(at)?))).unzip()
     }
 
-    /// The rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the tip's link from its place at zero, for *joint values* θ:
+    /// Rigid motion `T_n = exp(ξ₁θ₁) … exp(ξₙθₙ)` of the tip's link from its pose at zero, for *joint values* θ:
     /// theory.md §2 (6).
     #[must_use]
     pub fn motion(&self, joint_values: &[f64]) -> Pose {
         self.motion_of(self.tip_body(), joint_values)
     }
 
-    /// The same of another body.
+    /// The same motion of another body.
     #[must_use]
     pub fn motion_of(&self, body: Body, joint_values: &[f64]) -> Pose {
         let (joints, values) = self.path(&self.joints_to(body), joint_values);
@@ -109,7 +109,7 @@ impl Robot {
 /// Poses of several configurations, by rows: three directions and a translation.
 type Rows<const N: usize> = [[[f64; N]; 4]; 3];
 
-/// The motion of a joint, `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` of a sliding joint: theory.md §1 (2a).
+/// Motion of a joint, `exp(ξ̂θ) = I + sin θ F + (1 - cos θ) G`, or `I + θ F` for a prismatic joint: theory.md §1 (2a).
 #[derive(Clone, Copy, Debug)]
 struct Exponential {
     slides: bool,
@@ -162,7 +162,7 @@ impl Exponential {
     }
 }
 
-/// The product of the motions of all joints at their values: theory.md §2 (6).
+/// Product of the motions of all joints at their values: theory.md §2 (6).
 fn product<const N: usize>(joints: &[Exponential], values: &[[f64; N]]) -> Rows<N> {
     let mut found = vec![[(0.0, 0.0); N]; values.len()];
     lanes::cosines_and_sines(SimdLevel::best(), values.as_flattened(), found.as_flattened_mut());

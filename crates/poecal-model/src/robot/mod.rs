@@ -1,8 +1,8 @@
-//! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. No estimation here, and no files.
+//! Robots: a chain or a tree of joints with screws, a home pose, forward kinematics. Estimation and files are elsewhere.
 //!
-//! [`Robot`] is a tree of joints, a serial chain where nothing else is said, with the bodies of instruments and targets (`body.rs`). What joints do
-//! beyond geometry is more joints, or terms of their values: a link that tilts is a joint without a reading (`give.rs`), and moments of weights are
-//! in `statics.rs`. No unknowns and no measured data here.
+//! [`Robot`] is a tree of joints, a serial chain by default, with the bodies of instruments and targets (`body.rs`). Errors of joints beyond
+//! geometry are more joints, or terms of their values: a link that tilts is a joint without a reading (`give.rs`), and moments of weights are in
+//! `statics.rs`. Unknowns and measured data are elsewhere.
 
 mod arm;
 mod body;
@@ -45,13 +45,13 @@ use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Most moving joints of a robot: the time of a fit grows with the cube of their number.
+/// Largest number of moving joints of a robot: the time of a fit grows with the cube of their number.
 pub const MOST_JOINTS: usize = 1000;
-/// Most letters of the name of a joint or a target.
+/// Largest number of letters in the name of a joint or a target.
 pub const LONGEST_NAME: usize = 200;
 
 /// A robot at its zero configuration, `base_from_tip(θ) = exp(ξ₁θ₁) … exp(ξₙθₙ) M` over the joints between base and tip (lou2009 (2);
-/// theory.md §2 (6)): a serial chain, or a tree if joints stand on other links than that of the joint before.
+/// theory.md §2 (6)). It is a serial chain, or a tree if joints are on other links than that of the joint before.
 ///
 /// All screws and frames are in the base frame. A robot is a value: forward kinematics changes nothing in it.
 ///
@@ -77,7 +77,7 @@ pub struct Robot {
     pub base_name: String,
     /// Name of the tip frame (URDF: the chain's last link).
     pub tip_name: String,
-    /// The moving joints from base to tip, each after the joint on whose link it stands.
+    /// Moving joints from base to tip, each after the joint that carries it on its link.
     pub joints: Vec<Joint>,
     /// Body of the tip, if it is not the last joint's link.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -98,10 +98,10 @@ pub struct Robot {
     /// Masses of the model's links, if it states them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub masses: Vec<Mass>,
-    /// What else is read in each configuration and terms depend on: readings of no joint, after those of the joints.
+    /// Other readings of each configuration on which terms depend: readings of no joint, after those of the joints.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<FactorReading>,
-    /// Instruments on the robot; all others stand beside it, on its base.
+    /// Instruments on the robot; all others are beside it, on its base.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instruments: Vec<Mount>,
 }
@@ -160,7 +160,7 @@ impl Robot {
         self.joints.iter().filter(follows).map(|other| other.name.as_str()).collect()
     }
 
-    /// The number of the joint that a mimic joint follows; `None` of a joint with a reading of its own.
+    /// Index of the joint that a mimic joint follows; `None` for a joint with a reading of its own.
     #[must_use]
     pub fn leader(&self, joint: &Joint) -> Option<usize> {
         let is_leader = |other: &Joint| other.name == joint.reading.name;
@@ -185,8 +185,8 @@ impl Robot {
         Ok(robot)
     }
 
-    /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's. Then the
-    /// factors.
+    /// Names of the readings that a configuration consists of, in order: each joint's own, once; a mimic joint has its leader's. The
+    /// factors follow.
     #[must_use]
     pub fn reading_names(&self) -> Vec<String> {
         let mut known = BTreeSet::new();
@@ -198,7 +198,7 @@ impl Robot {
             .collect()
     }
 
-    /// The readings of joints alone.
+    /// Names of the readings of joints alone.
     #[must_use]
     pub fn joint_reading_names(&self) -> Vec<String> {
         let mut names = self.reading_names();
@@ -206,14 +206,14 @@ impl Robot {
         names
     }
 
-    /// Kind of a reading: that of the joint of its name, else of the first joint that follows it; of none a factor.
+    /// Kind of a reading: that of the joint of its name, else of the first joint that follows it; without a joint it is a factor.
     pub fn reading_kind(&self, name: &str) -> ReadingKind {
         let mut users = self.joints.iter().filter(|joint| joint.reading.name == name);
         let leader = users.clone().find(|joint| joint.name == name);
         leader.or_else(|| users.next()).map_or(ReadingKind::Factor, |joint| joint.kind.into())
     }
 
-    /// The factors among the readings of a configuration.
+    /// Factors among the readings of a configuration.
     pub fn factors_of<'a>(&self, readings: &'a [f64]) -> &'a [f64] {
         readings.get(readings.len().saturating_sub(self.factors.len())..).unwrap_or_default()
     }
@@ -236,7 +236,8 @@ impl Robot {
     }
 
     /// The same robot with other screws (one a joint). Each joint frame follows its axis by the smallest motion
-    /// ([`Screw::smallest_motion_to`] seen from the frame's origin), that of a give stays with its joint's; home pose and targets stay.
+    /// ([`Screw::smallest_motion_to`] relative to the frame's origin); that of a compliant joint stays with its joint's. Home pose and
+    /// targets stay.
     #[must_use]
     pub fn with_screws(&self, screws: &[Screw]) -> Self {
         let mut robot = self.clone();
@@ -262,8 +263,8 @@ impl Robot {
         }
     }
 
-    /// Size of the arm (metres): the longest path from axis to axis to the tip at zero joint values, at least 1 cm. In a tree the longest to
-    /// the tip, a target or an instrument.
+    /// Size of the arm (metres): the longest path from axis to axis to the tip at zero joint values, at least 1 cm. In a tree it is the
+    /// longest to the tip, a target or an instrument.
     #[must_use]
     pub fn arm_m(&self) -> f64 {
         let mounts = self.mounted.iter().chain(&self.instruments);
@@ -305,7 +306,7 @@ impl Robot {
 }
 
 impl Robot {
-    /// That the limits of the joints are placeholders, a sentence: all that turn have the same, and more than a turn to either side.
+    /// Statement that the limits of the joints are placeholders: all revolute joints have the same, and more than a turn to either side.
     #[must_use]
     pub fn placeholder_limits(&self) -> Option<String> {
         let turning = self.joints.iter().filter(|joint| joint.kind == JointKind::Revolute);
@@ -340,7 +341,7 @@ impl Robot {
 /// # Errors
 /// [`ErrorKind::Model`] if it has more letters than [`LONGEST_NAME`].
 pub fn check_name(name: &str, of: &str) -> Result<()> {
-    // Letters are counted only of a name whose bytes are too many.
+    // Letters are counted only if the name has too many bytes.
     if name.len() <= LONGEST_NAME || name.chars().count() <= LONGEST_NAME {
         return Ok(());
     }

@@ -1,15 +1,15 @@
-//! What a reading is: the value of a joint, or of something else that joints depend on.
+//! Kinds of readings: the value of a joint, or another quantity that joints depend on.
 
 use super::JointKind;
 
 /// Kind of a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadingKind {
-    /// Of a joint that turns, radians.
+    /// Revolute joint, radians.
     Angle,
-    /// Of a joint that slides, metres.
+    /// Prismatic joint, metres.
     Length,
-    /// Of no joint ([`Robot::factors`](super::Robot)), in the unit of its column.
+    /// No joint ([`Robot::factors`](super::Robot)), in the unit of its column.
     Factor,
 }
 
@@ -17,7 +17,7 @@ impl ReadingKind {
     /// All kinds.
     pub const ALL: [ReadingKind; 3] = [ReadingKind::Angle, ReadingKind::Length, ReadingKind::Factor];
 
-    /// Symbol of the unit in which people read it; 1 of a factor.
+    /// Symbol of the unit in messages; 1 for a factor.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -27,13 +27,13 @@ impl ReadingKind {
         }
     }
 
-    /// The symbol behind a value; nothing of a factor.
+    /// Symbol behind a value; empty for a factor.
     #[must_use]
     pub fn suffix(self) -> &'static str {
         if self == ReadingKind::Factor { "" } else { self.symbol() }
     }
 
-    /// Its value in that unit.
+    /// Value in that unit.
     #[must_use]
     pub fn shown(self, value: f64) -> f64 {
         match self {

@@ -1,4 +1,4 @@
-//! How large the terms of joints are: one prior standard deviation for each group of them.
+//! Sizes of the terms of joints: one prior standard deviation for each group of them.
 
 use std::ops::{Index, IndexMut};
 
@@ -13,16 +13,16 @@ const COUNT: usize = TermGroup::ALL.len();
 pub struct Sizes([f64; COUNT]);
 
 impl Sizes {
-    /// No term at all: geometry alone.
+    /// No terms: geometry alone.
     pub const NONE: Sizes = Sizes([0.0; COUNT]);
-    /// Sizes of all groups: the common ones, and of a group that is commonly left out what is usual where it is not.
+    /// Sizes of all groups: the common ones, and for a group that is commonly left out its usual size.
     pub const ALL: Sizes = Sizes::of_table(0);
     /// Sizes that are common among industrial robots.
     pub const COMMON: Sizes = Sizes::of_table(1);
-    /// A third of these: what does no harm where nothing tells the size.
+    /// A third of these: harmless sizes if the data do not determine them.
     pub const SMALL: Sizes = Sizes::of_table(2);
 
-    /// The sizes of a column of the table of groups.
+    /// Sizes of a column of the table of groups.
     const fn of_table(column: usize) -> Self {
         let mut sizes = [0.0; COUNT];
         let mut at = 0;
@@ -33,7 +33,7 @@ impl Sizes {
         Sizes(sizes)
     }
 
-    /// In which directions bearings and links give that have terms of these sizes.
+    /// Compliant directions of bearings and links that have terms of these sizes.
     #[must_use]
     pub fn gives(&self) -> Gives {
         let slides = |group: TermGroup| group.is_of_lengths() && self[group] > 0.0;

@@ -9,16 +9,17 @@ use poecal_arm::lie::Pose;
 /// Lever below which a weight has no moment, as a share of the arm: a tool on the last axis.
 const LEAST_LEVER: f64 = 1e-2;
 
-/// Moments of the weights of a robot in any configuration, by the screws of its drawing.
+/// Moments of the weights of a robot in any configuration, by its nominal screws.
 #[derive(Clone, Debug)]
 pub struct Statics<'a> {
     robot: &'a Robot,
     gravity: &'a Gravity,
-    /// Of each joint and weight, 1 over the joint's longest lever; 0 of a weight that it does not carry.
+    /// For each joint and weight, 1 over the joint's longest lever; 0 for a weight that it does not carry.
     shares: Vec<f64>,
     levers: Vec<f64>,
     mass_levers: Vec<f64>,
-    /// Of each joint and mass, the mass over the sum of all that the joint carries times their longest levers; 0 of one that it does not carry.
+    /// For each joint and mass, the mass over the sum of all that the joint carries times their longest levers; 0 for one that it does not
+    /// carry.
     of_masses: Vec<f64>,
 }
 
@@ -32,7 +33,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// The moment of a weight about a joint.
+    /// Moment of a weight about a joint.
     #[must_use]
     pub fn moment(&self, joint: usize, weight: usize) -> f64 {
         if weight >= self.weights {
@@ -41,19 +42,19 @@ impl Moments {
         self.values.get(joint * self.weights + weight).copied().unwrap_or_default()
     }
 
-    /// The moment of all masses about a joint.
+    /// Moment of all masses about a joint.
     pub(crate) fn of_masses(&self, joint: usize) -> f64 {
         self.of_masses.get(joint).copied().unwrap_or_default()
     }
 
-    /// The moment of the last weight, where payloads are, about a joint.
+    /// Moment of the last weight, where payloads are, about a joint.
     pub(crate) fn of_last(&self, joint: usize) -> f64 {
         self.weights.checked_sub(1).map_or(0.0, |last| self.moment(joint, last))
     }
 }
 
 impl<'a> Statics<'a> {
-    /// The statics of a robot, if it has gravity.
+    /// Statics of a robot, if it has gravity.
     #[must_use]
     pub fn new(robot: &'a Robot) -> Option<Self> {
         let gravity = robot.gravity.as_ref()?;
@@ -94,31 +95,31 @@ impl<'a> Statics<'a> {
         Some(Statics { robot, gravity, shares, levers, mass_levers, of_masses })
     }
 
-    /// The longest lever of each joint, metres; 0 of one that carries no weight.
+    /// Longest lever of each joint, metres; 0 for one that carries no weight.
     #[must_use]
     pub fn levers_m(&self) -> &[f64] {
         &self.levers
     }
 
-    /// Of each joint, the sum of the masses that it carries times their longest levers, kg m; of a prismatic joint of the masses alone.
+    /// For each joint, the sum of the masses that it carries times their longest levers, kg m; for a prismatic joint, of the masses alone.
     #[must_use]
     pub fn mass_levers_kg_m(&self) -> &[f64] {
         &self.mass_levers
     }
 
-    /// Whether a weight has a moment about a joint in any configuration.
+    /// True if a weight has a moment about a joint in any configuration.
     #[must_use]
     pub fn is_carried(&self, joint: usize, weight: usize) -> bool {
         self.shares.get(joint * self.gravity.weights.len() + weight).is_some_and(|share| *share > 0.0)
     }
 
-    /// Whether masses of the model have a moment about a joint in any configuration.
+    /// True if masses of the model have a moment about a joint in any configuration.
     #[must_use]
     pub fn carries_masses(&self, joint: usize) -> bool {
         self.mass_levers.get(joint).is_some_and(|all| *all > 0.0)
     }
 
-    /// Whether what a term is a function of has a moment about a joint in any configuration.
+    /// True if the argument of a term has a moment about a joint in any configuration.
     pub fn is_pulled(&self, joint: usize, term: Term) -> bool {
         match term.argument() {
             Argument::Masses => self.carries_masses(joint),
@@ -128,7 +129,7 @@ impl<'a> Statics<'a> {
         }
     }
 
-    /// What a joint gives with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
+    /// Torque model of a joint with these coefficients of the weights and of all masses, where these joints are the moving ones of an arm.
     pub(crate) fn pull(&self, joint: usize, moving: &[usize], sags: &[f64], of_masses: f64) -> Option<Pull> {
         let after = |body: Body| {
             let carrying = self.robot.joints_to(body);
@@ -200,7 +201,7 @@ fn body_of(links: &[Pose], body: Body) -> Pose {
     body.joint().and_then(|joint| links.get(joint)).copied().unwrap_or_else(Pose::identity)
 }
 
-/// The longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
+/// Longest lever of a weight about a joint that carries it: the path from joint to joint, metres.
 fn longest_lever(
     robot: &Robot,
     gravity: &Gravity,
@@ -232,7 +233,7 @@ mod tests {
         let (statics, mut moments) = (Statics::new(&robot).unwrap(), Moments::default());
         statics.evaluate(&[0.0; 6], &mut moments);
         assert!(moments.moment(0, 5).abs() < 1e-15);
-        // The tip at x = 0.834, the axis along y at x = 0.15.
+        // The tip is at x = 0.834, the axis along y at x = 0.15.
         assert!((moments.moment(1, 5) * statics.levers_m()[1] - 0.684).abs() < 1e-14);
     }
 }

@@ -15,7 +15,7 @@ pub struct JointTerm {
     pub joint: usize,
     /// The term.
     pub term: Term,
-    /// Its coefficient c, in [`JointKind::unit_of`].
+    /// Coefficient c, in [`JointKind::unit_of`].
     pub coefficient: f64,
 }
 
@@ -38,7 +38,7 @@ impl JointKind {
 }
 
 impl Robot {
-    /// What a term of a joint needs that this robot does not have, in words.
+    /// Requirement of a term of a joint that this robot does not fulfil, in words.
     pub fn lacks(&self, term: Term) -> Option<String> {
         let (joints, factors) = (self.joints.len(), self.factors.len());
         let weights = self.gravity.as_ref().map_or(0, |gravity| gravity.weights.len());
@@ -60,25 +60,25 @@ impl Robot {
     }
 }
 
-/// One configuration, as terms of joint values depend on it.
+/// One configuration, as input of terms of joint values.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
     /// Values of all joints without terms, radians or metres.
     pub values: &'a [f64],
     /// Moments of the weights that the robot carries, if it has any.
     pub moments: Option<&'a Moments>,
-    /// The robot's factors, from their references.
+    /// Factors of the robot, from their references.
     pub factors: &'a [f64],
 }
 
 impl<'a> Situation<'a> {
-    /// These values of all joints, without weights and factors.
+    /// Situation of these values of all joints, without weights and factors.
     #[must_use]
     pub fn from_values(values: &'a [f64]) -> Self {
         Situation { values, moments: None, factors: &[] }
     }
 
-    /// The function b of a term of a joint.
+    /// Function b of a term of a joint.
     #[must_use]
     pub fn basis(&self, joint: usize, term: Term) -> f64 {
         let value = |of: &[f64], at: usize| of.get(at).copied().unwrap_or_default();
@@ -110,14 +110,14 @@ impl<'a> TermFunctions<'a> {
         TermFunctions { robot, statics: Statics::new(robot), moments: Moments::default() }
     }
 
-    /// The functions at these values of all joints and of the factors, in the order of the robot's terms.
+    /// Functions at these values of all joints and of the factors, in the order of the robot's terms.
     pub(crate) fn at(&mut self, values: &[f64], factors: &[f64]) -> Vec<f64> {
         let mut found = vec![0.0; self.robot.terms.len()];
         self.write(values, factors, &mut found);
         found
     }
 
-    /// Writes them.
+    /// Writes the functions.
     pub fn write(&mut self, values: &[f64], factors: &[f64], out: &mut [f64]) {
         let TermFunctions { robot, statics, moments } = self;
         if let Some(statics) = &statics {
@@ -133,7 +133,7 @@ impl<'a> TermFunctions<'a> {
     }
 }
 
-/// Joint values as terms depend on them: of a give that of the joint which gives.
+/// Joint values as arguments of terms: for a compliant joint, that of the joint to which it belongs.
 fn own_values<'a>(robot: &Robot, values: &'a [f64]) -> Cow<'a, [f64]> {
     if robot.joints.iter().all(|joint| joint.give_of.is_none()) {
         return Cow::Borrowed(values);
@@ -158,7 +158,7 @@ mod tests {
             ("cos2", 1.4f64.cos()),
             ("coupled4", 0.3),
             ("factor1", 21.5),
-            // Without gravity nothing pulls.
+            // Without gravity there are no moments.
             ("masses", 0.0),
             ("sag6", 0.0),
             ("payload1", 0.0),

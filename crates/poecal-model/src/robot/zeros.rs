@@ -4,8 +4,9 @@ use super::{JointTerm, Robot, Term};
 use poecal_arm::lie::Pose;
 
 impl Robot {
-    /// The same robot without joint offsets: that of joint i moves all screws beyond it, and what stands there, by `exp(ξ_i c)` (lou2009
-    /// equations 11 to 15, theory.md §3 (9a)). Exact: no pose at any readings changes, unless another term is a function of the values.
+    /// The same robot without joint offsets: that of joint i moves all screws beyond it, with their bodies, by `exp(ξ_i c)` (lou2009
+    /// equations 11 to 15, theory.md §3 (9a)). The result is exact: no pose at any readings changes, unless another term is a function
+    /// of the values.
     #[must_use]
     pub fn without_offsets(&self) -> Robot {
         let mut robot = self.clone();
@@ -13,7 +14,7 @@ impl Robot {
         if robot.terms.len() == self.terms.len() {
             return robot;
         }
-        // How the link of each joint moves.
+        // Motion of each joint's link.
         let mut motions: Vec<Pose> = Vec::with_capacity(self.joints.len());
         let of = |motions: &[Pose], body: Option<usize>| {
             body.and_then(|joint| motions.get(joint)).copied().unwrap_or_else(Pose::identity)

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use super::random;
 use crate::robot::{JointKind, Limits, ReadingKind, Robot};
 
-/// The configurations of a robot: the range of each reading (±π and ±0.5 m where there are no limits; its reference of a factor).
+/// Configurations of a robot: the range of each reading (±π and ±0.5 m without limits; for a factor its reference).
 ///
 /// ```
 /// # mod poecal {
@@ -24,13 +24,13 @@ pub struct Configurations {
 }
 
 impl Configurations {
-    /// The configurations of a robot, readings in the order of [`Robot::reading_names`].
+    /// Configurations of a robot, readings in the order of [`Robot::reading_names`].
     #[must_use]
     pub fn new(robot: &Robot) -> Self {
         Configurations { readings: robot.reading_names().iter().map(|name| range(robot, name)).collect() }
     }
 
-    /// A random configuration with every joint within its limits, in steps of 0.0001° and 0.001 mm, as controllers show them.
+    /// A random configuration with every joint within its limits, in steps of 0.0001° and 0.001 mm, as on the displays of controllers.
     pub fn random(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let one = |range: &(ReadingKind, f64, f64)| {
             let (_, lower, upper) = *range;
@@ -39,7 +39,8 @@ impl Configurations {
         self.readings.iter().map(one).collect()
     }
 
-    /// The same with ranges that keep a distance from both ends, turning joints in radians and sliding ones in metres, as far as there is room.
+    /// The same configurations with ranges that keep a distance from both ends, as far as there is room: revolute joints in radians and
+    /// prismatic ones in metres.
     #[must_use]
     pub fn within(mut self, margin: [f64; 2]) -> Self {
         for (kind, lower, upper) in &mut self.readings {
@@ -54,16 +55,17 @@ impl Configurations {
         self
     }
 
-    /// Usual distance from the limits, where controllers do not stop yet: 2°, 5 mm.
+    /// Usual distance from the limits at which controllers do not stop yet: 2°, 5 mm.
     pub const MARGIN: [f64; 2] = [2.0 * std::f64::consts::PI / 180.0, 5e-3];
 
-    /// The same with the usual margin and within a turn: what a robot is asked to reach.
+    /// The same configurations with the usual margin and within a turn: those that a robot is asked to reach.
     #[must_use]
     pub fn to_measure(self) -> Self {
         self.within(Self::MARGIN).within_a_turn()
     }
 
-    /// The same with turning readings within one turn, about zero as far as the range allows: further turns are the same poses.
+    /// The same configurations with readings of revolute joints within one turn, about zero as far as the range allows: further turns are
+    /// the same poses.
     #[must_use]
     pub fn within_a_turn(mut self) -> Self {
         let half = std::f64::consts::PI;
@@ -76,13 +78,13 @@ impl Configurations {
         self
     }
 
-    /// The configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
+    /// Configuration within the ranges that is nearest to one, in steps as those of [`Configurations::random`].
     #[must_use]
     pub fn nearest(&self, readings: &[f64]) -> Vec<f64> {
         let one = |(range, reading): (&(ReadingKind, f64, f64), &f64)| {
             let &(kind, lower, upper) = range;
             let found = stepped(range, reading.min(upper).max(lower));
-            // At a limit that is no step, the step before it.
+            // At a limit that is no step, it is the step before it.
             let step = if kind == ReadingKind::Angle { 1e-4_f64.to_radians() } else { 1e-6 };
             let inside = found.min(upper - step).max(lower + step);
             if kind == ReadingKind::Factor || upper - lower < 2.0 * step {
@@ -94,7 +96,7 @@ impl Configurations {
         self.readings.iter().zip(readings).map(one).collect()
     }
 
-    /// Whether all readings are within their ranges.
+    /// True if all readings are within their ranges.
     #[must_use]
     pub fn contain(&self, readings: &[f64]) -> bool {
         let within = |(&(_, lower, upper), reading): (&(ReadingKind, f64, f64), &f64)| {
@@ -104,7 +106,7 @@ impl Configurations {
     }
 }
 
-/// A value within a range in steps of 0.0001° and 0.001 mm, where a step is within it.
+/// A value within a range in steps of 0.0001° and 0.001 mm, if a step is within it.
 fn stepped(&(kind, lower, upper): &(ReadingKind, f64, f64), value: f64) -> f64 {
     let stepped = match kind {
         ReadingKind::Angle => ((value.to_degrees() * 1e4).round() / 1e4).to_radians(),

@@ -31,7 +31,7 @@ pub struct Gross {
     pub distance_m: [f64; 2],
     /// Least and greatest angle, radians.
     pub angle_rad: [f64; 2],
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 

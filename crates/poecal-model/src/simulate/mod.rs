@@ -50,17 +50,17 @@ pub struct Simulation {
     pub noise_rotation_rad: f64,
     /// Number of configurations.
     pub count: usize,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Whether the device frame is unknown instead of equal to the robot's base.
+    /// True if the device frame is unknown instead of equal to the robot's base.
     pub device_anywhere: bool,
-    /// Root mean squares of the coefficients of what the joints do beyond geometry.
+    /// Root mean squares of the coefficients of the joints' terms beyond geometry.
     pub terms: Sizes,
-    /// Where weights are pulled, in the base frame.
+    /// Direction of gravity, in the base frame.
     pub gravity: Vector3<f64>,
 }
 
-/// What is said if no joint is between any instrument and any target.
+/// Message if no joint is between any instrument and any target.
 const SAME_LINKS: &str =
     "found instruments and targets on the same links only, expected joints between them: name others";
 
@@ -72,7 +72,7 @@ const TEMPERATURES: [f64; 2] = [18.0, 28.0];
 /// Payloads, kg.
 const PAYLOADS: [f64; 2] = [0.0, 5.0];
 
-/// The value of a factor: the side from which a joint came from the configuration before, either side of all joints, a payload or none, or a
+/// Value of a factor: the side from which a joint came from the configuration before, either side of all joints, a payload or none, or a
 /// temperature.
 fn value_of(
     factor: &FactorReading,
@@ -140,9 +140,9 @@ pub struct Simulated {
 }
 
 impl Simulation {
-    /// Simulates a robot that deviates from `nominal`, measured in random configurations within its limits (±π and ±0.5 m where
-    /// there are none). Each instrument on the robot sees each target with a body of its own in turn; without instruments a device beside
-    /// the robot does, and without such targets they see the tip.
+    /// Simulates a robot that deviates from `nominal`, measured in random configurations within its limits (±π and ±0.5 m without
+    /// limits). Each instrument on the robot measures each target with a body of its own in turn. Without instruments a device beside the
+    /// robot measures, and without such targets the tip is measured.
     ///
     /// # Errors
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
@@ -154,7 +154,7 @@ impl Simulation {
         self.measure(nominal, actual, kind, &mut generator)
     }
 
-    /// The robot with the factors of its terms: the side from which each joint that turns is approached, the temperature, and the payload.
+    /// The robot with the factors of its terms: the side from which each revolute joint is approached, the temperature, and the payload.
     fn with_factors(&self, nominal: &Robot) -> Result<Robot> {
         let turns = |joint: &&Joint| joint.kind == JointKind::Revolute && joint.reading.name == joint.name;
         let approached = nominal
@@ -169,12 +169,12 @@ impl Simulation {
         nominal.with_factors(&sides.chain(warmth).chain(payload).filter(missing).collect::<Vec<_>>())
     }
 
-    /// The robot with terms of random coefficients, under weight of positive ones; the same without any.
+    /// The robot with terms of random coefficients, positive ones under weight; unchanged if there are none.
     fn giving(&self, robot: Robot) -> Robot {
         if self.terms == Sizes::NONE {
             return robot;
         }
-        // A further stream of the seed, so that all else does not depend on the terms.
+        // It is a further stream of the seed, so that all else does not depend on the terms.
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(2);
         let every = vec![true; robot.joints.len()];
@@ -185,13 +185,13 @@ impl Simulation {
         let mut robot = model.robot;
         for (term, deviation) in robot.terms.iter_mut().skip(own).zip(deviations) {
             let drawn = random::normal(&mut generator);
-            // Joints give the way they are pulled.
+            // Joints yield in the direction of the torque.
             term.coefficient = deviation * if term.term.needs_gravity() { drawn.abs() } else { drawn };
         }
         robot
     }
 
-    /// Measures a given actual robot.
+    /// Measures an actual robot.
     ///
     /// # Errors
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
@@ -217,7 +217,7 @@ impl Simulation {
     /// # Errors
     /// [`ErrorKind::Problem`] if instruments and targets are on the same links only; otherwise does not fail for a finite robot.
     pub fn held_out(&self, made: &Simulated, kind: Kind, count: usize) -> Result<Dataset> {
-        // Another stream of the same seed, so that these rows do not depend on how many were measured.
+        // It is another stream of the same seed, so that these rows do not depend on the number of measured ones.
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(1);
         let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, count, ..*self };
@@ -302,14 +302,14 @@ impl Simulation {
     }
 }
 
-/// What a kind of session sees of a target, without noise.
+/// Measurement of a target by a kind of session, without noise.
 pub fn exactly(kind: Kind, row: usize, target: &Pose) -> Measurement {
     let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
     let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
     exact.drawn(kind, target, (row, Vector3::zeros(), 0.0), &mut generator)
 }
 
-/// Pairs of an instrument on the robot and a target with a body of its own; `None` is the device beside the robot, and the tip. Nothing if both
+/// Pairs of an instrument on the robot and a target with a body of its own; `None` is the device beside the robot, and the tip. Empty if both
 /// are all there is. Instruments do not see targets on their own bodies.
 pub fn pairs(robot: &Robot) -> Vec<(Option<&Mount>, Option<&Mount>)> {
     let some_or_none = |mounts: &'_ [Mount]| mounts.is_empty().then_some(None);
@@ -326,7 +326,7 @@ pub fn pairs(robot: &Robot) -> Vec<(Option<&Mount>, Option<&Mount>)> {
         .collect()
 }
 
-/// `instrument_from_target`; without an instrument, as the device beside the robot sees it.
+/// `instrument_from_target`; without an instrument, as measured by the device beside the robot.
 pub fn seen(
     robot: &Robot,
     device_from_base: &Pose,

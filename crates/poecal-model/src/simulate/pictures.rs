@@ -28,25 +28,25 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSimulation {
-    /// Errors of the robot, seed, and number of pictures; what it says of noise is not used.
+    /// Errors of the robot, seed, and number of pictures; its noise is not used.
     pub session: Simulation,
     /// The lens, with the size of its picture.
     pub lens: Lens,
     /// The board.
     pub board: Board,
-    /// Whether the camera is on the tip, and the board stays.
+    /// True if the camera is on the tip, and the board is static.
     pub in_hand: bool,
     /// Nearest and farthest distance of the board from the camera, metres.
     pub distance_m: [f64; 2],
     /// Least and largest angle between the board's normal and the optical axis, rad.
     pub tilt_rad: [f64; 2],
-    /// Whether the board is tilted in all directions and turned at will; otherwise it is only tilted to and fro about one line.
+    /// True if the board is tilted in all directions and turned at will; otherwise it is only tilted to and fro about one line.
     pub turns: bool,
-    /// Where the middle of the board is in the picture: from and to, shares of width and of height.
+    /// Position of the middle of the board in the picture: from and to, shares of width and of height.
     pub part: [[f64; 2]; 2],
     /// Standard deviation of each coordinate of a corner, pixels.
     pub noise_px: f64,
-    /// What the corners of a picture share: the error of the arm in each configuration, about what is on its tip.
+    /// Shared error of a picture's corners: the error of the arm in each configuration, about the object on its tip.
     pub common: CommonError,
 }
 
@@ -67,9 +67,9 @@ pub struct Photographed {
     pub nominal: Robot,
     /// The actual robot.
     pub actual: Robot,
-    /// Pose of what is on the tip, camera or board, in the frame of the actual tip.
+    /// Pose of the object on the tip, camera or board, in the frame of the actual tip.
     pub tip_from_held: Pose,
-    /// Pose of what stays, board or camera, in the base.
+    /// Pose of the static object, board or camera, in the base.
     pub base_from_other: Pose,
     /// Pose of the board in the camera's frame in each picture, with the error of the arm there.
     pub camera_from_board: Vec<Pose>,
@@ -77,12 +77,12 @@ pub struct Photographed {
     pub data: Dataset,
 }
 
-/// Most configurations that are tried for each picture.
+/// Largest number of configurations that are tried for each picture.
 const TRIES: usize = 2000;
 /// Remainder below which an arm has reached a pose.
 const REACHED: f64 = 1e-9;
 
-/// A robot before what stays, in a simulation of pictures.
+/// A robot in front of the static object, in a simulation of pictures.
 struct Scene<'a> {
     arm: Arm,
     /// Readings of the arm among all.
@@ -112,7 +112,7 @@ impl PictureSimulation {
         }
     }
 
-    /// The same of another board and lens, with the board from a third to a half of the height of the picture.
+    /// The same simulation with another board and lens, with the board from a third to a half of the height of the picture.
     #[must_use]
     pub fn before(self, board: Board, lens: Lens) -> Self {
         let height_px = lens.size_px.map_or(1000.0, |[_, height]| f64::from(height));
@@ -140,7 +140,7 @@ impl PictureSimulation {
         };
         let (arm, readings) = nominal.arm(&[])?;
         let configurations = Configurations::new(nominal);
-        // What stays is where one configuration sees it well.
+        // The static object is where one configuration sees it well.
         let first = configurations.random(&mut generator);
         let base_from_held = nominal.forward_kinematics(&first) * tip_from_held;
         let base_from_other = base_from_held * self.relative(&self.sight(&mut generator));
@@ -165,7 +165,7 @@ impl PictureSimulation {
         Ok(Photographed { nominal, actual, tip_from_held, base_from_other, camera_from_board, data })
     }
 
-    /// Tries configurations near one, and now and then elsewhere, until all of the board is seen; gives the board and its corners too.
+    /// Tries configurations near one, and now and then elsewhere, until all of the board is seen; returns the board and its corners too.
     fn find_view(
         &self,
         scene: &Scene<'_>,
@@ -173,7 +173,7 @@ impl PictureSimulation {
         generator: &mut ChaCha8Rng,
     ) -> Option<(Vec<f64>, Pose, Vec<Corner>)> {
         for attempt in 0..TRIES {
-            // Another branch of the arm now and then.
+            // Now and then another branch of the arm is tried.
             if attempt % 20 == 19 {
                 *near = scene.configurations.random(generator);
             }
@@ -209,7 +209,7 @@ impl PictureSimulation {
         let [width, height] = self.lens.size_px.unwrap_or([1000, 1000]).map(f64::from);
         let pixel = Vector2::new(between(self.part[0]) * width, between(self.part[1]) * height);
         let ray = self.lens.ray(&pixel).unwrap_or_else(Vector3::z);
-        // Tilted about a line across the sight, turned about it.
+        // It is tilted about a line across the line of sight, and turned about it.
         let across = between([0.0, std::f64::consts::TAU]);
         let (tilt, turned) = (between(self.tilt_rad), between([0.0, std::f64::consts::TAU]));
         let turn = if self.turns {
@@ -222,12 +222,12 @@ impl PictureSimulation {
         Pose::new(turn, ray * (depth / ray.z) - turn * middle)
     }
 
-    /// Pose of what stays in the frame of what is held, by the pose of the board in the camera's frame.
+    /// Pose of the static object in the frame of the mounted one, by the pose of the board in the camera's frame.
     fn relative(&self, camera_from_board: &Pose) -> Pose {
         if self.in_hand { *camera_from_board } else { camera_from_board.inverse() }
     }
 
-    /// What is held, in the base, with the error of this configuration.
+    /// Mounted object in the base, with the error of this configuration.
     fn held(
         &self,
         actual: &Robot,
@@ -241,7 +241,7 @@ impl PictureSimulation {
         moved(&exact, &Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z))
     }
 
-    /// The corners as they are seen; `None` if one is not in the picture.
+    /// Corners as they are seen; `None` if one is not in the picture.
     fn corners(&self, camera_from_board: &Pose, generator: &mut ChaCha8Rng) -> Option<Vec<Corner>> {
         let size = self.lens.size_px.map(|size| size.map(f64::from));
         let mut corners = Vec::with_capacity(self.board.points.len());

@@ -15,7 +15,8 @@ use poecal_numerics::linalg;
 
 /// Distance of the two sockets, metres.
 const SOCKETS_APART_M: f64 = 0.2;
-/// Random configurations from which one that fulfils a constraint is sought, Newton steps from each, and the largest change of a joint.
+/// Number of random configurations from which one that fulfils a constraint is sought, Newton steps from each, and the largest change of a
+/// joint.
 const ATTEMPTS: usize = 2000;
 const STEPS: usize = 40;
 const LARGEST: f64 = 0.4;
@@ -24,7 +25,7 @@ const FULFILLED: f64 = 1e-13;
 /// Change of a reading for a difference.
 const DIFFERENCE: f64 = 1e-6;
 
-/// A place from which a session measures.
+/// A station of a session.
 #[derive(Clone)]
 struct Place {
     name: String,
@@ -33,18 +34,18 @@ struct Place {
     zero_m: f64,
 }
 
-/// On what a place stands.
+/// Carrier of a station.
 #[derive(Clone)]
 enum Base {
     /// Beside the robot: `device_from_base`.
     Beside(Pose),
-    /// On one of its links.
+    /// A link of the robot.
     On(Mount),
-    /// Where the target itself was in another configuration.
+    /// The target itself in another configuration.
     Before,
 }
 
-/// A place with a target of the robot that it sees; none is the tip.
+/// A station with a target of the robot that it measures; `None` is the tip.
 struct Sight {
     place: Place,
     target: Option<Mount>,
@@ -59,7 +60,7 @@ impl Sight {
         )
     }
 
-    /// The target as it is seen, if the place is that of one configuration.
+    /// Target as it is measured, if the station is that of one configuration.
     fn seen(&self, robot: &Robot, readings: &[f64]) -> Pose {
         let device_from_base = match &self.place.base {
             Base::Beside(device_from_base) => *device_from_base,
@@ -69,12 +70,12 @@ impl Sight {
         device_from_base * self.base_from_target(robot, readings)
     }
 
-    /// The target as it is seen from where it was in an earlier configuration.
+    /// Target relative to its pose in an earlier configuration.
     fn seen_from(&self, robot: &Robot, [before, readings]: [&[f64]; 2]) -> Pose {
         self.base_from_target(robot, before).inverse() * self.base_from_target(robot, readings)
     }
 
-    /// An observation by this place of its target, which says nothing yet.
+    /// An observation by this station of its target, without a measurement yet.
     fn observation(&self, data: &mut Dataset) -> Observation {
         let target = data.target_index(self.target.as_ref().map(|it| it.name.as_str()));
         let station = data.station_index(Some(&self.place.name));
@@ -83,8 +84,8 @@ impl Sight {
     }
 }
 
-/// What a robot would measure in some configurations, by a kind that is neither of a device with a frame nor touches anything: rows, and the
-/// frames of the instruments, which are somewhere around it.
+/// Measurements of a robot in some configurations, by a kind that is neither of a device with a frame nor a contact: rows, and the frames of
+/// the instruments, which are somewhere around it.
 pub fn plan(kind: Kind, robot: &Robot, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
     let exact = Simulation { noise_position_m: 0.0, noise_rotation_rad: 0.0, ..Simulation::default() };
     let mut generator = ChaCha8Rng::seed_from_u64(exact.seed);
@@ -117,7 +118,7 @@ pub fn plan(kind: Kind, robot: &Robot, readings: &[f64]) -> Result<(Dataset, Vec
 }
 
 impl Simulation {
-    /// Measurements of a kind without a device frame. Places do not depend on the generator, so that further rows have the same.
+    /// Measurements of a kind without a device frame. Stations do not depend on the generator, so that further rows have the same.
     pub(crate) fn observe_places(
         &self,
         nominal: &Robot,
@@ -152,7 +153,7 @@ impl Simulation {
         Ok(data)
     }
 
-    /// Which place sees which target: those of the kind, or the robot's own instruments, and each target with a body of its own, or the tip.
+    /// Pairs of station and target: those of the kind, or the robot's own instruments, and each target with a body of its own, or the tip.
     fn sights(&self, actual: &Robot, kind: Kind) -> Result<Vec<Sight>> {
         let mut places = self.places(actual, kind);
         if !actual.instruments.is_empty() && !kind.is_paired() {
@@ -170,7 +171,7 @@ impl Simulation {
         let body = |it: &Option<Mount>| it.as_ref().map_or_else(|| actual.tip_body(), |mount| mount.body);
         let sight = |place: &Place, target: &Option<Mount>| {
             let mut place = place.clone();
-            // As files name the pairs of a target.
+            // The name is that of files for the pairs of a target.
             if let (Base::Before, Some(mount)) = (&place.base, target) {
                 place.name = format!("{}/{}", place.name, mount.name);
             }
@@ -188,7 +189,7 @@ impl Simulation {
         Ok(found)
     }
 
-    /// The places of a kind.
+    /// Stations of a kind.
     fn places(&self, actual: &Robot, kind: Kind) -> Vec<Place> {
         let mut generator = ChaCha8Rng::seed_from_u64(self.seed);
         generator.set_stream(3);
@@ -217,7 +218,7 @@ impl Simulation {
         session.places.iter().enumerate().map(place).collect()
     }
 
-    /// A point that all targets reach well: the middle of their places.
+    /// A point that all targets reach well: the middle of their positions.
     fn middle(
         &self,
         actual: &Robot,
@@ -245,7 +246,7 @@ impl Simulation {
         outward * 0.7 + Vector3::z() * height
     }
 
-    /// What a device sees of a target.
+    /// Measurement of a target by a device.
     fn seen(
         &self,
         kind: Kind,
@@ -257,7 +258,7 @@ impl Simulation {
         self.drawn(kind, target, (row, length, place.zero_m), generator)
     }
 
-    /// What a device sees of a target, with noise of lengths that is already drawn.
+    /// Measurement of a target by a device, with noise of lengths that is already drawn.
     pub(crate) fn drawn(
         &self,
         kind: Kind,
@@ -287,7 +288,7 @@ impl Simulation {
         of(&mut Drawn { row, length, turn, zero_m, lengths: &mut lengths, uniform: &mut uniform })
     }
 
-    /// A configuration in which the tip touches a place, up to the noise, with what is said of it.
+    /// A configuration in which the tip touches a station, up to the noise, with the recorded measurement.
     fn touching(
         &self,
         actual: &Robot,

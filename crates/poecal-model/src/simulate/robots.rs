@@ -61,7 +61,7 @@ pub fn elbow() -> Robot {
     robot("googol_elbow", joints, at(0.834, 0.0, 0.720))
 }
 
-/// A SCARA: two parallel revolute joints, a sliding one and a last revolute one.
+/// A SCARA: two parallel revolute joints, a prismatic one and a last revolute one.
 #[must_use]
 pub fn scara() -> Robot {
     let joints = vec![
@@ -73,7 +73,7 @@ pub fn scara() -> Robot {
     robot("scara", joints, at(0.64, 0.02, 0.15))
 }
 
-/// A gantry of three sliding joints with a three-axis wrist.
+/// A gantry of three prismatic joints with a three-axis wrist.
 #[must_use]
 pub fn gantry() -> Robot {
     let joints = vec![
@@ -102,7 +102,7 @@ pub fn seven_axis() -> Robot {
     robot("seven_axis", joints, at(0.04, 0.03, 1.3))
 }
 
-/// A chain of `count` joints with random axes, origins and kinds (one in four sliding, the first and last turning).
+/// A chain of `count` joints with random axes, origins and kinds (one in four prismatic, the first and last revolute).
 #[must_use]
 pub fn random_chain(count: usize, seed: u64) -> Robot {
     let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x0c4a_1d00);

@@ -1,6 +1,6 @@
 //! Worked examples of lynch2017 (Modern Robotics): forward kinematics, space Jacobian and logarithm of its 6R arm (Example 4.5, a UR5),
 //! and the sample calls of the book's library. Beyond the digits that the book prints, the numbers are those of its Python package
-//! (`modern_robotics` 1.1.1: `FKinSpace`, `JacobianSpace`, `MatrixLog6`). Twists stand there as `(ω; v)`.
+//! (`modern_robotics` 1.1.1: `FKinSpace`, `JacobianSpace`, `MatrixLog6`). Its twists are `(ω; v)`.
 
 use nalgebra::{Matrix3, Vector3};
 use poecal_arm::lie::{Pose, Screw, Twist};
@@ -23,7 +23,7 @@ fn apart(a: &Pose, b: &Pose) -> f64 {
     larger((a.rotation - b.rotation).amax(), (a.translation - b.translation).amax())
 }
 
-/// The space Jacobian: each axis where the joints before it have carried it.
+/// Space Jacobian: each axis after the motions of the joints before it.
 fn space_jacobian(axes: &[Twist], values: &[f64]) -> Vec<Twist> {
     let mut before = Pose::identity();
     let mut columns = Vec::new();
@@ -61,7 +61,7 @@ fn ur5() -> Robot {
 #[test]
 fn the_arm_of_example_4_5_stands_where_the_book_has_it() {
     let robot = ur5();
-    // As printed: one elbow and one wrist turned by a right angle.
+    // The pose is as printed: one elbow and one wrist turned by a right angle.
     let printed = pose([[0.0, -1.0, 0.0, 0.095], [1.0, 0.0, 0.0, 0.109], [0.0, 0.0, 1.0, 0.988]]);
     let first = apart(&robot.forward_kinematics(&[0.0, -FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, 0.0]), &printed);
     let values = [0.3, -1.1, 0.7, -0.4, 1.2, 2.5];

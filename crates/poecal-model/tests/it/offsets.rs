@@ -1,4 +1,4 @@
-//! Joint offsets as screws and back: exact both ways, whatever the robot; and what is said where robots differ by more than offsets.
+//! Joint offsets as screws and back: exact in both directions for all robots; and the result if robots differ by more than offsets.
 
 use std::f64::consts::PI;
 
@@ -54,7 +54,7 @@ fn difference(
     largest
 }
 
-/// Largest difference of offsets where they are determined.
+/// Largest difference of offsets that are determined.
 fn offset_error(found: &Explanation, put_in: &[f64]) -> f64 {
     let determined = (0..put_in.len()).filter(|joint| !found.undetermined.contains(joint));
     determined.map(|joint| (found.offsets[joint] - put_in[joint]).abs()).fold(0.0, larger)
@@ -104,7 +104,7 @@ fn offsets_become_screws_and_offsets_again() {
 fn free_base_and_tip_are_found_too() {
     let mut worst = [0.0_f64; 3];
     for (seed, robot) in robots().iter().enumerate() {
-        // Small offsets are the easy case: of every third robot.
+        // Small offsets are the easy case; every third robot has them.
         for &angle_deg in if seed % 3 == 0 { [170.0, 5.0].as_slice() } else { &[170.0] } {
             let mut generator = ChaCha8Rng::seed_from_u64(100 + seed as u64);
             let offsets = random_offsets(robot, angle_deg, &mut generator);
@@ -134,7 +134,7 @@ fn free_base_and_tip_are_found_too() {
 
 #[test]
 fn what_cannot_be_told_is_named_and_as_small_as_possible() {
-    // Two coaxial joints: only the sum of their offsets shows, and each gets half of it.
+    // Two coaxial joints: only the sum of their offsets is determined, and each has half of it.
     let axis = Screw::revolute(&Vector3::z(), &Vector3::zeros());
     let arm = Screw::revolute(&Vector3::y(), &Vector3::new(0.3, 0.0, 0.2));
     let joints = vec![Joint::revolute("a", axis), Joint::revolute("b", axis), Joint::revolute("c", arm)];
@@ -145,20 +145,20 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     let half = [found.offsets[0] - 0.2, found.offsets[1] - 0.2, found.offsets[2] + 0.7];
     assert!(half.iter().all(|error| error.abs() < EXACT), "{:?}", found.offsets);
     assert!(remainder(&found) < EXACT && found.with_offsets.max_m < EXACT);
-    // The tool was found anew: what the last joint's offset does, the tip can do.
+    // The tool is refitted: the tip can replace the last joint's offset.
     let options = OffsetOptions { tip: End::Free, ..OffsetOptions::default() };
     let found = explain(&elbow(), &into_screws(&elbow(), &[0.1; 6]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [5]);
     assert!(found.home.is_none() && found.offsets[5].abs() < EXACT && found.with_offsets.max_m < EXACT);
-    // One joint and a free tip: nothing can be told.
+    // With one joint and a free tip, no offset is determined.
     let single = Robot::new("single", vec![Joint::revolute("a", arm)], Pose::identity()).unwrap();
     let found = explain(&single, &into_screws(&single, &[0.5]).unwrap(), &options).unwrap();
     assert_eq!((found.undetermined.as_slice(), found.offsets.as_slice()), (&[0][..], &[0.0][..]));
     assert!(found.with_offsets.max_m < EXACT);
-    // Nothing but parallel axes follows the third joint of a SCARA, which slides along them.
+    // Only parallel axes follow the third joint of a SCARA, which slides along them.
     let found = explain(&scara(), &into_screws(&scara(), &[0.1, 0.2, 0.03, 0.4]).unwrap(), &options).unwrap();
     assert_eq!(found.undetermined, [2, 3]);
-    // A model that states 90° as 1.5708 rad has two axes that are nearly one; that difference decides nothing.
+    // A model that states 90° as 1.5708 rad has two axes that are nearly one; that difference determines nothing.
     let mut rounded = robot.clone();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [3.7e-6, 0.0, 0.0]);
     rounded.joints[1].screw = axis.transformed(&tilt);
@@ -171,7 +171,7 @@ fn what_cannot_be_told_is_named_and_as_small_as_possible() {
     assert!((found.offsets[0] - 0.015).abs() < 0.001 && (found.offsets[1] - 0.015).abs() < 0.001);
 }
 
-/// Screw errors leave offsets as uncertain as they are large; this many times their size is an outlier on well-built arms.
+/// Screw errors make offsets as uncertain as they are large; this many times their size is an outlier on well-built arms.
 const SCATTER: f64 = 3.0;
 
 #[test]
@@ -199,7 +199,7 @@ fn screw_errors_remain_and_hardly_move_the_offsets() {
     }
 }
 
-/// A remainder above this many times the squares of the screw errors that were put in would be another minimum.
+/// A remainder above this many times the squares of the screw errors would be another minimum.
 const OTHER_MINIMUM: f64 = 4.0;
 
 #[test]
@@ -230,7 +230,7 @@ fn the_least_minimum_is_found_beside_screw_errors_of_one_degree() {
 
 #[test]
 fn a_screw_error_that_no_offset_can_make_is_the_remainder() {
-    // The first screw of a kept base is moved by no offset.
+    // No offset moves the first screw of a kept base.
     let mut actual = elbow();
     let tilt = Pose::from_xyz_rpy([0.0; 3], [0.001, 0.0, 0.0]);
     actual.joints[0].screw = actual.joints[0].screw.transformed(&tilt);

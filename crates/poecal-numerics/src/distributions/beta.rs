@@ -1,10 +1,10 @@
 //! The F distribution, by the incomplete beta function (abramowitz1964 26.5 and 26.6).
 
-/// Upper quantile of the F distribution: a ratio of two mean squares of `first` and `second` degrees of freedom, which need not be whole,
-/// exceeds it with this probability of 0 to 0.5. For large `second` it tends to χ² over its degrees of freedom.
+/// Upper quantile of the F distribution: a ratio of two mean squares of `first` and `second` degrees of freedom exceeds it with this
+/// probability of 0 to 0.5. The degrees of freedom need not be whole. For large `second` it tends to χ² over its degrees of freedom.
 pub fn f_quantile(probability: f64, first: f64, second: f64) -> f64 {
     let upper = |x: f64| incomplete_beta(1.0 - x, 0.5 * second, 0.5 * first);
-    // x = first F / (first F + second) by halving: monotonic, and as fine as rounding after 60 rounds.
+    // x = first F / (first F + second) by bisection: monotonic, and as fine as rounding after 60 rounds.
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -90,8 +90,8 @@ fn ln_gamma(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Upper 5 % and 1 % points as tables print them (and χ² over its degrees for the last).
-    /// Sums of terms that are written out.
+    /// Upper 5 % and 1 % points as tables print them (and χ² over its degrees for the last). The sums are of
+    /// terms that are written out.
     #[test]
     fn binomial_probabilities_are_sums_of_their_terms() {
         for (count, probability) in [(1, 0.3), (20, 0.95), (59, 0.05), (200, 0.95)] {
@@ -101,7 +101,7 @@ mod tests {
                 sum += term;
                 term *= f64::from(count - most) / f64::from(most + 1) * probability / (1.0 - probability);
                 let found = binomial_at_most(most as usize, count as usize, probability);
-                // Roundings of the logarithms of the gamma function.
+                // The tolerance is for rounding of the logarithms of the gamma function.
                 assert!((found - sum).abs() < 1e-11, "{count} {probability} {most}: {found} {sum}");
             }
         }

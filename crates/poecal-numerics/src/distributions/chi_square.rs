@@ -7,7 +7,7 @@ use super::beta::f_quantile;
 /// Medians for 1 to 6 degrees of freedom.
 const MEDIANS: [f64; 6] = [0.4549, 1.3863, 2.3660, 3.3567, 4.3515, 5.3481];
 
-/// The median for 1 to 6 degrees of freedom.
+/// Median for 1 to 6 degrees of freedom.
 pub fn chi_square_median(freedom: usize) -> f64 {
     MEDIANS[freedom.clamp(1, 6) - 1]
 }
@@ -26,19 +26,19 @@ pub fn upper_quantile(probability: f64, freedom: usize) -> f64 {
     x
 }
 
-/// Degrees of freedom beyond which the approximation of wilson1931 is as good as the F distribution of so many more.
+/// Degrees of freedom beyond which the approximation of wilson1931 is as good as the F distribution with 1e6 for infinitely many.
 const MANY: f64 = 1000.0;
-/// Degrees of freedom that stand for infinitely many.
+/// Degrees of freedom that represent infinitely many.
 const INFINITE: f64 = 1e6;
 /// Normal quantile that is exceeded with a probability of 0.05.
 const NORMAL: f64 = 1.644_853_627;
 
-/// What a mean square of `freedom` degrees of freedom, which need not be whole, of variables of variance 1 exceeds with a probability of 0.05.
+/// Upper 5 % point of a mean square of `freedom` degrees of freedom, which need not be whole, of variables of variance 1.
 pub fn upper_mean_square(freedom: f64) -> f64 {
     if freedom > MANY { mean_square_quantile(freedom, NORMAL) } else { f_quantile(0.05, freedom, INFINITE) }
 }
 
-/// What it falls below with a probability of 0.05.
+/// Lower 5 % point of such a mean square.
 pub fn lower_mean_square(freedom: f64) -> f64 {
     if freedom > MANY {
         mean_square_quantile(freedom, -NORMAL)
@@ -116,7 +116,7 @@ mod tests {
         }
     }
 
-    /// Both 5 % points of χ² over its degrees of freedom as tables print them, and continuous where the way to compute them changes.
+    /// Both 5 % points of χ² over its degrees of freedom as tables print them, and continuous where the method of computation changes.
     #[test]
     fn mean_squares_agree_with_tables() {
         for (freedom, lower, upper) in
@@ -124,7 +124,7 @@ mod tests {
         {
             let [low, high] = [lower_mean_square(freedom), upper_mean_square(freedom)].map(|it| it * freedom);
             println!("{freedom}: {low:.5} {high:.4}, table {lower} {upper}");
-            // The tables' digits, and 1e6 for infinitely many degrees of freedom.
+            // The tolerance is for the tables' digits, and 1e6 for infinitely many degrees of freedom.
             assert!((low - lower).abs() < 2e-4 * lower.max(0.03) + 1e-5 && (high / upper - 1.0).abs() < 4e-4);
         }
         for of in [lower_mean_square, upper_mean_square] {
@@ -139,7 +139,7 @@ mod tests {
                 let (survival, _) = upper_tail(upper_quantile(probability, freedom), freedom);
                 let off = (survival / probability - 1.0).abs();
                 println!("{freedom} {probability:e}: {off:.1e}");
-                // A few roundings of the exponential's argument.
+                // The tolerance is for a few roundings of the exponential's argument.
                 assert!(off < 1e-13);
             }
         }

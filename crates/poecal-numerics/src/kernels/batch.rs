@@ -1,4 +1,4 @@
-//! One vector of rows under way: the chain, its columns in local axis frames, and their gradient.
+//! State of one vector of rows: the chain, its columns in local axis frames, and their gradient.
 
 use pulp::Simd;
 
@@ -8,11 +8,11 @@ use super::turn::Turn;
 use super::vector::{Lanes, Vectors, Wide};
 use super::work::{Axis, ValueColumn};
 
-/// One vector of rows under way: part `part` of a block.
+/// State of one vector of rows: part `part` of a block.
 pub(crate) struct Batch<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) part: usize,
-    /// The block's columns, each `stride` after the one before.
+    /// Columns of the block, each `stride` after the one before.
     pub(crate) columns: &'a mut [[Wide; 3]],
     pub(crate) stride: usize,
     pub(crate) axes: &'a mut [Axis],
@@ -69,7 +69,7 @@ impl Batch<'_> {
             if PLAIN || joint.terms.1 == 0 {
                 continue;
             }
-            // Its own motion leaves the joint's direction as it is.
+            // The joint's own motion does not change its direction.
             let along = link.column(2);
             let terms = joint.terms.0..joint.terms.0 + joint.terms.1;
             for (term, factor) in self.terms[terms.clone()].iter_mut().zip(&factors[terms]) {
@@ -169,7 +169,7 @@ impl Batch<'_> {
         }
     }
 
-    /// Columns of the target's place and frame: theory.md §5 (23) and (24).
+    /// Columns of the target's position and frame: theory.md §5 (23) and (24).
     #[inline(always)]
     pub(crate) fn add_place<S: Simd, const FULL: bool>(&mut self, target: &Frame<S>, wrench: &RowWrench<S>) {
         let Some(place) = self.plan.place else { return };

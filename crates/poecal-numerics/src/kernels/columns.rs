@@ -8,9 +8,9 @@ use super::plan::Arm;
 use super::vector::{Wide, parts};
 use super::work::WORK;
 
-/// Adds the whitened columns of the rows of one block at their places in `jacobian` (translation columns, then rotation columns), each with
-/// its sign, and writes their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
-/// The block's first row has a place among all. The plan must have no common ratio, so that the rotation rows exist.
+/// Adds the whitened columns of the rows of one block at their places in `jacobian` (translation columns, then rotation columns), each with its sign.
+/// It also writes their whitened residuals: three numbers of the position, three of the rotation. Numbers that a column does not have stay unchanged.
+/// The block's first row has the index `first` among all. The plan must have no common ratio, so that the rotation rows exist.
 #[inline(always)]
 pub(crate) fn whitened_columns<S: Simd>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Corners of one picture side by side: where they are seen, how that changes, and the products of these changes (theory.md §4, *Pictures*).
+//! Corners of one picture side by side: their predicted pixels, the derivatives, and the products of these (theory.md §4, *Pictures*).
 
 use pulp::Simd;
 
@@ -10,7 +10,7 @@ use super::vector::{Lanes, Vectors, WIDTH, Wide, parts};
 pub const MOTIONS: usize = 6;
 /// Components of a point.
 const POINT: usize = 3;
-/// Least part of a point's distance by which it is before the camera.
+/// Least share of a point's distance by which it is in front of the camera.
 const BEFORE: f64 = 1e-2;
 
 /// [`WIDTH`] corners; those of no weight are padding.
@@ -18,9 +18,9 @@ const BEFORE: f64 = 1e-2;
 pub struct Corners {
     /// Points of the board, m.
     pub point: [Wide; POINT],
-    /// Where they were seen, px.
+    /// Measured pixels, px.
     pub pixel: [Wide; 2],
-    /// Root of the weight by the standard deviation, 1/px.
+    /// Root of the weight, over the standard deviation, 1/px.
     pub root: Wide,
 }
 
@@ -33,15 +33,15 @@ impl Corners {
 /// A lens of Brown and Conrady, in the order of `LENS_NAMES` of cameras.
 #[derive(Clone, Copy, Debug)]
 pub struct Brown {
-    /// Its numbers.
+    /// Numbers.
     pub numbers: [f64; 12],
-    /// How many of them are unknown, the first ones.
+    /// Number of unknown ones, which are the first.
     pub unknown: usize,
-    /// Square of the slope from which on larger slopes have smaller places.
+    /// Square of the slope from which on larger slopes have smaller images.
     pub turn: f64,
 }
 
-/// Products of the changes of one picture's corners.
+/// Products of the derivatives of one picture's corners.
 #[derive(Clone, Debug, Default)]
 pub struct CornerProducts {
     columns: Vec<Wide>,
@@ -50,7 +50,8 @@ pub struct CornerProducts {
     used: usize,
     /// Upper triangle of their products, row-major.
     pub(crate) all: Vec<f64>,
-    /// Of each block the products of its corners: all of those with each of the three components of the point, and of these with one another.
+    /// For each block the products of its corners: of all columns with each of the three components of the point, and of these with one
+    /// another.
     pub by_point: Vec<Wide>,
     /// Weight of corners that are not seen.
     pub unseen: f64,
@@ -73,7 +74,7 @@ impl CornerProducts {
     }
 }
 
-/// Makes the products of a picture at a pose; with those of each corner's point if it is unknown.
+/// Computes the products of a picture at a pose; with those of each corner's point if it is unknown.
 #[inline(always)]
 pub(crate) fn corner_products<S: Simd>(
     simd: S,
@@ -207,7 +208,7 @@ fn write<S: Simd>(
     let arm = Vectors([turn[0].dot(point), turn[1].dot(point), turn[2].dot(point)]);
     let [x, y, z] = arm.0;
     let (x, y, z) = (x + Lanes::splat(simd, p), y + Lanes::splat(simd, q), z + Lanes::splat(simd, r));
-    // 1 where it is seen, else 0.
+    // The factor is 1 for a visible corner, else 0.
     let norm = x.times_plus(x, y.times_plus(y, z * z)).sqrt();
     let ahead = z - norm * Lanes::splat(simd, BEFORE);
     let before = ahead.over(ahead, 0.0);
@@ -235,7 +236,7 @@ fn write<S: Simd>(
     let (u, v) = (fx * w * scale, fy * w * scale);
     let by_u = Vectors([u * j00, u * j01, -(u * (j00 * a + j01 * b))]);
     let by_v = Vectors([v * j01, v * j11, -(v * (j01 * a + j11 * b))]);
-    // `δ + ω × R P`: by a turn `R P × ∂`.
+    // `δ + ω × R P`: the derivative by a rotation is `R P × ∂`.
     let (turn_u, turn_v) = (arm.cross(by_u), arm.cross(by_v));
     for k in 0..POINT {
         put(out, k * stride, [by_u.0[k], by_v.0[k]], part);

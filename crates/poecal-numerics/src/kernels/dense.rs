@@ -14,7 +14,7 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// The elements of a column from the top, of which those above the diagonal are valid.
+    /// Elements of a column from the top, of which those above the diagonal are valid.
     #[inline(always)]
     pub(crate) fn column(&self, column: usize) -> impl Iterator<Item = f64> {
         let (block, lane) = (column / WIDTH, column % WIDTH);
@@ -28,10 +28,10 @@ impl Factor {
     }
 }
 
-/// Rows that are eliminated together.
+/// Number of rows that are eliminated together.
 const PANEL: usize = 4;
 
-/// Factor of the matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that is not positive
+/// Factor of the matrix with this upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that is not positive
 /// definite.
 #[inline(always)]
 pub(crate) fn cholesky<S: Simd>(simd: S, upper: &[f64], n: usize, damping: f64) -> Option<Factor> {

@@ -64,7 +64,7 @@ pub(crate) fn turned<S: Simd>(
     [along(a), along(b), along(c), origin]
 }
 
-/// A row of a frame after a joint's own motion, a turn about z by `(cos θ, sin θ)` or a slide along it by `(θ, 0)`.
+/// A row of a frame after a joint's own motion: a rotation about z by `(cos θ, sin θ)` or a translation along it by `(θ, 0)`.
 #[inline(always)]
 pub(crate) fn moved<S: Simd>(
     [x, y, z, origin]: [Lanes<S>; 4],

@@ -7,14 +7,14 @@ use super::vector::{Lanes, WIDTH, Wide, parts};
 /// Columns of one side of a tile: nine sums in registers hide the latency of their additions, and six loads feed nine products.
 pub const TILE: usize = 3;
 
-/// Length, in `Wide`s, of the accumulators of all tiles of so many columns, for vectors of so many lanes.
+/// Length, in `Wide`s, of the accumulators of all tiles of this number of columns, for vectors of `lanes` lanes.
 pub(crate) fn sums_len(columns: usize, lanes: usize) -> usize {
     let tiles = columns / TILE;
     (tiles * (tiles + 1) / 2 * TILE * TILE * lanes).div_ceil(WIDTH)
 }
 
 /// Adds the products of each pair of columns, summed over rows but not over lanes. A column is `stride` wide numbers long, of which
-/// the first `used` count; `columns` is a multiple of [`TILE`]. Tiles at pairs of columns that are not `needed` stay as they are.
+/// the first `used` count; `columns` is a multiple of [`TILE`]. Tiles at pairs of columns that are not `needed` stay unchanged.
 #[inline(always)]
 pub(crate) fn add_products<S: Simd>(
     simd: S,

@@ -104,7 +104,7 @@ fn solved<S: Simd>(
     diagonal: Lanes<S>,
     mut x: [Lanes<S>; NUMBERS],
 ) -> [Lanes<S>; NUMBERS] {
-    // No `map` of arrays: its closure would not be compiled for the vector instructions.
+    // Arrays are not mapped by `map`: its closure would not be compiled for the vector instructions.
     let mut rows = *hat;
     for (k, row) in rows.iter_mut().enumerate() {
         for value in row.iter_mut() {

@@ -1,6 +1,6 @@
 //! One pass over rows: the chain, its columns in local axis frames, residuals, and their products (theory.md §5, §6 (28)).
 //!
-//! One source for every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
+//! One source serves every width of vector: as many rows as a vector has lanes are computed at a time, in blocks of [`WIDTH`].
 
 use pulp::Simd;
 
@@ -20,7 +20,7 @@ pub(crate) fn sum_products<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> 
     sum::<S, true, false>(simd, arm, blocks)
 }
 
-/// The same without products of columns.
+/// The same sums without products of columns.
 #[inline(always)]
 pub(crate) fn sum_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     sum::<S, false, false>(simd, arm, blocks)
@@ -43,7 +43,7 @@ pub(crate) fn sum_plain_gradient<S: Simd>(simd: S, arm: &Arm<'_>, blocks: &[Wide
 #[inline(always)]
 fn sum<S: Simd, const FULL: bool, const PLAIN: bool>(simd: S, arm: &Arm<'_>, blocks: &[Wide]) -> Totals {
     let plan = arm.plan;
-    // A pass does not call another, so the room is free; if it were not, there would be another.
+    // A pass does not call another, so the buffer is free; if it were not, there would be another.
     let mut own = WORK.take();
     let work = &mut own;
     work.begin(arm, FULL);
@@ -122,8 +122,8 @@ fn total(sum: &Wide) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// Columns and gradient of part `part` of a block, whose first row has a place among all; gives the whitened residuals: of position and
-/// rotation, or the numbers of shaped rows.
+/// Columns and gradient of part `part` of a block, whose first row has the index `first` among all. Returns the whitened residuals: of
+/// position and rotation, or the numbers of shaped rows.
 #[inline(always)]
 pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     simd: S,
@@ -154,10 +154,10 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     let (weight, per_length) = (Lanes::load(simd, &noise[0], part), Lanes::splat(simd, 1.0 / plan.length_m));
     let weights = &noise[0].0[part * S::F64_LANES..(part + 1) * S::F64_LANES];
     if !FULL && weights.iter().all(|weight| *weight < f64::MIN_POSITIVE) {
-        // All rows are padding of the block. Asked one by one, the first row says no.
+        // All rows are padding of the block. The test is row by row, so that the first row of weight above zero ends it.
         return none;
     }
-    // Empty without unknowns.
+    // The slice is empty without unknowns.
     let columns = jacobian.get_mut(filled..).unwrap_or_default();
     let stride = *waiting;
     let (joints, factors) = joints.split_at(2 * plan.joints.len());
@@ -225,7 +225,7 @@ pub(crate) fn add_rows<S: Simd, const FULL: bool, const PLAIN: bool>(
     residuals
 }
 
-/// The direction along which one number was measured, and the number less the predicted one.
+/// Direction along which one number was measured, and the number less the predicted one.
 #[inline(always)]
 fn one_number<S: Simd>(
     simd: S,
@@ -240,15 +240,15 @@ fn one_number<S: Simd>(
         }
         Along::Distance => {
             let distance = predicted.dot(predicted).sqrt();
-            // One division: it takes as long as a dozen products.
+            // There is one division: it takes as long as a dozen products.
             let inverse = Lanes::splat(simd, 1.0).over(distance, 0.0);
             (predicted.scale(inverse), measured.0[0] - distance)
         }
     }
 }
 
-/// Replaces the columns of a block by their parts along a direction, block after block in the order of memory: those of three blocks take
-/// the place of one block of positions.
+/// Replaces the columns of a block by their components along a direction, block after block in the order of memory: those of three blocks
+/// fill one block of positions.
 #[inline(always)]
 fn project<S: Simd>(
     simd: S,

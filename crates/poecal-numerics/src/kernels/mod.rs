@@ -7,14 +7,16 @@
 //! then costs a call.
 //!
 //! A kernel has no measurements and no parameters: `poecal-fit`'s `problem/fast.rs` translates a problem into a [`Plan`] (its columns) and
-//! [`PackedRows`] (numbers side by side), and puts the sums in their places. The kernels serve every problem:
+//! [`PackedRows`] (numbers side by side), and stores the sums in their places. The kernels serve every problem:
 //!
-//! - points and poses: the scalar weight of a row stays a scalar, and rotation products follow from those of translation columns (theory.md §6 (28a));
-//! - any other function of a target's pose: the kernel asks for residual and sensitivity of each row (`shape.rs`) and multiplies all columns by these;
-//! - instruments and targets on any body, rows of two configurations: the joints on the way, where those passed backward have minus their value; an
-//!   unknown that moves a target twice, or the other way, has two columns with one place, or a sign;
+//! - points and poses: the scalar weight of a row stays a scalar, and rotation products follow from those of translation columns (theory.md
+//!   §6 (28a));
+//! - any other function of a target's pose: the kernel requests residual and sensitivity of each row (`shape.rs`) and multiplies all
+//!   columns by these;
+//! - instruments and targets on any body, rows of two configurations: the joints on the kinematic chain, where those passed backward have minus
+//!   their value; an unknown that moves a target twice, or in the opposite direction, has two columns with one place, or a sign;
 //! - terms of joint values: a factor of each row times the column of the value, packed again in each pass, since values depend on the state;
-//! - screws in another parameterisation: columns that the rows bring, by the formulas of the caller.
+//! - screws in another parameterisation: columns that the rows supply, by the formulas of the caller.
 //!
 //! Rows are summed in fixed chunks, so that results do not depend on the number of threads; their last digits depend on the level. Two passes need no
 //! `JᵀJ`: errors and residuals (`tip.rs`, `errors.rs`), and the influence of each row (`columns.rs`, `influence.rs`).

@@ -18,42 +18,42 @@ impl From<&Pose> for FixedMotion {
     }
 }
 
-/// A joint on the way to the target.
+/// A joint on the kinematic chain to the target.
 #[derive(Clone, Copy, Debug)]
 pub struct JointPlan {
-    /// Whether it is revolute.
+    /// True if it is revolute.
     pub turns: bool,
-    /// Its first translation and rotation column, if its axis is unknown.
+    /// First translation and rotation column, if its axis is unknown.
     pub columns: Option<(usize, usize)>,
-    /// Its first unknown term among all, and how many it has.
+    /// First unknown term among all, and their number.
     pub terms: (usize, usize),
 }
 
-/// An unknown term of a joint's value: its translation column and, of a revolute joint, its rotation column. The translation column of a
-/// revolute joint is the direction of that rotation only, and no unknown.
+/// An unknown term of a joint's value: its translation column and, for a revolute joint, its rotation column. The translation column of
+/// a revolute joint is only the direction of that rotation, and no unknown.
 #[derive(Clone, Copy, Debug)]
 pub struct TermPlan {
-    /// Its translation column.
+    /// Translation column.
     pub shift: usize,
-    /// Its rotation column.
+    /// Rotation column.
     pub turn: Option<usize>,
 }
 
 /// An unknown device frame: the first three translation columns, and the first three rotation columns if it `turns`.
 #[derive(Clone, Copy, Debug)]
 pub struct DevicePlan {
-    /// The point about which it rotates.
+    /// Point about which it rotates.
     pub about: [f64; 3],
-    /// Whether it rotates.
+    /// True if it rotates.
     pub turns: bool,
 }
 
-/// One number of a target's place.
+/// One number of a target's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// Its height, along the device's z.
+    /// Height, along the device's z.
     Height,
-    /// Its distance from the device's origin.
+    /// Distance from the device's origin.
     Distance,
 }
 
@@ -61,15 +61,15 @@ pub enum Along {
 /// about the direction of one of the shifts, `w = v / L`, of which the first `tilts` also translate.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The joints' columns.
+    /// Columns of the joints.
     pub joints: Vec<JointPlan>,
-    /// Whether these are all joints of a row in their order, none backward, and their values do not depend on the estimate.
+    /// True if these are all joints of a row in their order, none backward, and their values do not depend on the estimate.
     pub in_order: bool,
     /// Unknown terms, joint after joint.
     pub terms: Vec<TermPlan>,
     /// The device frame, if it is unknown.
     pub device: Option<DevicePlan>,
-    /// First translation column of the target's place, if that is unknown.
+    /// First translation column of the target's position, if that is unknown.
     pub place: Option<usize>,
     /// First rotation column of the target's frame, if that is unknown.
     pub frame: Option<usize>,
@@ -79,13 +79,13 @@ pub struct Plan {
     pub tilts: usize,
     /// The translation column of each rotation column.
     pub turns: Vec<usize>,
-    /// Of each tile of columns, whether they are all directions of rotation columns and no unknowns; empty if none is.
+    /// For each tile of columns, true if they are all directions of rotation columns and no unknowns; empty if none is.
     pub idle: Vec<bool>,
     /// Metres that a radian counts.
     pub length_m: f64,
-    /// Whether the rows depend on the target's orientation.
+    /// True if the rows depend on the target's orientation.
     pub framed: bool,
-    /// Columns that the rows themselves give, after all others.
+    /// Number of columns that the rows themselves supply, after all others.
     pub given: usize,
     /// Numbers of each row, if they are another function of the target's pose than its position and orientation ([`Arm::shape`]); else 0.
     pub shaped: usize,
@@ -107,8 +107,8 @@ impl Plan {
         self.shaped.div_ceil(3).max(1)
     }
 
-    /// Whether the products of the tile at these two columns are wanted: those of directions only with each other's translation columns, from
-    /// which the products of rotations follow (theory.md §6 (28a)), and only where an orientation was measured.
+    /// True if the products of the tile at these two columns are needed. Those of directions are needed only with each other's translation
+    /// columns, from which the products of rotations follow (theory.md §6 (28a)), and only if an orientation was measured.
     #[inline(always)]
     pub(crate) fn needs(&self, column: usize, other: usize) -> bool {
         let is_idle = |column: usize| self.idle.get(column / TILE).copied().unwrap_or(false);
@@ -116,18 +116,19 @@ impl Plan {
         !is_idle(column) && !is_idle(other) || self.is_pose() && both_shift
     }
 
-    /// Whether the rows are positions and poses of an arm whose joints have no unknown terms: kernels of their own, without all else.
+    /// True if the rows are positions and poses of an arm whose joints have no unknown terms: these have kernels of their own, without all
+    /// else.
     pub fn is_plain(&self) -> bool {
         self.shaped == 0 && self.along.is_none() && self.terms.is_empty()
     }
 
-    /// Whether a row has a measured orientation beside its position.
+    /// True if a row has a measured orientation beside its position.
     pub fn is_pose(&self) -> bool {
         self.framed && self.shaped == 0
     }
 
-    /// Rows that rotation adds to the products of rotation columns: two of the curvature of the logarithm, which may be left out, or all
-    /// three where the ratio of noises differs between rows (theory.md §6 (28a)).
+    /// Number of rows that rotation adds to the products of rotation columns. Two are of the curvature of the logarithm, which may be
+    /// left out. All three are added if the ratio of noises differs between rows (theory.md §6 (28a)).
     pub(crate) fn turned_rows(&self, nearly: bool) -> usize {
         match (self.is_pose(), self.ratio) {
             (false, _) => 0,
@@ -173,8 +174,8 @@ impl PackedRows {
     /// No rows.
     pub const EMPTY: PackedRows = PackedRows { blocks: Vec::new() };
 
-    /// Packs rows in place of those packed before. Where joints do not lie in order, `joint` gives the values of each on the way, by minus
-    /// the value where it is passed backward; `term` gives the factor of each unknown term.
+    /// Packs rows in place of those packed before. If joints are not in order, `joint` writes the values of each on the chain, with minus
+    /// the value of one passed backward; `term` returns the factor of each unknown term.
     #[inline(always)]
     pub fn pack<'a>(
         &mut self,
@@ -191,7 +192,7 @@ impl PackedRows {
             let first = index * WIDTH;
             // The last block is padded with its last row, at weight zero.
             let at = |lane: usize| (first + lane).min(count - 1);
-            // One by one: what builds arrays may not be inlined, and each row then costs calls.
+            // Rows are made one by one: functions that build arrays may not be inlined, and each row then costs calls.
             let [a, b, c, d, e, f, g, h] = [0, 1, 2, 3, 4, 5, 6, 7].map(at);
             let rows: [RowData<'a>; WIDTH] = [row(a), row(b), row(c), row(d), row(e), row(f), row(g), row(h)];
             put(plan, block, &rows);
@@ -249,7 +250,7 @@ fn put(plan: &Plan, block: &mut [Wide], rows: &[RowData<'_>; WIDTH]) {
 /// An arm at an estimate: its columns, its relative frames at zero joint values, and the target in the last one.
 #[derive(Clone, Copy)]
 pub struct Arm<'a> {
-    /// Its columns.
+    /// Columns.
     pub plan: &'a Plan,
     /// Frame of each joint in the one before, at zero joint values.
     pub steps: &'a [FixedMotion],
@@ -257,6 +258,6 @@ pub struct Arm<'a> {
     pub end: &'a FixedMotion,
     /// The rows' own functions, if they have them ([`Plan::shaped`]).
     pub shape: Option<&'a dyn Shape>,
-    /// Whether the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
+    /// True if the products may omit the curvature of the logarithm, to save time (theory.md §6 (28a)).
     pub nearly: bool,
 }

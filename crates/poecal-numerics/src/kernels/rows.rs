@@ -1,4 +1,4 @@
-//! What a pass asks of rows that measured another function of a target's pose than its position and orientation.
+//! Input of a pass from rows that measured another function of a target's pose than its position and orientation.
 
 use super::influence::NUMBERS;
 use poecal_arm::lie::Pose;
@@ -21,8 +21,9 @@ impl ShapedRow {
         ShapedRow { residual: [0.0; NUMBERS], sensitivity: [[0.0; 2 * HALF]; NUMBERS] };
 }
 
-/// The functions of the rows of a pass.
+/// Functions of the rows of a pass.
 pub trait Shape: Sync {
-    /// Of the row at this place among the packed ones, for its predicted target. Writes the columns of unknowns that the kernels do not have.
+    /// Function of the row with this index among the packed ones, for its predicted target. Writes the columns of unknowns that the kernels
+    /// do not have.
     fn row(&self, place: usize, predicted: &Pose, given: &mut [[f64; NUMBERS]]) -> ShapedRow;
 }

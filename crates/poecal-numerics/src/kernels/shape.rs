@@ -19,7 +19,7 @@ pub(crate) struct ShapedRows {
 }
 
 impl ShapedRows {
-    /// Of the rows of one vector, the first of them at `first`; rows of weight zero are padding.
+    /// Shaped rows of one vector, the first of them at `first`; rows of weight zero are padding.
     #[inline(never)]
     pub(crate) fn new<S: Simd>(
         (shape, given): (&dyn Shape, usize),
@@ -78,7 +78,7 @@ impl ShapedRows {
         [Vectors(shift), Vectors(turn)]
     }
 
-    /// Adds the gradient of the given columns, and writes them after the others where columns are wanted.
+    /// Adds the gradient of the supplied columns, and writes them after the others if columns are needed.
     #[inline(always)]
     pub(crate) fn add_given<S: Simd, const FULL: bool>(
         &self,
@@ -102,8 +102,8 @@ impl ShapedRows {
         }
     }
 
-    /// Replaces the columns of one vector of rows, motions of the target, by the changes of their numbers: of `slots` groups of three
-    /// numbers, each [`Wide`] triple after the one before.
+    /// Replaces the columns of one vector of rows, motions of the target, by the changes of their numbers. These are in `slots`
+    /// groups of three numbers, each [`Wide`] triple after the one before.
     #[inline(always)]
     pub(crate) fn project<S: Simd>(
         &self,
@@ -114,7 +114,7 @@ impl ShapedRows {
         part: usize,
     ) {
         let per_length = Lanes::splat(simd, 1.0 / plan.length_m);
-        // Rotation columns first: they need the translation columns as they are.
+        // Rotation columns come first: they need the unchanged translation columns.
         for (turn, &shift) in plan.turns.iter().enumerate() {
             let turned = Vectors::load(simd, &columns[shift * stride], part).scale(per_length);
             let at = (plan.shifts + turn) * stride;

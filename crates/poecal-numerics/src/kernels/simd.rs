@@ -19,7 +19,7 @@ use super::totals::Totals;
 use super::vector::Wide;
 use super::{columns, kernel, sincos, tip};
 
-/// Instruction set of the kernels. Who has one has found it on this machine.
+/// Instruction set of the kernels. A value of this type proves that this machine has it.
 #[derive(Clone, Copy, Debug)]
 pub enum SimdLevel {
     /// AVX-512: eight numbers at a time.
@@ -45,7 +45,7 @@ pub enum SimdLevel {
 /// Products of large matrices (matrixmultiply, by nalgebra) and functions of the C library choose for themselves.
 const VARIABLE: &str = "POECAL_SIMD";
 
-/// The level of this process; the error is the first use's, and the same ever after.
+/// Level of this process; the error is that of the first use, and stays.
 static LEVEL: LazyLock<Result<SimdLevel, String>> =
     LazyLock::new(|| match std::env::var_os(VARIABLE).filter(|word| !word.is_empty()) {
         None => Ok(best_detected()),
@@ -56,14 +56,14 @@ impl SimdLevel {
     /// Instructions of every machine of the target.
     pub const BASELINE: SimdLevel = SimdLevel::Baseline(Scalar128b);
 
-    /// The level of this process: the best of this machine, or the one that the variable `POECAL_SIMD` names (`plain`, `avx2`, `avx512`).
-    /// A name that is none, or of a level that is not here, has no effect; [`stated_level`] refuses it.
+    /// Level of this process: the best of this machine, or the one that the variable `POECAL_SIMD` names (`plain`, `avx2`, `avx512`). An
+    /// unknown name, or the name of an absent level, has no effect; [`stated_level`] refuses it.
     #[must_use]
     pub fn best() -> Self {
         LEVEL.as_ref().copied().unwrap_or_else(|_| best_detected())
     }
 
-    /// Its name in `POECAL_SIMD`; `None` for a level that no machine is limited to.
+    /// Name in `POECAL_SIMD`; `None` for a level that no machine is limited to.
     #[must_use]
     pub fn name(self) -> Option<&'static str> {
         match self {
@@ -82,7 +82,7 @@ impl SimdLevel {
     }
 }
 
-/// The level of this process, [`SimdLevel::best`], which whatever starts a process asks for before it computes.
+/// Level of this process, [`SimdLevel::best`]; the start of a process requests it before any computation.
 ///
 /// # Errors
 ///
@@ -91,7 +91,7 @@ pub fn stated_level() -> Result<SimdLevel, &'static str> {
     LEVEL.as_ref().copied().map_err(String::as_str)
 }
 
-/// The level of this name.
+/// Level of this name.
 fn limited_to(word: &str) -> Result<SimdLevel, String> {
     let levels = simd_levels();
     let named = levels.iter().copied().find(|level| level.name() == Some(word));
@@ -101,7 +101,7 @@ fn limited_to(word: &str) -> Result<SimdLevel, String> {
     })
 }
 
-/// The best level of this machine.
+/// Best level of this machine.
 fn best_detected() -> SimdLevel {
     detected().unwrap_or(SimdLevel::BASELINE)
 }
@@ -118,13 +118,13 @@ fn detected() -> Option<SimdLevel> {
     Neon::try_new().map(SimdLevel::Neon)
 }
 
-/// WebAssembly's vectors, if the module was compiled for them: a module cannot ask, and one with others is refused as a whole.
+/// WebAssembly's vectors, if the module was compiled for them: a module cannot query them, and one with others is refused as a whole.
 #[cfg(target_arch = "wasm32")]
 fn detected() -> Option<SimdLevel> {
     Simd128::try_new().map(SimdLevel::Simd128)
 }
 
-/// There are none that the kernels are compiled for.
+/// No vector instructions: the kernels are compiled for none here.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
 fn detected() -> Option<SimdLevel> {
     None
@@ -147,8 +147,8 @@ pub fn simd_levels() -> Vec<SimdLevel> {
     levels
 }
 
-/// Does work in a function that is compiled for the best instructions of this machine, with what is inlined into `work`, which must itself
-/// be marked `#[inline(always)]`. Without fused products, which the compiler never makes by itself, the bits are the same by all.
+/// Runs `work` in a function that is compiled for the best instructions of this machine, with all code inlined into it; `work` must itself
+/// be marked `#[inline(always)]`. Without fused products, which the compiler never makes by itself, the bits are the same at all levels.
 pub fn by_best<T>(work: impl FnOnce() -> T) -> T {
     match SimdLevel::best() {
         #[cfg(target_arch = "x86_64")]
@@ -165,12 +165,12 @@ pub fn by_best<T>(work: impl FnOnce() -> T) -> T {
     }
 }
 
-/// Something that can be used once.
+/// A value that can be used once.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 struct Once;
 
-/// Calls a kernel in a function that is compiled for the instructions of a level. Only a closure that can be called but once is inlined
-/// there; another would be compiled without these instructions.
+/// Calls a kernel in a function that is compiled for the instructions of a level. Only a closure that can be called only once is
+/// inlined there; another would be compiled without these instructions.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))]
 macro_rules! vectorize {
     ($level:expr, $simd:expr, $module:ident :: $name:ident ($($argument:ident),*)) => {{
@@ -235,7 +235,7 @@ dispatch!(
     )
 );
 dispatch!(
-    /// Products of the changes of the corners of one picture at a pose; with those of each corner's point if it is unknown.
+    /// Products of the derivatives of the corners of one picture at a pose; with those of each corner's point if it is unknown.
     corners::corner_products(
         lens: &Brown,
         pose: &FixedMotion,
@@ -263,8 +263,8 @@ dispatch!(
     sincos::cosines_and_sines(angles: &[f64], out: &mut [(f64, f64)])
 );
 dispatch!(
-    /// Factor of the symmetric matrix given by its upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that
-    /// is not positive definite.
+    /// Factor of the symmetric matrix with this upper triangle (row-major `n × n`) plus `damping` on the diagonal; `None` if that is
+    /// not positive definite.
     dense::cholesky(upper: &[f64], n: usize, damping: f64) -> Option<Factor>
 );
 dispatch!(

@@ -6,8 +6,8 @@ use super::frame::{Frame, moved, turned};
 use super::plan::FixedMotion;
 use super::vector::{Lanes, Wide, parts};
 
-/// Writes the frame of the last link after all motions, `X T_n` of theory.md §4 (13), as rows of `[x, y, z, origin]`. Of each joint are
-/// given whether it is revolute, its frame in the one before at zero joint values, and `(cos θ, sin θ)` or `(θ, 0)`.
+/// Writes the frame of the last link after all motions, `X T_n` of theory.md §4 (13), as rows of `[x, y, z, origin]`. The input has for
+/// each joint true if it is revolute, its frame in the one before at zero joint values, and `(cos θ, sin θ)` or `(θ, 0)`.
 #[inline(always)]
 pub(crate) fn last_links<S: Simd>(
     simd: S,

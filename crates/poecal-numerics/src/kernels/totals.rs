@@ -6,7 +6,7 @@ use super::gram::TILE;
 pub struct Totals {
     /// Products of position columns, tile after tile: see [`Tiles`].
     pub products: Vec<f64>,
-    /// Sums that rotation rows add to the products of rotation columns, likewise.
+    /// Sums that rotation rows add to the products of rotation columns, in the same order.
     pub turned: Vec<f64>,
     /// `Jᵀe` of translation columns, then of rotation columns.
     pub gradient: Vec<f64>,
@@ -15,7 +15,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Adds those of other rows.
+    /// Adds the sums of other rows.
     pub fn add(&mut self, other: &Totals) {
         let pairs = [
             (&mut self.products, &other.products),
@@ -39,7 +39,7 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// For so many columns.
+    /// Index for this number of columns.
     pub fn new(columns: usize) -> Self {
         let tiles = columns.div_ceil(TILE);
         // The tiles of row `r` follow those of the rows above, each one shorter; the first of its own is on the diagonal.

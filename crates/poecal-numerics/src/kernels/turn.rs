@@ -17,7 +17,7 @@ pub(crate) struct Turn<S: Simd> {
 }
 
 impl<S: Simd> Turn<S> {
-    /// Of measured and predicted rotations, given by columns.
+    /// Logarithm of measured and predicted rotations, by their columns.
     #[inline(always)]
     pub(crate) fn new(simd: S, measured: &[Vectors<S>; 3], predicted: &[Vectors<S>; 3]) -> Self {
         let mut doubled = predicted[0].cross(measured[0]);
@@ -36,7 +36,7 @@ impl<S: Simd> Turn<S> {
         Turn { r, k: r.dot(r).polynomial(series::COTC) }
     }
 
-    /// One row after the other, for rotations of any size.
+    /// The same row by row, for rotations of any size.
     #[cold]
     #[inline(never)]
     fn large(simd: S, measured: &[Vectors<S>; 3], predicted: &[Vectors<S>; 3]) -> Self {

@@ -1,11 +1,11 @@
-//! Numbers of several rows side by side: the vectors of the kernels, whatever the width of the machine's vectors.
+//! Numbers of several rows side by side: the vectors of the kernels, for all widths of the machine's vectors.
 
 use std::any::TypeId;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use pulp::{Scalar128b, Simd};
 
-/// Rows side by side in memory, whatever the width of the instructions.
+/// Number of rows side by side in memory, for all widths of the instructions.
 pub const WIDTH: usize = 8;
 
 /// One number of [`WIDTH`] rows, on a cache line of its own.
@@ -21,7 +21,7 @@ impl Wide {
 /// One number of each of as many rows as a vector of the machine has lanes, a divisor of [`WIDTH`].
 #[derive(Clone, Copy)]
 pub(crate) struct Lanes<S: Simd> {
-    /// The instructions that the machine has.
+    /// Instructions of the machine.
     simd: S,
     numbers: S::f64s,
 }
@@ -32,8 +32,8 @@ pub(crate) fn parts<S: Simd>(_simd: S) -> std::ops::Range<usize> {
     0..WIDTH / S::F64_LANES
 }
 
-/// Numbers by their index. `std::array::from_fn` calls a function that is not compiled for the vector instructions, wherever the optimiser
-/// does not put it in line.
+/// Numbers by their index. `std::array::from_fn` calls a function that is not compiled for the vector instructions, unless the optimiser
+/// inlines it.
 #[inline(always)]
 pub(crate) fn each<S: Simd, const N: usize>(simd: S, make: impl Fn(usize) -> Lanes<S>) -> [Lanes<S>; N] {
     let mut all = [Lanes::splat(simd, 0.0); N];
@@ -94,7 +94,7 @@ impl<S: Simd> Lanes<S> {
         Lanes { numbers: self.simd.sqrt_f64s(self.numbers), ..self }
     }
 
-    /// `self / other`, or `otherwise` where `other` is not positive.
+    /// `self / other`, or `otherwise` if `other` is not positive.
     #[inline(always)]
     pub(crate) fn over(self, other: Self, otherwise: f64) -> Self {
         let positive = self.simd.greater_than_f64s(other.numbers, self.all(0.0).numbers);
@@ -102,13 +102,13 @@ impl<S: Simd> Lanes<S> {
         Lanes { numbers: self.simd.select_f64s(positive, quotient, self.all(otherwise).numbers), ..self }
     }
 
-    /// The sum of all, in a fixed order.
+    /// Sum of all lanes, in a fixed order.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
         self.simd.reduce_sum_f64s(self.numbers)
     }
 
-    /// Whether all are below a bound, and all others below theirs.
+    /// True if all are below a bound, and all others below theirs.
     #[inline(always)]
     pub(crate) fn are_below(self, bound: f64, (other, other_bound): (Self, f64)) -> bool {
         let simd = self.simd;
@@ -135,7 +135,7 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-/// Whether the instructions multiply and add at once; for those of every machine, and for WebAssembly's, a function of software would.
+/// True if the instructions multiply and add at once. For those of every machine, and for WebAssembly's, a software function would.
 #[inline(always)]
 fn is_fused<S: Simd>() -> bool {
     cfg!(not(target_arch = "wasm32")) && TypeId::of::<S>() != TypeId::of::<Scalar128b>()

@@ -40,7 +40,7 @@ impl ValueColumn {
 pub(crate) struct Work {
     /// Position rows of each column, block after block.
     pub(crate) jacobian: Vec<[Wide; 3]>,
-    /// Rows that rotation adds for each rotation column, likewise: two or three for each block.
+    /// Rows that rotation adds for each rotation column, in the same order: two or three for each block.
     pub(crate) turned: Vec<Wide>,
     pub(crate) axes: Vec<Axis>,
     pub(crate) terms: Vec<ValueColumn>,
@@ -78,7 +78,7 @@ impl Work {
         turned_rows: 0,
     };
 
-    /// Prepares the buffers of a plan's gradient, at zero, and of its columns if these are wanted.
+    /// Prepares the buffers of a plan's gradient, at zero, and of its columns if these are needed.
     pub(crate) fn begin(&mut self, arm: &Arm<'_>, with_columns: bool) {
         let plan = arm.plan;
         restart(&mut self.shift_gradient, plan.shifts);

@@ -11,20 +11,20 @@ use crate::linalg::{self, Factor};
 /// Largest ratio of a geodesic correction to the step that it corrects (transtrum2012).
 const LARGEST_ACCELERATION: f64 = 0.75;
 
-/// Share of the cost that rounding makes of it: a smaller reduction does not show.
+/// Share of the cost that is its rounding: a smaller reduction is invisible.
 const COST_ROUNDING: f64 = 1e-15;
 
 /// Smallest gain ratio of an accepted step.
 const ACCEPTED: f64 = 1e-3;
 
-/// Gain ratios of a problem that is as good as quadratic.
+/// Gain ratios of a nearly quadratic problem.
 const STRAIGHT: std::ops::Range<f64> = 0.8..1.25;
 
-/// Minimises from `start`; gives the state reached, its normal information and a summary.
+/// Minimises from `start`; returns the final state, its normal information and a summary.
 ///
-/// Cost and gradient are those of the state reached, or what the quadratic model predicts for a final step too small to be worth
-/// evaluating. `JᵀJ` may be that of an earlier state close by ([`Options::reuse`]), and is [nearly](LeastSquares::nearly_normal) what it
-/// should be: who needs it at the optimum asks for [`LeastSquares::normal`] there (theory.md §6, *Few passes*).
+/// Cost and gradient are those of the final state, or the prediction of the quadratic model for a final step too small to be evaluated.
+/// `JᵀJ` may be that of an earlier state close by ([`Options::reuse`]), and is only [nearly](LeastSquares::nearly_normal) exact. At the
+/// optimum, [`LeastSquares::normal`] computes it exactly (theory.md §6, *Few passes*).
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: P::State,
@@ -41,19 +41,19 @@ struct Search<'a, P: LeastSquares> {
     problem: Scaled<'a, P>,
     options: Options,
     state: P::State,
-    /// Of this state; with the `JᵀJ` of an earlier one while that is frozen.
+    /// Normal information of this state; with the `JᵀJ` of an earlier one while that is frozen.
     normal: Normal,
-    /// Whether `JᵀJ` is frozen, and may be.
+    /// State of the policy that freezes `JᵀJ`.
     reuse: Reuse,
-    /// Upper triangle of the matrix that steps are solved with: `JᵀJ`, or the full Hessian where that is known and convex.
+    /// Upper triangle of the matrix that steps are solved with: `JᵀJ`, or the full Hessian if that is known and convex.
     hessian: Vec<f64>,
-    /// Its factor with the damping it was last factorised with; none where that failed, or since it changed.
+    /// Factor of this matrix with the last damping; `None` if that failed, or since it changed.
     factor: Option<(f64, Factor)>,
     /// Damping as a multiple of the mean squared residual.
     damping: f64,
-    /// Factor of the next increase of the damping (Nielsen): doubles with every rejection in a row.
+    /// Factor of the next increase of the damping (nielsen1999): doubles with every rejection in a row.
     increase: f64,
-    /// Whether a step has shown a poor quadratic model: from then on steps follow curvature, and damping falls with care.
+    /// True if a step has revealed a poor quadratic model: from then on steps follow curvature, and damping falls with care.
     nonlinear: bool,
     iterations: usize,
     trace: Vec<f64>,
@@ -112,15 +112,15 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
-    /// Largest diagonal element of `JᵀJ`: what rounding errors are proportional to.
+    /// Largest diagonal element of `JᵀJ`, to which rounding errors are proportional.
     fn scale(&self) -> f64 {
         let n = self.problem.dim();
         (0..n).map(|i| self.normal.gram[i * n + i]).fold(0.0, f64::max)
     }
 
-    // The matrix of the normal equations.
+    // Matrix of the normal equations.
 
-    /// Takes the full Hessian where it is convex; far from the optimum it seldom is, and `JᵀJ` leads better there.
+    /// Takes the full Hessian if it is convex; far from the optimum it seldom is, and `JᵀJ` leads better there.
     fn rebuild_hessian(&mut self) {
         self.factor = None;
         self.hessian.copy_from_slice(&self.normal.gram);
@@ -143,15 +143,15 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.rebuild_hessian();
     }
 
-    /// Whether no direction is so weak that `JᵀJ` along it would change with a small step.
+    /// True if no direction is so weak that `JᵀJ` along it would change with a small step.
     fn is_well_conditioned(&self) -> bool {
         self.factor.as_ref().is_some_and(|(_, factor)| Reuse::is_well_conditioned(factor, self.scale()))
     }
 
-    // The step.
+    // Step.
 
-    /// The step of the damped normal equations; with a frozen `JᵀJ`, which is close to the optimum, damped by rounding alone. `None`
-    /// where they are not positive definite.
+    /// Step of the damped normal equations; with a frozen `JᵀJ`, which is close to the optimum, damped by rounding alone. `None` if
+    /// they are not positive definite.
     fn damped_step(&mut self) -> Option<Trial> {
         let floor = ROUNDING * self.scale();
         let damping = if self.reuse.is_frozen() {
@@ -176,9 +176,8 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         Some(Trial { step: velocity, predicted, shortened: false, damping, is_cut })
     }
 
-    /// The damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature, with t below one
-    /// where the acceleration `a` would overtake `v`. `None` where less than
-    /// the shortest part is left.
+    /// Damped step `v`, or the point `t v + t² a / 2` of the parabola that follows the residuals' curvature. Here t is below one
+    /// if the acceleration `a` would overtake `v`. `None` if less than the shortest part remains.
     fn geodesic_step(&self, trial: Trial) -> Option<Trial> {
         if !(self.options.acceleration && self.nonlinear) || trial.is_cut {
             return Some(trial);
@@ -197,16 +196,16 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         Some(Trial { step, predicted, shortened: t < 1.0, ..trial })
     }
 
-    /// The part of a step that the retraction keeps, to first order.
+    /// Part of a step that the retraction keeps, to first order.
     fn kept(&self, step: &[f64]) -> Vec<f64> {
         let mut kept = step.to_vec();
         self.problem.project_constraints(&mut kept);
         kept
     }
 
-    // Its judgement.
+    // Judgement of the step.
 
-    /// Tries one step; `false` where steps have become too small to matter without having helped.
+    /// Tries one step; `false` if steps have become too small to matter without success.
     fn try_step(&mut self, trial: Option<Trial>) -> bool {
         self.iterations += 1;
         let Some(trial) = trial else {
@@ -229,7 +228,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         let normal = without_jtj.unwrap_or_else(|| self.problem.nearly_normal(&state));
         let gain = (self.normal.cost - normal.cost) / trial.predicted;
         if normal.cost.is_finite() && gain > ACCEPTED {
-            // With a frozen `JᵀJ` the model is not the problem's own, and its gain ratio says nothing of the problem's curvature.
+            // With a frozen `JᵀJ` the model is not the problem's own, and its gain ratio has no information on the problem's curvature.
             self.nonlinear |= !self.reuse.is_frozen() && !STRAIGHT.contains(&gain);
             self.reuse.accepted(trial.predicted, is_frozen);
             self.accept(state, normal, if trial.shortened { gain.min(0.5) } else { gain });
@@ -252,7 +251,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             && self.damping.is_finite()
     }
 
-    /// Residuals and gradient at the end of a step, for the `JᵀJ` of its start; `None` where the end needs its own.
+    /// Residuals and gradient at the end of a step, for the `JᵀJ` of its start; `None` if the end needs its own.
     fn evaluate_without_jtj(&self, state: &P::State, predicted: f64) -> Option<Normal> {
         let cost = self.normal.cost;
         if self.nonlinear || !self.reuse.may_freeze(predicted, cost, || self.is_well_conditioned()) {
@@ -261,7 +260,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.problem.gradient(state)
     }
 
-    /// Moves on, and lowers the damping the more, the better the model predicted the reduction (Nielsen).
+    /// Accepts the step, and lowers the damping more for a better prediction of the reduction (nielsen1999).
     fn accept(&mut self, state: P::State, mut normal: Normal, gain: f64) {
         self.damping *= if gain <= 0.5 {
             (1.0 - (2.0 * gain - 1.0).powi(3)).min(2.0)
@@ -285,7 +284,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
-    /// Stays, and raises the damping.
+    /// Rejects the step, and raises the damping.
     fn reject(&mut self) {
         self.nonlinear = true;
         self.trace.push(self.normal.mean_square());
@@ -293,9 +292,9 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         self.increase *= 2.0;
     }
 
-    // The end.
+    // End of the search.
 
-    /// Goes on by the gradient where the cost cannot show the reductions that the stopping rule asks for.
+    /// Continues by the gradient if the cost cannot resolve the reductions of the stopping rule.
     fn refine(&mut self) {
         if self.options.decrement * self.normal.mean_square() < COST_ROUNDING * self.normal.cost {
             let most = self.options.iterations.saturating_sub(self.iterations);
@@ -307,7 +306,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         }
     }
 
-    /// Why an undamped step is not worth taking; `None` where it is.
+    /// Reason why an undamped step is not worth taking; `None` if it is.
     fn stopping_rule(&self, step: &[f64], predicted: f64) -> Option<Termination> {
         if norm(step) < self.options.step || self.normal.mean_square() < self.problem.rounding() {
             return Some(Termination::StepVanished);
@@ -315,8 +314,8 @@ impl<'a, P: LeastSquares> Search<'a, P> {
         (predicted < self.options.decrement * self.normal.mean_square()).then_some(Termination::Optimum)
     }
 
-    /// Whether a damped step already shows that the stopping rule does not hold for the undamped one, which is longer and has the
-    /// larger predicted reduction.
+    /// True if a damped step already proves that the stopping rule does not hold for the undamped one. That one is longer and has
+    /// the larger predicted reduction.
     fn rules_out_convergence(&self, trial: &Trial) -> bool {
         !trial.is_cut
             && trial.damping >= ROUNDING * self.scale()
@@ -368,16 +367,16 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 /// A step to try.
 struct Trial {
     step: Vec<f64>,
-    /// Its predicted reduction: the decrease of the cost by the quadratic model.
+    /// Predicted reduction: the decrease of the cost by the quadratic model.
     predicted: f64,
-    /// Whether the step ends before `v + a / 2`.
+    /// True if the step ends before `v + a / 2`.
     shortened: bool,
     damping: f64,
-    /// Whether the retraction drops a part of the step.
+    /// True if the retraction drops a part of the step.
     is_cut: bool,
 }
 
-/// The predicted reduction at t of the parabola: `t gᵀv - t² vᵀHv / 2`, where vᵀHv is gᵀv less the part of the damping.
+/// Predicted reduction at t of the parabola: `t gᵀv - t² vᵀHv / 2`, where vᵀHv is gᵀv less the part of the damping.
 fn predicted_reduction(t: f64, descent: f64, damped: f64) -> f64 {
     t * descent - 0.5 * t * t * (descent - damped)
 }

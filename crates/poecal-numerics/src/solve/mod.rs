@@ -1,8 +1,8 @@
-//! Nonlinear least squares on a manifold. It knows no robots: a problem gives normal information and applies steps.
+//! Nonlinear least squares on a manifold. It knows no robots: a problem supplies normal information and applies steps.
 //!
-//! `levenberg_marquardt.rs` has the iteration: normal information or, while `JᵀJ` is frozen, the gradient alone (`reuse.rs` decides which), a damped
-//! step by `linalg`, its predicted reduction and gain ratio, second derivatives where a step has shown that the problem is curved, and the last digits
-//! by the gradient where an option asks for them (`refine.rs`). `scaling.rs` stands between it and the problem, idle by default. The words robot,
+//! `levenberg_marquardt.rs` has the iteration. Its parts are normal information or, while `JᵀJ` is frozen, the gradient alone (`reuse.rs` decides
+//! which); a damped step by `linalg`, its predicted reduction and gain ratio; second derivatives after a step has revealed curvature; and the last
+//! digits by the gradient if an option requests them (`refine.rs`). `scaling.rs` is between it and the problem, idle by default. The words robot,
 //! pose and millimetre do not occur in the code here.
 
 mod levenberg_marquardt;
@@ -68,31 +68,31 @@ pub trait LeastSquares {
     /// Residuals and their derivatives, as normal information.
     fn normal(&self, state: &Self::State) -> Normal;
 
-    /// The same with a `JᵀJ` that may differ by a share that is quadratic in the residuals, where that spares time: for steps.
+    /// The same information with a `JᵀJ` that may differ by a share that is quadratic in the residuals, if that saves time: for steps.
     fn nearly_normal(&self, state: &Self::State) -> Normal {
         self.normal(state)
     }
 
-    /// The same without `JᵀJ`, which is left empty: for steps with an older one. `None` where that would save nothing.
+    /// The same information without `JᵀJ`, which is left empty: for steps with an older one. `None` if that would save nothing.
     fn gradient(&self, _state: &Self::State) -> Option<Normal> {
         None
     }
 
-    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected (theory.md §6 (31)). Zero where it is not known: steps
-    /// are then straight.
+    /// `Jᵀ e''(δ, δ)`: the residuals' second derivative along a step, projected (theory.md §6 (31)). Zero if it is unknown: steps are
+    /// then straight.
     fn second_order(&self, _state: &Self::State, step: &[f64]) -> Vec<f64> {
         vec![0.0; step.len()]
     }
 
-    /// `-Σ e ∇²f` (upper triangle): the difference of the Hessian and `JᵀJ` (theory.md §6 (31a)); `None` where it is not known.
+    /// `-Σ e ∇²f` (upper triangle): the difference of the Hessian and `JᵀJ` (theory.md §6 (31a)); `None` if it is unknown.
     fn curvature(&self, _state: &Self::State) -> Option<Vec<f64>> {
         None
     }
 
-    /// Sets to zero what the retraction drops of a step, to first order: nothing, unless unknowns are constrained.
+    /// Sets to zero the parts of a step that the retraction drops, to first order: none, unless unknowns are constrained.
     fn project_constraints(&self, _step: &mut [f64]) {}
 
-    /// Mean squared whitened residual that is nothing but rounding: below it there is nothing left to fit.
+    /// Mean squared whitened residual that is only rounding: below it there is nothing to fit.
     fn rounding(&self) -> f64 {
         f64::MIN_POSITIVE
     }
@@ -150,7 +150,7 @@ mod tests {
         ]
     }
 
-    /// The choices that change the way.
+    /// Options that change the path.
     fn all_options() -> impl Iterator<Item = Options> {
         [Scaling::Given, Scaling::Columns { damping: 1e-3 }].into_iter().flat_map(|scaling| {
             [true, false].map(|reuse| Options { scaling, reuse, decrement: 1e-20, ..Options::default() })
@@ -166,7 +166,7 @@ mod tests {
         }
     }
 
-    /// Convergence is linear there: each step halves the way to the minimum, and its square, the residual, is soon rounding.
+    /// Convergence is linear there: each step halves the distance to the minimum, and its square, the residual, is soon rounding.
     #[test]
     fn powells_singular_minimum_is_approached() {
         for options in all_options() {

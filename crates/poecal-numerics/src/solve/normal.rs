@@ -1,8 +1,8 @@
-//! Normal information: what the solver needs of all residuals, in O(n²) memory.
+//! Normal information: the solver's input from all residuals, in O(n²) memory.
 
 use crate::linalg;
 
-/// Share of the largest diagonal element that rounding makes of the normal equations' small eigenvalues.
+/// Rounding of the normal equations' small eigenvalues, as a share of the largest diagonal element.
 pub(crate) const ROUNDING: f64 = 1e-13;
 
 /// `JᵀJ` (upper triangle, row-major), `Jᵀe` and `½ Σ e²` of whitened residuals, with their number: theory.md §6 (27)
@@ -26,7 +26,7 @@ pub struct Normal {
 }
 
 impl Normal {
-    /// No residuals of `n` unknowns.
+    /// Information without residuals on `n` unknowns.
     #[must_use]
     pub fn new(n: usize) -> Self {
         Normal { gram: vec![0.0; n * n], gradient: vec![0.0; n], cost: 0.0, residuals: 0 }
@@ -71,7 +71,7 @@ impl Normal {
         quadratic(&self.gram, &self.gradient, step)
     }
 
-    /// The step of the normal equations, damped by rounding alone; where they are singular, the one of least length, but for rounding.
+    /// Step of the normal equations, damped by rounding alone; if they are singular, the one of least length, except for rounding.
     /// `None` if a number is not finite.
     #[must_use]
     pub fn full_step(&self) -> Option<Vec<f64>> {
@@ -92,7 +92,7 @@ impl Normal {
     }
 }
 
-/// `gᵀδ - ½ δᵀHδ` with H given by its upper triangle.
+/// `gᵀδ - ½ δᵀHδ` with H by its upper triangle.
 pub(crate) fn quadratic(upper: &[f64], gradient: &[f64], step: &[f64]) -> f64 {
     let n = gradient.len();
     let mut sum = 0.0;

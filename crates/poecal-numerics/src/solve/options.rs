@@ -1,8 +1,8 @@
-//! How to minimise, and what a minimisation did.
+//! Options and summary of a minimisation.
 
 use super::Termination;
 
-/// By which units steps are measured, and damped.
+/// Units by which steps are measured, and damped.
 ///
 /// ```
 /// # mod poecal {
@@ -14,10 +14,10 @@ use super::Termination;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Scaling {
-    /// Those that the problem gives its unknowns, which are comparable.
+    /// Units of the problem's unknowns, which are comparable.
     #[default]
     Given,
-    /// The norms of the columns of the Jacobian (after more1978): for unknowns that are not comparable. A column that is zero but for
+    /// Norms of the columns of the Jacobian (after more1978): for unknowns that are not comparable. A column that is zero except for
     /// rounding then counts as much as any other.
     Columns {
         /// First damping, as a share of the columns' squared norms: 1e-3 unless the start is known to be good or bad. It takes the
@@ -26,7 +26,7 @@ pub enum Scaling {
     },
 }
 
-/// How to minimise.
+/// Options of a minimisation.
 ///
 /// ```
 /// let options = poecal_numerics::solve::Options { iterations: 20, ..Default::default() };
@@ -34,27 +34,27 @@ pub enum Scaling {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Most iterations (evaluations of the Jacobian after the first).
+    /// Largest number of iterations (evaluations of the Jacobian after the first).
     pub iterations: usize,
-    /// Ends when the predicted reduction of the undamped step is below this times the mean squared residual.
+    /// Threshold of convergence: it ends when the predicted reduction of the undamped step is below this times the mean squared residual.
     pub decrement: f64,
-    /// Ends when the undamped step is shorter than this (scaled units: metres).
+    /// Shortest undamped step, below which it ends (scaled units: metres).
     pub step: f64,
-    /// Ends when a step shorter than this was rejected (scaled units: metres): it is rounding itself.
+    /// Shortest rejected step, below which it ends (scaled units: metres): such a step is only rounding.
     pub rejected_step: f64,
-    /// Standard deviation of a first, weak belief that the start is right (scaled units: metres): the first damping is
-    /// `mean squared residual / trust²`. It shrinks with the residual, so that convergence stays quadratic.
+    /// Standard deviation of a weak prior at the start (scaled units: metres): the first damping is `mean squared
+    /// residual / trust²`. It shrinks with the residual, so that convergence stays quadratic.
     pub trust: f64,
-    /// By which units steps are measured.
+    /// Units by which steps are measured.
     pub scaling: Scaling,
-    /// Whether to follow curvature: geodesic acceleration and the full Hessian.
+    /// True if steps follow curvature: geodesic acceleration and the full Hessian.
     pub acceleration: bool,
-    /// Smallest part of a step that is tried where the acceleration shortens it; a step that would be shortened more is rejected at once,
+    /// Smallest part of a step that is tried if the acceleration shortens it. A step that would be shortened more is rejected at once,
     /// since a more damped one goes farther. Zero tries all.
     pub shortest: f64,
-    /// Whether close to the optimum steps may go on with the `JᵀJ` of an earlier state, where the problem gives
-    /// [residuals and gradient](super::LeastSquares::gradient) apart from it. Without, each iteration builds `JᵀJ` anew: slower, with the
-    /// same optimum.
+    /// True if steps close to the optimum may continue with the `JᵀJ` of an earlier state. The problem must supply [residuals and
+    /// gradient](super::LeastSquares::gradient) apart from it. Otherwise each iteration builds a new `JᵀJ`: slower, with the same
+    /// optimum.
     pub reuse: bool,
 }
 
@@ -74,7 +74,7 @@ impl Default for Options {
     }
 }
 
-/// What a minimisation did.
+/// Summary of a minimisation.
 ///
 /// ```
 /// # use poecal_numerics::solve::{Summary, Termination};
@@ -85,7 +85,7 @@ impl Default for Options {
 pub struct Summary {
     /// Iterations: accepted and rejected steps.
     pub iterations: usize,
-    /// Why it ended.
+    /// Reason of the end.
     pub termination: Termination,
     /// Mean squared whitened residual at the start and after each iteration.
     pub trace: Vec<f64>,

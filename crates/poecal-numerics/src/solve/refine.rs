@@ -10,7 +10,7 @@ const SAME_COST: f64 = 1e-9;
 /// Largest ratio of a step's predicted reduction to that of the step before: larger ones are rounding of the gradient.
 const LARGEST_RATIO: f64 = 0.7;
 
-/// Takes undamped steps from the optimum that the cost shows, as long as their predicted reductions fall; gives their number. They are
+/// Takes undamped steps from the optimum by the cost, as long as their predicted reductions fall; returns their number. They are
 /// solved with `hessian` (upper triangle) plus `floor` on its diagonal.
 pub(crate) fn refine<P: LeastSquares>(
     problem: &P,

@@ -1,46 +1,46 @@
-//! When an iteration may go on with the `JᵀJ` of an earlier state (theory.md §6, *Few passes*).
+//! Policy for iterations with the `JᵀJ` of an earlier state (theory.md §6, *Few passes*).
 //!
 //! Building `JᵀJ` is most of the work of an evaluation, and close to the optimum it hardly changes. `JᵀJ` is *frozen* while the search
-//! moves on with residuals and gradients of new states alone. The gradient is exact, so that a frozen `JᵀJ` changes how fast the
-//! search converges, but not where to. Steps with a frozen `JᵀJ` are undamped.
+//! continues with residuals and gradients of new states alone. The gradient is exact, so that a frozen `JᵀJ` changes the rate of
+//! convergence, but not the limit. Steps with a frozen `JᵀJ` are undamped.
 
 use crate::linalg::Factor;
 
-/// Largest share of the cost that a step may be predicted to take off for its end to lie close to the optimum: so short a step hardly
+/// Largest predicted reduction of a step, as a share of the cost, for its end to lie close to the optimum: so short a step hardly
 /// changes `JᵀJ`.
 const CLOSE: f64 = 5e-2;
 
-/// Largest ratio of a step's predicted reduction to that of the step before where the search converges fast.
+/// Largest ratio of a step's predicted reduction to that of the step before for fast convergence.
 const FAST: f64 = 1e-2;
 
 /// Smallest pivot of a well-conditioned `JᵀJ`, as a share of its largest diagonal element. Unknowns with a thousand times the standard
-/// deviation of others depend on how `JᵀJ` changes with small steps, as a tool does that lies on the last axis.
+/// deviation of others depend on changes of `JᵀJ` with small steps. An example is a tool on the last axis.
 const WELL_CONDITIONED: f64 = 1e-6;
 
 /// Share of the stopping threshold that the predicted reduction of the step after a final one stays below.
 const FINAL: f64 = 1e-2;
 
-/// Whether a step's predicted reduction is so much smaller than that of the step before that a frozen `JᵀJ` will do.
+/// True if a step's predicted reduction is so much smaller than that of the step before that a frozen `JᵀJ` suffices.
 pub(crate) fn converges_fast(predicted: f64, before: f64) -> bool {
     predicted < FAST * before
 }
 
-/// Whether no step will be needed after this one. Where the search converges fast, reductions fall by about the same ratio again; if
-/// the next one is far below the `threshold` that ends the search, this step is the final one, and its cost need not be evaluated.
+/// True if no step will be needed after this one. With fast convergence, reductions fall by about the same ratio again. If the next
+/// one is far below the `threshold` that ends the search, this step is the final one, and its cost need not be evaluated.
 pub(crate) fn is_final_step(predicted: f64, before: f64, threshold: f64) -> bool {
     let ratio = predicted / before;
     before.is_finite() && ratio < FAST && ratio * predicted < FINAL * threshold
 }
 
-/// The state of the reuse policy during one search.
+/// State of the reuse policy during one search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reuse {
     is_enabled: bool,
-    /// Whether the search has the `JᵀJ` of an earlier state.
+    /// True if the search has the `JᵀJ` of an earlier state.
     is_frozen: bool,
     /// Predicted reduction of the last accepted step; infinite before the first one.
     last_reduction: f64,
-    /// Whether the search seems to end at residuals that the model does not explain. Without noise there are none: the cost falls towards
+    /// True if the search seems to end at residuals that the model does not explain. Without noise there are none: the cost falls towards
     /// zero, and each step goes as far as its `JᵀJ` is right.
     has_noise: bool,
 }
@@ -51,18 +51,18 @@ impl Reuse {
         Reuse { is_enabled, is_frozen: false, last_reduction: f64::INFINITY, has_noise: true }
     }
 
-    /// Whether no direction is so weak that `JᵀJ` along it would change with a small step; `scale` is its largest diagonal element.
+    /// True if no direction is so weak that `JᵀJ` along it would change with a small step; `scale` is its largest diagonal element.
     pub(crate) fn is_well_conditioned(factor: &Factor, scale: f64) -> bool {
         factor.smallest_pivot() > WELL_CONDITIONED * scale
     }
 
-    /// Whether the search has the `JᵀJ` of an earlier state.
+    /// True if the search has the `JᵀJ` of an earlier state.
     pub(crate) fn is_frozen(&self) -> bool {
         self.is_frozen
     }
 
-    /// Whether to evaluate the end of a step without `JᵀJ`, which stays frozen or is frozen from there on: where steps converge so fast
-    /// that `JᵀJ` can hardly have changed, or where this step from a state with its own `JᵀJ` is short.
+    /// True if the end of a step is to be evaluated without `JᵀJ`, which stays frozen or is frozen from there on. Steps then converge
+    /// so fast that `JᵀJ` can hardly have changed, or this step from a state with its own `JᵀJ` is short.
     pub(crate) fn may_freeze(
         &self,
         predicted: f64,
@@ -76,26 +76,26 @@ impl Reuse {
         self.is_enabled && (is_short || is_fast && (self.is_frozen || is_well_conditioned()))
     }
 
-    /// Whether a frozen `JᵀJ` must be built anew before the next step, given the reduction that is predicted for it (`None` where there
-    /// is no step): the step is not short.
+    /// True if a new `JᵀJ` must be built before the next step, by its predicted reduction (`None` if there is no step): the step is not
+    /// short.
     pub(crate) fn must_rebuild(&mut self, predicted: Option<f64>, cost: f64) -> bool {
         let must = self.is_frozen && predicted.is_none_or(|predicted| predicted > CLOSE * cost);
         self.has_noise &= !must;
         must
     }
 
-    /// Whether a step with a frozen `JᵀJ` is the [final one](is_final_step).
+    /// True if a step with a frozen `JᵀJ` is the [final one](is_final_step).
     pub(crate) fn is_final_step(&self, predicted: f64, threshold: f64) -> bool {
         self.is_frozen && is_final_step(predicted, self.last_reduction, threshold)
     }
 
-    /// A step was accepted; its end was evaluated without `JᵀJ` if `is_frozen`.
+    /// Records an accepted step; its end was evaluated without `JᵀJ` if `is_frozen`.
     pub(crate) fn accepted(&mut self, predicted: f64, is_frozen: bool) {
         self.last_reduction = predicted;
         self.is_frozen = is_frozen;
     }
 
-    /// `JᵀJ` was built for the state at hand.
+    /// Records a `JᵀJ` that was built for the current state.
     pub(crate) fn rebuilt(&mut self) {
         self.is_frozen = false;
     }
@@ -133,7 +133,7 @@ mod tests {
     fn a_step_is_final_if_the_one_after_would_be_far_below_the_threshold() {
         let mut reuse = Reuse::new(true);
         reuse.accepted(1.0, true);
-        // The step after is predicted to reduce by 1e-3 · 1e-3.
+        // The predicted reduction of the step after is 1e-3 · 1e-3.
         assert!(reuse.is_final_step(1e-3, 1.1e-4));
         assert!(!reuse.is_final_step(1e-3, 0.9e-4));
         reuse.rebuilt();

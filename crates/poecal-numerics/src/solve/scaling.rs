@@ -3,23 +3,24 @@
 use super::{LeastSquares, Normal, Scaling};
 
 /// Smallest ratio of a column's reference norm to the one before. References that follow at once let a step go far along an unknown
-/// whose column vanishes; references that never fall (more1978) hold back for good an unknown whose column was large at a far start.
+/// whose column vanishes. References that never fall (more1978) hold back permanently an unknown whose column was large at a far
+/// start.
 const SLOWEST: f64 = 0.7;
 
-/// A problem as the search sees it: with the unknowns as they are given, or with each divided by its unit.
+/// A problem as input of the search: with its original unknowns, or with each divided by its unit.
 ///
 /// Units are powers of two, so that scaling rounds nothing.
 pub(crate) struct Scaled<'a, P> {
     problem: &'a P,
-    /// The unit of each unknown; empty where unknowns stay as they are given.
+    /// Unit of each unknown; empty if unknowns stay unscaled.
     units: Vec<Scale>,
 }
 
 #[derive(Clone, Copy)]
 struct Scale {
-    /// Reference norm of the column, of the unknown as it is given; zero as long as the column was.
+    /// Reference norm of the column of the unscaled unknown; zero as long as the column was.
     norm: f64,
-    /// The unit, in that of the unknown as it is given.
+    /// The unit, in that of the unscaled unknown.
     size: f64,
 }
 
@@ -32,8 +33,8 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
         Scaled { problem, units: vec![Scale { norm: 0.0, size: 1.0 }; count] }
     }
 
-    /// Chooses units anew at a state with this normal information, which is in the units so far and is changed to the new ones. In these
-    /// each column's norm is about 1, or less where it has fallen faster than its reference.
+    /// Chooses new units at a state with this normal information, which is in the units so far and is changed to the new ones. In these
+    /// each column's norm is about 1, or less if it has fallen faster than its reference.
     pub(crate) fn adapt(&mut self, normal: &mut Normal) {
         let n = self.units.len();
         let mut ratios = vec![1.0; n];
@@ -48,7 +49,7 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
         scale(normal, &ratios);
     }
 
-    /// Normal information of the unknowns as they are given.
+    /// Normal information of the unscaled unknowns.
     pub(crate) fn restore(&self, normal: &mut Normal) {
         let ratios: Vec<f64> = self.units.iter().map(|unit| 1.0 / unit.size).collect();
         scale(normal, &ratios);
@@ -60,13 +61,13 @@ impl<'a, P: LeastSquares> Scaled<'a, P> {
         normal
     }
 
-    /// A step in unknowns as they are given.
+    /// A step in unscaled unknowns.
     fn given(&self, step: &[f64]) -> Vec<f64> {
         step.iter().zip(&self.units).map(|(part, unit)| part * unit.size).collect()
     }
 }
 
-/// Multiplies each column of the Jacobian; with no ratios, none.
+/// Multiplies each column of the Jacobian; without ratios, none.
 fn scale(normal: &mut Normal, ratios: &[f64]) {
     for (g, ratio) in normal.gradient.iter_mut().zip(ratios) {
         *g *= ratio;

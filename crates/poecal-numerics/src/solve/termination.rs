@@ -1,6 +1,6 @@
-//! Why a minimisation ended.
+//! Reasons of the end of a minimisation.
 
-/// Why a minimisation ended: data, not an error string.
+/// Reason of the end of a minimisation: data, not an error string.
 ///
 /// ```
 /// # mod poecal {
@@ -26,13 +26,13 @@ pub enum Termination {
 }
 
 impl Termination {
-    /// Whether the result is an optimum.
+    /// True if the result is an optimum.
     #[must_use]
     pub fn is_success(self) -> bool {
         matches!(self, Termination::Optimum | Termination::StepVanished | Termination::NoProgress)
     }
 
-    /// The stable word used in files.
+    /// Stable word used in files.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -22,12 +22,12 @@ use crate::linalg::{self, Factor};
 pub struct WarmStart<S> {
     state: S,
     normal: Normal,
-    /// None where `JᵀJ` is singular.
+    /// Factor; `None` if `JᵀJ` is singular.
     factor: Option<Factor>,
 }
 
 impl<S> WarmStart<S> {
-    /// Factorises.
+    /// Factorises the `JᵀJ` of a state.
     #[must_use]
     pub fn new(state: S, normal: Normal) -> Self {
         let n = normal.dim();
@@ -44,7 +44,7 @@ impl<S> WarmStart<S> {
 }
 
 /// Minimises from a state close to the optimum by undamped steps with the frozen `JᵀJ` of that state, which need residuals and gradients
-/// alone; ends as [`minimize`] does. Where such steps do not converge fast, or do not lower the cost, [`minimize`] goes on from the best
+/// alone; ends as [`minimize`] does. If such steps do not converge fast, or do not lower the cost, [`minimize`] continues from the best
 /// state. Without [`Options::reuse`] it is [`minimize`] throughout.
 pub fn minimize_warm<P: LeastSquares>(
     problem: &P,

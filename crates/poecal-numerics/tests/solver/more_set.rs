@@ -1,4 +1,4 @@
-//! All 35 problems of Moré, Garbow and Hillstrom from their standard starts, and what the paper says of their minima.
+//! All 35 problems of Moré, Garbow and Hillstrom from their standard starts, and the minima of the paper.
 
 use crate::more_problems::*;
 use crate::more_variable::*;
@@ -6,8 +6,8 @@ use crate::plain::{Evaluation, Plain, jacobian_error, solve};
 
 /// The paper prints six digits of sums of squares that are not zero.
 const PRINTED: f64 = 1e-5;
-/// A sum of squares is zero if nothing but rounding of the residuals is left. Minima at which the Jacobian is singular are approached
-/// linearly, and end about here.
+/// Sum of squares below which it counts as zero: only rounding of the residuals remains. Minima at which the Jacobian is singular are
+/// approached linearly, and end about here.
 const ZERO: f64 = 1e-20;
 /// Truncation and rounding of sixth-order differences.
 const JACOBIAN: f64 = 1e-6;
@@ -32,7 +32,7 @@ fn problem(
 fn fixed() -> Vec<Problem> {
     vec![
         problem("1 Rosenbrock", rosenbrock, [-1.2, 1.0], &[0.0]),
-        // The local minimum stands in the paper.
+        // The local minimum is in the paper.
         problem("2 Freudenstein-Roth", freudenstein_roth, [0.5, -2.0], &[0.0, 48.9842]),
         problem("3 Powell badly scaled", powell_badly_scaled, [0.0, 1.0], &[0.0]),
         problem("4 Brown badly scaled", brown_badly_scaled, [1.0, 1.0], &[0.0]),
@@ -49,7 +49,7 @@ fn fixed() -> Vec<Problem> {
         problem("15 Kowalik-Osborne", kowalik_osborne, [0.25, 0.39, 0.415, 0.39], &[3.07505e-4]),
         problem("16 Brown-Dennis", brown_dennis, [25.0, 5.0, -5.0, -1.0], &[85822.2]),
         problem("17 Osborne 1", osborne_1, [0.5, 1.5, -1.0, 0.01, 0.02], &[5.46489e-5]),
-        // Both stand in the paper.
+        // Both are in the paper.
         problem("18 Biggs EXP6", biggs_exp6, [1.0, 2.0, 1.0, 1.0, 1.0, 1.0], &[0.0, 5.65565e-3]),
         problem(
             "19 Osborne 2",
@@ -82,7 +82,7 @@ fn variable() -> Vec<Problem> {
         ),
         // The local minimum is not in the paper, but in the literature since (2.79506e-5).
         problem("26 trigonometric", trigonometric, [0.1; 10], &[0.0, 2.79506e-5]),
-        // The local minimum 1 at (0, …, 0, n + 1) stands in the paper.
+        // The local minimum 1 at (0, …, 0, n + 1) is in the paper.
         problem("27 Brown almost linear", brown_almost_linear, [0.5; 10], &[0.0, 1.0]),
         problem("28 discrete boundary value", discrete_boundary_value, on_boundary(), &[0.0]),
         problem("29 discrete integral equation", discrete_integral_equation, on_boundary(), &[0.0]),
@@ -104,7 +104,7 @@ pub(crate) fn all() -> impl Iterator<Item = Problem> {
     fixed().into_iter().chain(variable())
 }
 
-/// Whether a sum of squares is a minimum as printed, and by how many digits.
+/// True if a sum of squares is a minimum as printed; and the number of digits that agree.
 fn agreement(sum: f64, minimum: f64) -> (bool, f64) {
     if minimum == 0.0 {
         return (sum < ZERO, if sum > 0.0 { -sum.log10() } else { f64::INFINITY });
@@ -161,7 +161,7 @@ fn there_are_35_problems() {
 #[test]
 fn jacobians_are_those_of_differences() {
     for problem in all() {
-        // At the start, and beside it, where nothing cancels by symmetry.
+        // The points are the start, and one near it, where nothing cancels by symmetry.
         let beside: Vec<f64> =
             problem.start.iter().zip(1..).map(|(x, k)| 1.01 * x + 0.01 / f64::from(k)).collect();
         for at in [&problem.start, &beside] {

@@ -219,7 +219,7 @@ pub(crate) fn broyden_banded(x: &[f64]) -> Evaluation {
     })
 }
 
-/// Residuals that the linear problems have, as in the paper's tables.
+/// Number of residuals of the linear problems, as in the paper's tables.
 pub(crate) const LINEAR_ROWS: usize = 10;
 
 /// 32

@@ -4,11 +4,11 @@ use crate::nist_models::{MODELS, Model};
 use crate::plain::{Evaluation, Found, jacobian_error, solve};
 use std::path::Path;
 
-/// What NIST's own page asks of a good program is 4 or 5; this many digits of every parameter are required from every start.
+/// Least number of digits of every parameter from every start; NIST's own page requires 4 or 5 of a good program.
 const DIGITS: f64 = 6.0;
-/// The same from the second start, which is closer.
+/// Least number of digits from the second start, which is closer.
 const DIGITS_CLOSE: f64 = 8.0;
-/// Certificates have eleven digits: agreement beyond that means nothing.
+/// Certificates have eleven digits: agreement beyond that has no meaning.
 const CERTIFIED: f64 = 11.0;
 /// Digits of the residual sum of squares. Its error is quadratic in that of the parameters, but sums of small residuals of large
 /// data have rounding of their own.
@@ -51,7 +51,7 @@ impl Regression {
         let rows: Vec<Vec<f64>> = data.lines().skip(1).map(numbers).filter(|row| !row.is_empty()).collect();
         let observations = text.lines().find_map(|line| line.strip_prefix("Number of Observations:"));
         assert_eq!(observations.map(|count| count.trim().parse()), Some(Ok(rows.len())), "{name}");
-        // Nelson's response is the logarithm of what was measured.
+        // Nelson's response is the logarithm of the measured one.
         let y = rows.iter().map(|row| if name == "Nelson" { row[0].ln() } else { row[0] }).collect();
         let x = rows.iter().map(|row| row[1..].to_vec()).collect();
         Regression { name, model, y, x, starts, certified, sum: sum.trim().parse().unwrap() }
@@ -77,7 +77,7 @@ impl Regression {
     }
 }
 
-/// Log relative error: the number of digits that agree; none where a number is not finite.
+/// Log relative error: the number of digits that agree; 0 if a number is not finite.
 fn digits(value: f64, certified: f64) -> f64 {
     let apart = ((value - certified) / certified).abs();
     if apart.is_nan() { 0.0 } else { (-apart.log10()).clamp(0.0, CERTIFIED) }

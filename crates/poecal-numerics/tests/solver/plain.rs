@@ -1,4 +1,4 @@
-//! Plain problems `min Σ f(x)²` of numbers, as the solver's trait has them.
+//! Plain problems `min Σ f(x)²` of numbers, by the solver's trait.
 
 use poecal_numerics::solve::{LeastSquares, Normal, Options, Scaling, Summary, minimize};
 use std::cell::Cell;
@@ -11,9 +11,9 @@ pub(crate) struct Plain<F> {
     dim: usize,
     function: F,
     has_curvature: bool,
-    /// Points at which residuals were computed.
+    /// Number of points at which residuals were computed.
     evaluations: Cell<usize>,
-    /// Times that `JᵀJ` was built.
+    /// Number of times that `JᵀJ` was built.
     products: Cell<usize>,
 }
 
@@ -22,7 +22,7 @@ impl<F: Fn(&[f64]) -> Evaluation> Plain<F> {
         Plain { dim, function, has_curvature: false, evaluations: Cell::new(0), products: Cell::new(0) }
     }
 
-    /// The same with the full Hessian.
+    /// The same problem with the full Hessian.
     pub(crate) fn with_curvature(mut self) -> Self {
         self.has_curvature = true;
         self
@@ -49,7 +49,7 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
         self.dim
     }
 
-    /// `f` is the prediction, and zero was measured.
+    /// Here `f` is the prediction, and zero was measured.
     fn normal(&self, x: &Vec<f64>) -> Normal {
         self.products.set(self.products.get() + 1);
         let (f, jacobian) = self.evaluate(x);
@@ -69,7 +69,7 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
         Some(Normal { gram: Vec::new(), gradient, cost, residuals: f.len() })
     }
 
-    /// By a central difference over a tenth of the step.
+    /// Central difference over a tenth of the step.
     fn second_order(&self, x: &Vec<f64>, step: &[f64]) -> Vec<f64> {
         const FRACTION: f64 = 0.1;
         let (here, jacobian) = self.evaluate(x);
@@ -86,7 +86,7 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
         total
     }
 
-    /// By central differences of the Jacobian, where it is asked for.
+    /// Central differences of the Jacobian, if requested.
     fn curvature(&self, x: &Vec<f64>) -> Option<Vec<f64>> {
         const STEP: f64 = 1e-4;
         if !self.has_curvature {
@@ -111,7 +111,7 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
         Some(curvature)
     }
 
-    /// Below the square of what rounding makes of residuals of about one.
+    /// Limit below the square of the rounding of residuals of about one.
     fn rounding(&self) -> f64 {
         f64::EPSILON * f64::EPSILON
     }
@@ -121,7 +121,7 @@ impl<F: Fn(&[f64]) -> Evaluation> LeastSquares for Plain<F> {
     }
 }
 
-/// What a minimisation found and what it took.
+/// Result and cost of a minimisation.
 pub(crate) struct Found {
     pub(crate) x: Vec<f64>,
     /// `Σ f²`.
@@ -131,7 +131,7 @@ pub(crate) struct Found {
     pub(crate) products: usize,
 }
 
-/// Unknowns have any units, and nothing but rounding ends the search.
+/// Options with unknowns of any units, where only rounding ends the search.
 pub(crate) fn to_the_last_digits(reuse: bool) -> Options {
     Options {
         iterations: 10_000,
@@ -155,12 +155,12 @@ pub(crate) fn solve(
     Plain::new(dim, function).solve(start, reuse)
 }
 
-/// How large an unknown is; one that is zero says nothing of that.
+/// Size of an unknown; zero has no size, and counts as 1e-2.
 fn magnitude(x: f64) -> f64 {
     if x == 0.0 { 1e-2 } else { x.abs() }
 }
 
-/// Largest difference of the Jacobian from central differences of sixth order, as a share of what each column has at most.
+/// Largest difference of the Jacobian from central differences of sixth order, as a share of the largest element of each column.
 #[allow(clippy::needless_range_loop, reason = "rows and columns of several matrices")]
 pub(crate) fn jacobian_error(x: &[f64], function: impl Fn(&[f64]) -> Evaluation) -> f64 {
     // Errors of the step's sixth power and rounding, magnified by its inverse, are about as large here.

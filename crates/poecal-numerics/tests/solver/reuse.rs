@@ -1,11 +1,11 @@
-//! Reuse of `JᵀJ` changes what a minimisation costs, and not where it ends.
+//! Reuse of `JᵀJ` changes the cost of a minimisation, and not its result.
 
 use crate::plain::{Evaluation, Plain, to_the_last_digits};
 use crate::{more_set, nist};
 use poecal_numerics::solve::{LeastSquares, Normal, Options, WarmStart, minimize, minimize_warm};
 
-/// Both ends are where rounding of the gradient hides the optimum: some 1e-11 of each unknown in these problems, of condition numbers up
-/// to 1e4.
+/// Both results are where rounding of the gradient hides the optimum: some 1e-11 of each unknown in these problems, of condition numbers
+/// up to 1e4.
 const SAME: f64 = 1e-8;
 
 /// Largest difference of two solutions, as a share of each unknown.
@@ -29,7 +29,7 @@ fn ends_are_the_same_with_reuse_and_without() {
     for regression in nist::all() {
         compare(regression.name, &regression.starts[1], |b| regression.residuals(b));
     }
-    // Problems of full rank at their minimum, and of no other minimum nearby.
+    // The problems have full rank at their minimum, and no other minimum nearby.
     let some =
         ["1 ", "5 ", "7 ", "8 ", "9 ", "14 ", "15 ", "16 ", "17 ", "19 ", "21 ", "25 ", "30 ", "31 ", "32 "];
     for problem in more_set::all().filter(|problem| some.iter().any(|start| problem.name.starts_with(start)))
@@ -50,7 +50,7 @@ fn reuse_spares_products() {
     assert!(with < without);
 }
 
-/// At the default tolerances, from a known optimum to that of other data.
+/// The tolerances are the defaults; the fit goes from a known optimum to that of other data.
 #[test]
 fn a_warm_start_ends_where_a_minimisation_does() {
     let times: Vec<f64> = (0..20).map(f64::from).collect();

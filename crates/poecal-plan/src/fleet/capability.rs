@@ -2,7 +2,7 @@
 
 use super::Series;
 
-/// Two sides of a normal distribution beyond which 5 % are.
+/// 97.5 % quantile of the normal distribution: 5 % lie beyond both sides.
 const NORMAL: f64 = 1.959_963_985;
 
 /// A value with its 95 % interval.
@@ -16,7 +16,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// How well a line keeps limits.
+/// Capability of a line with respect to limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capability {
     /// Width of the limits over six spreads; `None` with one limit.
@@ -26,15 +26,15 @@ pub struct Capability {
 }
 
 impl Capability {
-    /// Of a series with a lower and an upper limit, either of which may be missing: by the line's own spread, whose uncertainty is that of the
-    /// spread seen times the ratio of both squared. `None` with fewer robots than [`FEWEST`](super::FEWEST), or without a spread.
+    /// Capability of a series with a lower and an upper limit, either of which may be missing: by the line's own spread, whose uncertainty is that of
+    /// the observed spread times the squared ratio of both. `None` with fewer robots than [`FEWEST`](super::FEWEST), or without a spread.
     #[must_use]
     pub fn from_series(series: &Series, low: Option<f64>, high: Option<f64>) -> Option<Self> {
         let plain = Series { is_size: false, ..series.clone() };
         let spread = plain.spread().filter(|it| series.is_enough() && it.own > 0.0)?;
         let count = spread.count as f64;
         let mean = spread.center;
-        // The median of n values is known to √(π/2) times the deviation of their mean.
+        // Standard deviation of a median of n normal values: √(π/2) times that of their mean.
         let of_center = std::f64::consts::FRAC_PI_2 * (spread.seen / spread.own).powi(2) / (9.0 * count);
         let relative = (spread.seen / spread.own).powi(4) / (2.0 * (count - 1.0));
         let with = |value: f64, variance: f64| {

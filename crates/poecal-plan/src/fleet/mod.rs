@@ -1,7 +1,7 @@
-//! A line of robots of one type: how far their corrections scatter, what of that is the line's own, robots that are none of it, and steps
-//! in time (theory.md §9, *A line of robots*).
+//! A line of robots of one type: scatter of their corrections, the line's own part of it, outlying robots, and steps in time (theory.md §9, *A line
+//! of robots*).
 //!
-//! No robots and no files here: it gets figures of robots with their deviations; `poecal-results`'s `fleet` has the station and the ledger.
+//! No robots and no files here: the input is figures of robots with their deviations; `poecal-results`'s `fleet` has the station and the ledger.
 
 mod capability;
 mod outlying;

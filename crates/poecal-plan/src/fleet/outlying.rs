@@ -1,27 +1,27 @@
-//! Robots that are none of the line.
+//! Outlying robots of a line.
 
 use super::Series;
 
-/// Spreads of the line beyond which a robot is none of it.
+/// Distance, in spreads of the line, beyond which a robot is an outlier.
 const FAR: f64 = 6.0;
-/// Standard deviations of line and measurement together that it must be away too.
+/// Distance that an outlier must also have, in standard deviations of line and measurement together.
 const CERTAIN: f64 = 4.0;
 
 /// A robot beyond the line's spread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outlier {
-    /// Its serial number.
+    /// Serial number.
     pub serial: String,
     /// The figure.
     pub series: String,
-    /// Its joint, if it is of one.
+    /// Joint, if the figure belongs to one.
     pub joint: Option<String>,
-    /// How many spreads of the line it is away.
+    /// Distance from the line's centre, spreads of the line.
     pub spreads: f64,
 }
 
-/// Robots that are more than six spreads of the line away in a figure, the farthest first, and of each figure those that are away by more than
-/// the measurement may be.
+/// Robots more than six spreads of the line away in a figure, the farthest first; only those whose distance exceeds the uncertainty of the
+/// measurement.
 #[must_use]
 pub fn outliers(all: &[Series]) -> Vec<Outlier> {
     let of = |series: &Series| {

@@ -10,45 +10,45 @@ pub struct Value {
     pub serial: String,
     /// The figure.
     pub value: f64,
-    /// Its standard deviation, as its calibration states it; 0 where it states none.
+    /// Standard deviation stated by its calibration; 0 if none is stated.
     pub sigma: f64,
 }
 
 /// A figure of many robots, in the order measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name, like `joint2.offset`.
+    /// Name, like `joint2.offset`.
     pub name: String,
-    /// Its joint, if it is of one.
+    /// Joint, if the figure belongs to one.
     pub joint: Option<String>,
     /// Its unit.
     pub unit: &'static str,
-    /// Whether it is a size, which is never below zero: compared by its logarithm.
+    /// True if it is a size, which is never below zero: sizes are compared by their logarithms.
     pub is_size: bool,
     /// The robots.
     pub values: Vec<Value>,
 }
 
-/// How a figure scatters.
+/// Scatter of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
     /// Number of robots.
     pub count: usize,
     /// Median.
     pub center: f64,
-    /// Standard deviation as it is seen, by the middle half of the robots.
+    /// Observed standard deviation, by the middle half of the robots.
     pub seen: f64,
     /// The same without the variance of the measurement: the line's own.
     pub own: f64,
 }
 
-/// Standard deviation of a normal distribution over its quartiles' distance.
+/// Standard deviation of a normal distribution over its interquartile range.
 const OF_QUARTILES: f64 = 0.741_301_109_252_801;
-/// Share of the measurement's deviation below which the line's own is not known to be.
+/// Share of the measurement's deviation below which the line's own deviation is not resolved.
 const LEAST: f64 = 0.3;
 
 impl Series {
-    /// The figures as they are compared: sizes by their logarithms.
+    /// Value and deviation in the form that is compared: sizes by their logarithms.
     #[must_use]
     pub fn compared(&self, value: &Value) -> (f64, f64) {
         if self.is_size {
@@ -59,8 +59,8 @@ impl Series {
         }
     }
 
-    /// How it scatters, freed of the measurement's share: the stated variances are taken off. Of robots that are none of the line the middle half
-    /// knows nothing. `None` with fewer than four robots.
+    /// Scatter without the share of the measurement: the stated variances are subtracted. Outlying robots do not affect the middle half. `None` with
+    /// fewer than four robots.
     #[must_use]
     pub fn spread(&self) -> Option<Spread> {
         let each: Vec<(f64, f64)> = self.values.iter().map(|it| self.compared(it)).collect();
@@ -77,13 +77,13 @@ impl Series {
         Some(Spread { count, center, seen, own })
     }
 
-    /// Whether it is the length of a size over all joints: of none, and near to normal without a logarithm.
+    /// True if it is the length of a size over all joints: it belongs to no joint, and is nearly normal without a logarithm.
     #[must_use]
     pub fn is_sum(&self) -> bool {
         self.joint.is_none() && !self.is_size
     }
 
-    /// Whether there are robots enough to state more than their values.
+    /// True if there are enough robots to state more than their values.
     #[must_use]
     pub fn is_enough(&self) -> bool {
         self.values.len() >= FEWEST
@@ -95,7 +95,7 @@ pub fn typical(values: impl Iterator<Item = f64>) -> Option<f64> {
     median(values)
 }
 
-/// Standard deviation of sorted values without those that are none of them: of what is within 3.5 of the quartiles' deviation.
+/// Standard deviation of sorted values without outliers: of those within 3.5 of the quartiles' deviation.
 fn deviation(sorted: &[f64], center: f64) -> f64 {
     let at = |share: f64| {
         let place = share * (sorted.len() - 1) as f64;
@@ -119,7 +119,7 @@ pub(crate) mod tests {
     use super::*;
     use poecal_model::simulate::random::normal;
 
-    /// Robots of a line of spread 1, each measured with a standard deviation of so much of it.
+    /// Robots of a line of spread 1, each measured with a standard deviation of `share` of it.
     pub(crate) fn drawn(seed: u64, robots: usize, share: f64) -> Series {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         let values = (0..robots).map(|robot| Value {
@@ -130,7 +130,7 @@ pub(crate) mod tests {
         Series { name: "a".into(), joint: None, unit: "deg", is_size: false, values: values.collect() }
     }
 
-    /// What is taken off leaves the line's own spread, where the measurement scatters as much as the line.
+    /// Subtraction leaves the line's own spread, even if the measurement scatters as much as the line.
     #[test]
     fn the_spread_is_freed_of_the_measurement() {
         for share in [0.0, 0.7, 1.0] {
@@ -145,7 +145,7 @@ pub(crate) mod tests {
                 "stated deviation {share} of the line's: the line's own spread to {:.1} % (RMS of {lines} lines)",
                 100.0 * rms
             );
-            // A standard deviation of 200 robots is known to 5 %; less what is taken off, to 11 %.
+            // The standard deviation of 200 robots has an uncertainty of 5 %; after the subtraction, 11 %.
             assert!(rms < 0.15);
         }
     }

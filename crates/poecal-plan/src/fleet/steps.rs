@@ -5,9 +5,9 @@ use poecal_numerics::distributions::median;
 
 /// Weight of the newest robot.
 const NEWEST: f64 = 0.2;
-/// Standard deviations of the average beyond which a line is not what it was, of all figures together.
+/// Standard deviations of the average beyond which a line has changed, for all figures together.
 const LIMIT: f64 = 4.5;
-/// The median of the sizes of differences of neighbours over their standard deviation, of a normal distribution.
+/// Ratio of the median absolute difference of neighbours to their standard deviation, for a normal distribution.
 const OF_NEIGHBOURS: f64 = 0.953_872_552;
 
 /// A step of one figure.
@@ -15,17 +15,17 @@ const OF_NEIGHBOURS: f64 = 0.953_872_552;
 pub struct Step {
     /// The figure.
     pub series: String,
-    /// Its joint, if it is of one.
+    /// Joint, if the figure belongs to one.
     pub joint: Option<String>,
-    /// Serial number of the robot since which the line is another.
+    /// Serial number of the first robot of the changed line.
     pub since: String,
-    /// Its place, from 0, and that of the robot at which it was certain.
+    /// Index of this robot, from 0.
     pub from: usize,
-    /// The latter.
+    /// Index of the robot at which the step was certain.
     pub seen_at: usize,
-    /// By how much, in the figure's unit, of sizes as a factor.
+    /// Size, in the figure's unit; for sizes a factor.
     pub size: f64,
-    /// The figure's unit; `None` of a factor.
+    /// The figure's unit; `None` for a factor.
     pub unit: Option<&'static str>,
 }
 
@@ -40,7 +40,7 @@ pub fn moving_average(values: &[f64]) -> Vec<f64> {
     values.iter().map(next).collect()
 }
 
-/// The first step of a figure after its first thirty robots, by what these are; `None` where there is none, or with fewer robots.
+/// The first step of a figure after its first thirty robots, relative to these; `None` without a step, or with fewer robots.
 fn step(series: &Series) -> Option<Step> {
     if series.values.len() <= FEWEST {
         return None;
@@ -53,10 +53,10 @@ fn step(series: &Series) -> Option<Step> {
     }
     let first = &values[..FEWEST];
     let center = median(first.iter().copied())?;
-    // Without single robots that are none of the line.
+    // Without single outliers of the line.
     let kept: Vec<f64> = first.iter().copied().filter(|it| (it - center).abs() < 4.0 * sigma).collect();
     let center = kept.iter().sum::<f64>() / kept.len().max(1) as f64;
-    // The center is of thirty robots: what it is not known by counts too.
+    // The centre is that of thirty robots: its uncertainty counts too.
     let width = sigma * (NEWEST / (2.0 - NEWEST) + 1.0 / kept.len().max(1) as f64).sqrt();
     let (mut average, mut from) = (center, FEWEST);
     for (at, value) in values.iter().enumerate().skip(FEWEST) {
@@ -83,7 +83,7 @@ fn step(series: &Series) -> Option<Step> {
     None
 }
 
-/// The steps of all figures, in the order in which they were seen.
+/// The steps of all figures, in the order of their detection.
 #[must_use]
 pub fn steps(all: &[Series]) -> Vec<Step> {
     let mut found: Vec<Step> = all.iter().filter_map(step).collect();

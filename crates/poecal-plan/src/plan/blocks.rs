@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use poecal_numerics::linalg;
 
-/// Whitened rows of configurations, one after the other, of so many numbers and columns each.
+/// Whitened rows of configurations, one after the other, with `numbers` and `columns` each.
 #[derive(Clone, Debug)]
 pub(crate) struct Blocks {
     pub(crate) values: Vec<f64>,

@@ -1,22 +1,22 @@
-//! What the criterion needs of each candidate, kept up to date while configurations are chosen.
+//! Data of the criterion for each candidate, kept up to date while configurations are chosen.
 
 use super::blocks::Blocks;
 use super::change::{Change, MOST_NUMBERS, dot, weight};
 use super::state::{Aim, State, Weights, own_rows, scaled};
 use poecal_numerics::kernels::by_best;
 
-/// What the criterion needs of each candidate, kept up to date.
+/// Data of the criterion for each candidate, kept up to date.
 #[derive(Clone, Debug)]
 pub(crate) struct Caches {
     m: usize,
     c: usize,
-    /// For each candidate: `S`, `T` of geometry, of all, `R Rᵀ`, `Z Rᵀ`.
+    /// `S`, `T` of geometry, of all, `R Rᵀ`, `Z Rᵀ` for each candidate.
     small: Vec<f64>,
-    /// For each candidate: `R` and `Z`.
+    /// `R` and `Z` for each candidate.
     long: Vec<f64>,
 }
 
-/// Candidates that one thread takes at a time.
+/// Candidates that one thread processes at a time.
 const CHUNK: usize = 256;
 
 impl Caches {
@@ -94,7 +94,7 @@ impl Caches {
         });
     }
 
-    /// By how much the criterion falls with a candidate more; below zero if its rows cannot be used.
+    /// Decrease of the criterion with an additional candidate; below zero if its rows cannot be used.
     pub(crate) fn gain(&self, index: usize, weights: &Weights) -> f64 {
         match self.m {
             ..=3 => self.gain_of::<9>(index, weights),
@@ -135,7 +135,7 @@ impl Caches {
     }
 }
 
-/// What a candidate is to begin with.
+/// Initial data of a candidate.
 #[inline(always)]
 fn begin(state: &State, aim: &Aim, (rows, m): (&[f64], usize), (small, long): (&mut [f64], &mut [f64])) {
     let (g, c) = (aim.geometry, aim.modes());
@@ -166,7 +166,7 @@ fn begin(state: &State, aim: &Aim, (rows, m): (&[f64], usize), (small, long): (&
     squares_of(small, r, z, m, c);
 }
 
-/// What a candidate is after a change.
+/// Data of a candidate after a change.
 #[inline(always)]
 fn follow<const S: usize>(
     (rows, n): (&[f64], usize),

@@ -1,4 +1,4 @@
-//! Candidates of a plan and configurations of a workspace: drawn at random, or of lists.
+//! Candidates of a plan and configurations of a workspace: drawn at random, or from lists.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -77,7 +77,7 @@ pub(crate) fn draw_measurable(
     })
 }
 
-/// Keeps the configurations of a list that can be measured, with the place of each in the list.
+/// Keeps the configurations of a list that can be measured, with the index of each in the list.
 pub(crate) fn keep_measurable(
     checker: &Checker<'_>,
     (list, width): (&[f64], usize),
@@ -87,7 +87,7 @@ pub(crate) fn keep_measurable(
     let origins: Vec<usize> = (0..list.len() / width)
         .filter(|&at| {
             let found = checker.measured(&list[at * width..(at + 1) * width]);
-            // Where the robot was, no limit of a model forbids.
+            // The robot was in these configurations, so no limit of a model forbids them.
             let found = found.filter(|&it| it != Obstacle::Limits || conditions.margin.is_some());
             refusals.add(found);
             found.is_none()
@@ -97,7 +97,7 @@ pub(crate) fn keep_measurable(
     (own.collect(), Some(origins.clone()))
 }
 
-/// Takes some of many configurations of a workspace, at even distances.
+/// Thins out the configurations of a workspace, at even distances.
 pub(crate) fn thin_out(workspace: &[f64], width: usize) -> Vec<f64> {
     let every = (workspace.len() / width).div_ceil(WORKSPACE).max(1);
     workspace.chunks_exact(width).step_by(every).flatten().copied().collect()

@@ -1,4 +1,4 @@
-//! Capsules around the shapes of links: what is within a distance of a segment.
+//! Capsules around the shapes of links: all points within a distance of a segment.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::robot::Body;
 use poecal_numerics::linalg;
 
-/// All within a distance of a segment, on a body.
+/// All points within a distance of a segment, on a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capsule {
     /// The link, for messages.
@@ -20,14 +20,14 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// A capsule that contains balls of a radius about all of some points: along the direction of their greatest spread. None of no points.
+    /// A capsule that contains balls of a radius about all of some points: along the direction of their greatest spread. `None` without points.
     #[must_use]
     pub fn around(link: &str, body: Body, points: &[Vector3<f64>], grown_m: f64) -> Option<Capsule> {
         let count = points.len();
         if count == 0 || !points.iter().all(|point| point.iter().all(|it| it.is_finite())) {
             return None;
         }
-        // The middle of the box about the points, not their mean: meshes have more corners where they are finer.
+        // The middle of the box about the points is used, not their mean: meshes have more vertices where they are finer.
         let bound =
             |pick: fn(f64, f64) -> f64, k: usize| points.iter().map(|it| it[k]).reduce(pick).unwrap_or(0.0);
         let middle = Vector3::from_fn(|k, _| 0.5 * (bound(f64::min, k) + bound(f64::max, k)));
@@ -48,7 +48,7 @@ impl Capsule {
                 })
             };
             let radius = parts().map(|it| it.1).fold(0.0, f64::max);
-            // The caps contain what is nearer to the axis than the radius.
+            // The caps contain points nearer to the axis than the radius.
             let cap = |off: f64| (radius * radius - off * off).max(0.0).sqrt();
             let last = parts().map(|(along, off)| along - cap(off)).fold(f64::NEG_INFINITY, f64::max);
             let first = parts().map(|(along, off)| along + cap(off)).fold(f64::INFINITY, f64::min);

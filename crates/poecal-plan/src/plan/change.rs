@@ -1,4 +1,4 @@
-//! A configuration more or less: what changes of covariances, by an update of low rank (docs/theory.md, *Choosing configurations*).
+//! Change of covariances by adding or removing a configuration, as a low-rank update (docs/theory.md, *Choosing configurations*).
 
 use nalgebra::DMatrix;
 
@@ -34,10 +34,10 @@ pub(crate) fn product(a: &[f64], b: &[f64], m: usize) -> Vec<f64> {
     out
 }
 
-/// Largest number of numbers of a configuration.
+/// Largest number of measured components of a configuration.
 pub(crate) const MOST_NUMBERS: usize = 24;
 
-/// `(sign + S)⁻¹` of a small symmetric matrix by elimination, and the logarithm of `|sign (sign + S)|`; none if it is not of one sign.
+/// `(sign + S)⁻¹` of a small symmetric matrix by elimination, and the logarithm of `|sign (sign + S)|`; `None` if it is not of one sign.
 #[inline(always)]
 pub(crate) fn weight<const S: usize>(s: &[f64], m: usize, sign: f64, out: &mut [f64; S]) -> Option<f64> {
     // sign (sign + S) = 1 + sign S is positive definite.
@@ -70,13 +70,13 @@ pub(crate) fn weight<const S: usize>(s: &[f64], m: usize, sign: f64, out: &mut [
     Some(logarithm)
 }
 
-/// Pivot below which what remains without some rows is rounding.
+/// Pivot below which the remainder without some rows is rounding.
 const LEAST_PIVOT: f64 = 1e-9;
 
 /// Rows of a changed configuration, against covariances.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// Columns that count.
+    /// Number of used columns.
     pub(crate) n: usize,
     /// `H⁻¹ Jᵀ` and `P Jᵀ`, a row for each number.
     pub(crate) k: Vec<f64>,
@@ -147,7 +147,7 @@ impl Part {
     }
 }
 
-/// A configuration more or less.
+/// Addition or removal of a configuration.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
     pub(crate) own: Part,

@@ -1,4 +1,4 @@
-//! Which candidates a plan takes, by its criterion, and what is better near them.
+//! Choice of candidates by the criterion of a plan, and improvement near them.
 
 use nalgebra::DMatrix;
 
@@ -19,7 +19,7 @@ use poecal_numerics::linalg;
 const ROUNDS: usize = 24;
 const PROPOSALS: usize = 6;
 const STEPS: [f64; 2] = [0.4, 0.01];
-/// Rounds, and the power, by which the largest variance is made small.
+/// Rounds, and the power, by which the largest variance is reduced.
 const LARGEST_ROUNDS: usize = 6;
 
 impl Planner<'_> {
@@ -58,7 +58,7 @@ impl Planner<'_> {
         }
     }
 
-    /// A list with a small largest variance: means of squares whose weights go with a power of the variances of the list before.
+    /// A list with a small largest variance: the weights of its mean squares follow a power of the variances of the list before.
     pub(crate) fn largest(
         &self,
         kept: &DMatrix<f64>,
@@ -98,7 +98,7 @@ impl Planner<'_> {
         found.map(|it| it.1).unwrap_or_default()
     }
 
-    /// Looks around each configuration for better ones.
+    /// Searches around each configuration for better ones.
     pub(crate) fn refine(&mut self, readings: &mut [Vec<f64>], rows: &mut Blocks) -> Result<()> {
         let robot = &self.experiment.robot;
         let checker =
@@ -114,7 +114,7 @@ impl Planner<'_> {
             for (owner, own) in readings.iter().enumerate() {
                 for proposal in 0..PROPOSALS {
                     let mut near = own.clone();
-                    // All joints, or one alone.
+                    // All joints, or a single one.
                     let only = (proposal % 2 == 1)
                         .then(|| (random::uniform(&mut self.generator) * kinds.len() as f64) as usize);
                     for (joint, (value, kind)) in near.iter_mut().zip(&kinds).enumerate() {

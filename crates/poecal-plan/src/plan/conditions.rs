@@ -1,4 +1,4 @@
-//! What can be measured: limits with a margin, boxes to keep out of, the floor, self-collision, and what the device sees.
+//! Conditions of measurement: limits with a margin, keep-out boxes, the floor, self-collision, and the view of the device.
 
 use std::fmt::Write as _;
 
@@ -13,15 +13,15 @@ use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, ReadingKind, Robot};
 use poecal_model::simulate::Configurations;
 
-/// Random configurations in all of which capsules overlap that belong together, and their seed.
+/// Number of random configurations in all of which capsules of one part overlap, and their seed.
 const TOGETHER: usize = 1000;
 const SEED: u64 = 7;
-/// How far new configurations stay from those that they replace, in some joint, radians.
+/// Distance of new configurations from those that they replace, in some joint, radians.
 const AWAY_RAD: f64 = 0.175;
-/// A line of sight ends so many metres before its target, which hides itself else.
+/// Distance before its target at which a line of sight ends, metres: the target would hide itself.
 const AT_TARGET_M: f64 = 1e-3;
 
-/// What a configuration must fulfil to be measured. All places are in the robot's base frame.
+/// Conditions under which a configuration can be measured. All positions are in the robot's base frame.
 ///
 /// ```
 /// use poecal_plan::plan::Conditions;
@@ -29,33 +29,33 @@ const AT_TARGET_M: f64 = 1e-3;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conditions {
-    /// How far every joint stays from its limits: turning, radians, and sliding, metres. Unless it is stated: [`Configurations::MARGIN`] where
-    /// configurations are chosen freely, and none of a list.
+    /// Distance of every joint from its limits: turning, radians, and sliding, metres. By default [`Configurations::MARGIN`] if configurations are
+    /// chosen freely, and zero for a list.
     pub margin: Option<[f64; 2]>,
     /// Boxes into which no part of the robot may reach, by two corners, metres.
     pub keep_out: Vec<[[f64; 3]; 2]>,
-    /// Height above which all links that move stay, metres.
+    /// Height above which all moving links stay, metres.
     pub floor_m: Option<f64>,
-    /// Least change of a joint between any two configurations, radians, or of one that slides by the length that a radian counts.
+    /// Least change of a joint between any two configurations, radians; for a sliding joint over the length that a radian counts.
     pub separation_rad: f64,
-    /// What the device sees.
+    /// View of the device.
     pub sight: Option<Sight>,
-    /// Shapes of the links; without any, neither self-collision nor hidden targets are found, and keep-out boxes and floor hold for the axes alone.
+    /// Shapes of the links. Without any, neither self-collision nor hidden targets are found, and keep-out boxes and floor hold for the axes alone.
     pub capsules: Vec<Capsule>,
 }
 
-/// Where a device is, and what it sees.
+/// Position of a device, and its field of view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sight {
-    /// Its place, metres.
+    /// Position, metres.
     pub place: Vector3<f64>,
-    /// A place at which it looks, and half the angle of its cone, radians.
+    /// A point at which it aims, and half the angle of its cone, radians.
     pub cone: Option<(Vector3<f64>, f64)>,
     /// Least and largest distance of the target, metres.
     pub distance_m: [f64; 2],
-    /// Largest angle at the target between the line to the device and the direction in which the target looks, radians.
+    /// Largest angle at the target between the line to the device and the target's normal, radians.
     pub acceptance_rad: Option<f64>,
-    /// The direction in which the target looks, in its own frame.
+    /// Normal of the target, in its own frame.
     pub facing: Vector3<f64>,
 }
 
@@ -74,11 +74,11 @@ pub enum Obstacle {
     Cone,
     /// The target is too near or too far from the device.
     Distance,
-    /// The target looks elsewhere.
+    /// The target is turned away.
     Incidence,
     /// A link is between device and target.
     Hidden,
-    /// It is near one that could not be measured.
+    /// The configuration is near one that could not be measured.
     Avoided,
 }
 
@@ -95,7 +95,7 @@ impl Obstacle {
         Obstacle::Avoided,
     ];
 
-    /// It in words.
+    /// Description of the obstacle.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -112,11 +112,11 @@ impl Obstacle {
     }
 }
 
-/// How many configurations each condition took.
+/// Number of configurations that each condition rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
     counts: [usize; Obstacle::ALL.len()],
-    /// Number of configurations that were looked at.
+    /// Number of examined configurations.
     pub tried: usize,
 }
 
@@ -128,7 +128,7 @@ impl Refusals {
         }
     }
 
-    /// Conditions that took some, with their numbers.
+    /// Conditions that rejected some, with their numbers.
     pub fn each(&self) -> impl Iterator<Item = (Obstacle, usize)> {
         Obstacle::ALL.into_iter().zip(self.counts).filter(|it| it.1 > 0)
     }
@@ -206,7 +206,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The same with configurations from which others stay away.
+    /// The checker with configurations that others must avoid.
     pub(crate) fn avoiding(self, avoided: &'a [f64], length_m: f64) -> Self {
         Checker { avoided, travel: Travel::new(self.robot, length_m), ..self }
     }
@@ -216,7 +216,7 @@ impl<'a> Checker<'a> {
         &self.configurations
     }
 
-    /// What forbids the robot to be there; the device aside.
+    /// Obstacle to the robot's presence there, apart from the device.
     pub(crate) fn robot(&self, readings: &[f64]) -> Option<Obstacle> {
         if !self.allowed.contain(readings) {
             return Some(Obstacle::Limits);
@@ -234,7 +234,7 @@ impl<'a> Checker<'a> {
         {
             return Some(Obstacle::KeepOut);
         }
-        // The frame of a joint on the base does not move, wherever it is.
+        // The frame of a joint on the base does not move, at any position.
         let is_fixed = |place: &Vector3<f64>| {
             let mut own = (0..frames.len()).filter(|&joint| self.robot.body_before(joint) == Body::Base);
             capsules.is_empty() && own.any(|joint| frames[joint].translation == *place)
@@ -251,7 +251,7 @@ impl<'a> Checker<'a> {
         self.pairs.iter().any(overlaps).then_some(Obstacle::Collision)
     }
 
-    /// What moves: the capsules, else the lines between axes, with the targets.
+    /// Moving parts: the capsules, else the lines between axes, with the targets.
     fn parts(
         &self,
         readings: &[f64],
@@ -267,7 +267,7 @@ impl<'a> Checker<'a> {
         parts
     }
 
-    /// What forbids to measure there.
+    /// Obstacle to measuring there.
     pub(crate) fn measured(&self, readings: &[f64]) -> Option<Obstacle> {
         let mut avoided = self.avoided.chunks_exact(readings.len().max(1));
         if avoided.any(|it| self.travel.distance(it, readings) < AWAY_RAD) {
@@ -298,7 +298,7 @@ impl<'a> Checker<'a> {
             let end = place - line * (AT_TARGET_M / distance.max(AT_TARGET_M));
             let hides = |capsule: &Capsule| {
                 let segment = capsule.segment(&frames);
-                // The link before may be slimmer beside the target than its capsule: then it hides what is seen past its middle.
+                // The link before may be slimmer beside the target than its capsule: then it hides only lines of sight past its middle.
                 let is_before = body.joint().map(|joint| self.robot.body_before(joint)) == Some(capsule.body);
                 let slim =
                     if is_before { between(&segment, &[place, place]) - AT_TARGET_M } else { f64::INFINITY };
@@ -312,7 +312,7 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// Places of joints of a kind, for the conditions' words.
+    /// Readings without limits.
     pub(crate) fn without_limits(&self) -> Vec<String> {
         let robot = self.robot;
         let open = |name: &&String| {
@@ -327,7 +327,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Whether a capsule reaches into a box: steps along it of half its radius, at most a centimetre, each with as much around it.
+/// True if a capsule extends into a box: steps along it of half its radius, at most a centimetre, each with the surrounding ball.
 fn is_in([a, b]: &[Vector3<f64>; 2], radius: f64, corners: &[[f64; 3]; 2]) -> bool {
     let length = (b - a).norm();
     let steps = (length / (0.5 * radius).clamp(2e-3, 1e-2)).ceil().max(1.0) as usize;

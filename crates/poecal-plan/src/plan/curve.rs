@@ -1,4 +1,4 @@
-//! How the expected error falls with the number of configurations.
+//! Decrease of the expected error with the number of configurations.
 
 use super::expected::{CurvePoint, ExpectedErrors};
 use super::experiment::undetermined;
@@ -26,7 +26,7 @@ impl Planner<'_> {
         counts.push(new);
         counts.sort_unstable();
         counts.dedup();
-        // What exchanges gain at the planned number, they gain at others.
+        // The gain of exchanges at the planned number is assumed for others.
         let here = search.squares(&order[..new.min(order.len())]).ok_or_else(undetermined)?;
         let gain = Squares {
             noise: ratio(planned.noise, here.noise),

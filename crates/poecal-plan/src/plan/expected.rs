@@ -1,4 +1,4 @@
-//! Errors to expect, of planned configurations or of a list that is there.
+//! Expected errors, of planned configurations or of an existing list.
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
@@ -16,13 +16,13 @@ const WORTH_IT: f64 = 0.05;
 /// Expected root mean square errors of the tip over the workspace, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExpectedErrors {
-    /// Of the calibrated model, what is not determined yet: by noise and prior, and by what geometry does not describe beyond its own error.
+    /// Undetermined part of the calibrated model: by noise and prior, and by effects beyond geometry in excess of the robot error.
     pub undetermined_m: f64,
-    /// What no geometry describes: the robot error.
+    /// Robot error: the part that no geometry describes.
     pub robot_m: f64,
-    /// Of the corrected model: what is not determined yet.
+    /// Undetermined part of the corrected model.
     pub corrected_undetermined_m: f64,
-    /// What neither geometry nor terms of the joints describe.
+    /// Part that neither geometry nor terms of the joints describe.
     pub corrected_robot_m: f64,
 }
 
@@ -31,11 +31,11 @@ impl ExpectedErrors {
         ExpectedErrors::seen(experiment, squares, [1.0; 2])
     }
 
-    /// The same where noise and terms are so many times as large as believed, in variances.
+    /// The errors if noise and terms are scaled by these factors of their variances.
     pub(crate) fn seen(experiment: &Experiment, squares: &Squares, [noise, terms]: [f64; 2]) -> Self {
         let (robot, rest) = (experiment.robot_error_m, experiment.rest_m);
         let of_terms = (robot * robot - rest * rest).max(0.0) * terms;
-        // Chosen rows may leave less of the terms than random ones do in the limit, which is the robot error that is stated.
+        // Chosen rows may leave less of the terms than random ones do in the limit, which is the stated robot error.
         let beyond = (squares.terms - of_terms).max(0.0);
         ExpectedErrors {
             undetermined_m: (squares.true_noise + beyond).max(0.0).sqrt(),
@@ -58,7 +58,7 @@ impl ExpectedErrors {
     }
 }
 
-/// Expected errors with so many planned configurations.
+/// Expected errors with this number of planned configurations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// Number of configurations.
@@ -67,16 +67,16 @@ pub struct CurvePoint {
     pub expected: ExpectedErrors,
 }
 
-/// Errors to expect of a list of configurations.
+/// Expected errors of a list of configurations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListExpectation {
     /// The errors.
     pub errors: ExpectedErrors,
-    /// Whether the robot error is a guess: 0.3 mm for each metre of reach.
+    /// True if the robot error is a guess: 0.3 mm for each metre of reach.
     pub robot_error_is_a_guess: bool,
 }
 
-/// Expected errors, over the workspace within the limits, of a fit of measurements in given configurations; `readings` in the order of
+/// Expected errors, over the workspace within the limits, of a fit of measurements in the supplied configurations; `readings` in the order of
 /// [`Robot::reading_names`], one configuration after the other, radians and metres.
 ///
 /// ```
@@ -135,7 +135,7 @@ mod tests {
     use nalgebra::Vector3;
     use poecal_model::simulate::elbow;
 
-    /// What more rows would remove falls with their number and is never nothing, three targets in a configuration or one.
+    /// The reduction by more rows decreases with their number and never vanishes, with three targets in a configuration or one.
     #[test]
     fn more_rows_always_remove_something() {
         for targets in [1, 3] {
@@ -149,9 +149,8 @@ mod tests {
             let curve = plan(&elbow(), &options).unwrap().curve;
             let left_mm: Vec<f64> = curve.iter().map(|it| 1e3 * it.expected.undetermined_m).collect();
             println!("{targets} targets: {left_mm:.4?} mm");
-            // What noise leaves falls with the root of the number. Of the chosen rows each is worth less than those before, and of what terms leave
-            // the share is chance, so that half of that is asked for.
-            // With fewer rows the prior decides.
+            // The error due to noise decreases with the root of the number. Each of the chosen rows is worth less than those before, and the share of
+            // the terms is random, so that half of this decrease is required. With fewer rows the prior decides.
             let curve: Vec<_> = curve.into_iter().filter(|it| it.count >= 20).collect();
             for (few, more) in curve.iter().zip(&curve[1..]) {
                 let root = (few.count as f64 / more.count as f64).sqrt();

@@ -1,4 +1,4 @@
-//! A session that is planned: its unknowns with what is believed of them before, and the rows of configurations as linear functions of these.
+//! A planned session: its unknowns with their priors, and the rows of configurations as linear functions of these.
 
 use nalgebra::{DMatrix, Vector3};
 use rand_chacha::ChaCha8Rng;
@@ -21,13 +21,13 @@ use poecal_numerics::solve::{Options, minimize};
 
 /// Configurations of the workspace.
 pub(crate) const WORKSPACE: usize = 1000;
-/// Random configurations by which unknowns are scaled and terms are combined, and their seed.
+/// Number of random configurations that scale unknowns and combine terms, and their seed.
 pub(crate) const SAMPLE: usize = 400;
 const SEED: u64 = 1;
 /// Most iterations of a fit while rows arrive.
 const ITERATIONS: usize = 30;
 
-/// A planned session at the nominal model: columns, priors, and what noise and terms of the joints are expected.
+/// A planned session at the nominal model: columns, priors, and the expected size of noise and joint terms.
 pub(crate) struct Experiment {
     /// The nominal robot.
     pub(crate) robot: Robot,
@@ -36,35 +36,35 @@ pub(crate) struct Experiment {
     pub(crate) session: PlannedSession,
     pub(crate) unknowns: Unknowns,
     pub(crate) estimate: Estimate,
-    /// A row of each pair of an instrument and a target, of measurements that were begun.
+    /// A row of each pair of an instrument and a target, if measurements have begun.
     pub(crate) template: Option<Dataset>,
     /// Terms with their prior standard deviations.
     pub(crate) deviations: Vec<TermPrior>,
     pub(crate) tolerance: Tolerance,
-    /// The free parameters: of the sample, so that device frames turn about the same points whatever the rows.
+    /// Free parameters: of the sample, so that device frames turn about the same points for any rows.
     pub(crate) free: Vec<Parameter>,
     pub(crate) targets: usize,
     pub(crate) length_m: f64,
-    /// How often a configuration is repeated so that each place measures it once.
+    /// Number of repetitions of a configuration so that each station measures it once.
     pub(crate) repeats: usize,
-    /// Numbers that are measured in a configuration.
+    /// Number of components measured in a configuration.
     pub(crate) numbers: usize,
-    /// Places of geometry's unknowns in a step.
+    /// Indices of geometry's unknowns in a step.
     pub(crate) geometry: Vec<usize>,
-    /// Places of the terms.
+    /// Indices of the terms.
     pub(crate) terms: Vec<usize>,
     /// Each term in units of its prior standard deviation, combined to modes.
     pub(crate) turn: DMatrix<f64>,
     /// Prior information of geometry.
     pub(crate) prior: DMatrix<f64>,
-    /// What geometry does not describe, metres: of the stated error, the part that the terms make and the rest.
+    /// Robot error beyond geometry, metres: of the stated error, the part by the terms and the rest.
     pub(crate) robot_error_m: f64,
     pub(crate) rest_m: f64,
-    /// What the corrected model is said to leave, metres: the same if it is not stated.
+    /// Stated remaining error of the corrected model, metres: the same if it is not stated.
     pub(crate) left_m: f64,
-    /// Information of a row for a fit that takes all of the robot error for noise, as a share of that for one that knows the terms.
+    /// Information of a row for a fit that treats all of the robot error as noise, as a share of that for one that knows the terms.
     pub(crate) share: f64,
-    /// Whether the robot error is a guess.
+    /// True if the robot error is a guess.
     pub(crate) is_guess: bool,
 }
 
@@ -74,7 +74,7 @@ impl Experiment {
         Experiment::made(robot, fit, None)
     }
 
-    /// The same of measurements that were begun, about an estimate that predicts them: rows are as theirs.
+    /// An experiment of begun measurements, about an estimate that predicts them: its rows are like theirs.
     pub(crate) fn begun(
         robot: &Robot,
         fit: &PlannedFit,
@@ -105,7 +105,7 @@ impl Experiment {
         let has_terms = sizes != Sizes::NONE && corrected.terms().next().is_some();
         let deviations: Vec<f64> = corrected.deviations(&sizes).collect();
         let unknowns = unknowns(&corrected, &Unknowns::USUAL, &sizes);
-        // Without terms the robot has no gives either.
+        // Without terms the robot has no compliant joints either.
         let (model, unknowns) =
             if has_terms { (corrected.robot.clone(), unknowns) } else { (robot.clone(), Unknowns::USUAL) };
         let mut generator = ChaCha8Rng::seed_from_u64(SEED);
@@ -145,7 +145,7 @@ impl Experiment {
         self.robot.reading_names().len().max(1)
     }
 
-    /// Metres that a radian counts.
+    /// Metres per radian.
     pub(crate) fn length_m(&self) -> f64 {
         self.length_m
     }
@@ -164,7 +164,7 @@ impl Experiment {
         readings.chunks_exact(self.width()).flat_map(|own| own.repeat(self.repeats)).collect()
     }
 
-    /// Rows of configurations, and device frames that are not the model's.
+    /// Rows of configurations, and device frames other than the model's.
     pub(crate) fn data(&self, readings: &[f64]) -> Result<(Dataset, Vec<Pose>)> {
         let Some(template) = &self.template else {
             return predicted_data(&self.robot, &self.repeated(readings), &self.session);
@@ -178,7 +178,7 @@ impl Experiment {
         Ok((data, Vec::new()))
     }
 
-    /// An estimate of the robot as one of the robot with gives and terms of zero.
+    /// An estimate of the robot as one of the robot with compliant joints and terms of zero.
     pub(crate) fn with_gives(&self, registered: &Estimate, data: &Dataset) -> Estimate {
         let mut estimate = delivered(&self.model, data);
         estimate.base_from_target.clone_from(&registered.base_from_target);
@@ -187,7 +187,7 @@ impl Experiment {
         estimate
     }
 
-    /// The fit of geometry and terms with their priors to rows, from the estimate on; what is left, as the cost.
+    /// The fit of geometry and terms with their priors to rows, starting at the estimate, and its remaining cost.
     pub(crate) fn fitted(&self, data: &Dataset) -> (Estimate, f64) {
         let packed = Packed::from_dataset(&self.model, data);
         let session = self.session_of(data, &packed);
@@ -213,12 +213,12 @@ impl Experiment {
         (own, residuals)
     }
 
-    /// Noise of each quantity, with what neither geometry nor terms describe.
+    /// Noise of each quantity, including errors that neither geometry nor terms describe.
     pub(crate) fn noise(&self) -> Noise {
         self.session.noise
     }
 
-    /// Squares of the terms at the estimate in units of their prior variances, and how many of them were determined.
+    /// Squares of the terms at the estimate in units of their prior variances, and the number of determined terms.
     pub(crate) fn size_of_terms(&self, covariance: &DMatrix<f64>, geometry: usize) -> (f64, f64) {
         let own = self.deviations.iter().filter(|it| it.deviation > 0.0);
         let size = own.map(|it| (self.estimate.coefficient(it.joint, it.term) / it.deviation).powi(2)).sum();

@@ -1,4 +1,4 @@
-//! What is known of a watched session once it has enough rows: the fit so far, by which rows are judged and the next are chosen.
+//! State of a watched session once it has enough rows: the present fit, which judges rows and chooses the next.
 
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
@@ -22,39 +22,39 @@ use poecal_numerics::distributions::f_quantile;
 use poecal_numerics::error::Result;
 use poecal_numerics::linalg;
 
-/// Probability with which a row that is as expected is named all the same, of normal errors; of those of real robots it is higher.
+/// Probability with which an expected row is reported nevertheless, for normal errors; for those of real robots it is higher.
 const BY_CHANCE: f64 = 2e-4;
-/// A mistake explains a row if what is left would be exceeded with this probability.
+/// Probability above which the remaining deviation counts as explained by a mistake.
 const EXPLAINED: f64 = 0.05;
-/// Degrees of freedom that what was believed of the noise counts.
+/// Degrees of freedom of the prior belief in the noise.
 const BELIEVED: f64 = 8.0;
-/// Configurations to choose the next from, and of the workspace.
+/// Number of configurations to choose the next from, and of the workspace.
 const CANDIDATES: usize = 200;
 const WORKSPACE: usize = 300;
-/// Candidates among which the rows ahead are exchanged: those that gain most by themselves.
+/// Candidates among which the rows ahead are exchanged: those with the largest single gain.
 const GAINING: usize = 50;
-/// Rows that are looked ahead.
+/// Number of rows that are planned ahead.
 const AHEAD: usize = 10;
-/// A candidate that is as near to a measured configuration, in all joints, is measured, radians.
+/// Distance to a measured configuration, in all joints, below which a candidate counts as measured, radians.
 const MEASURED_RAD: f64 = 2e-3;
 /// Change of a reading for a difference, radians or metres.
 const DIFFERENCE: f64 = 1e-5;
 
-/// What is known once there are enough rows.
+/// State of the session with enough rows.
 pub(crate) struct Known {
     experiment: Experiment,
     aim: Aim,
     candidates: Vec<f64>,
-    /// Whether each candidate is to be measured yet.
+    /// Marks each candidate that is not measured yet.
     open: Vec<bool>,
-    /// The best candidates to measure beside the rows so far, when last sought.
+    /// The best candidates to add to the rows so far, at the last search.
     ahead: Vec<usize>,
     blocks: Blocks,
     gram: DMatrix<f64>,
     covariance: DMatrix<f64>,
     rows: DMatrix<f64>,
     residuals: DVector<f64>,
-    /// Variance of the whitened residuals, its degrees of freedom, and the factor of the terms' variance.
+    /// Variance of the whitened residuals, its degrees of freedom, and the factor on the terms' variance.
     pub(crate) scale: f64,
     pub(crate) freedom: f64,
     terms: f64,
@@ -62,7 +62,7 @@ pub(crate) struct Known {
     pub(crate) names: [usize; 2],
 }
 
-/// How a row is beside what was expected of it.
+/// Deviation of a row from its prediction.
 pub(crate) struct Judged {
     pub(crate) ratio: f64,
     pub(crate) noticed_m: f64,
@@ -112,7 +112,7 @@ impl Known {
         Ok(known)
     }
 
-    /// Fits rows, and finds what they say of the noise and of the terms.
+    /// Fits rows, and estimates the noise and the size of the terms.
     pub(crate) fn fit(&mut self, data: &Dataset) {
         let (estimate, _) = self.experiment.fitted(data);
         self.experiment.estimate = estimate;
@@ -126,7 +126,7 @@ impl Known {
         if let Some(covariance) = inverse(&(&self.gram + &self.aim.prior)) {
             self.covariance = covariance;
         }
-        // Unknowns that the rows determine beside the prior.
+        // Number of unknowns that the rows determine beyond the prior.
         let determined = n as f64 - self.covariance.dot(&self.aim.prior);
         let left = (self.residuals.len() as f64 - determined).max(0.0);
         self.freedom = BELIEVED + left;
@@ -136,7 +136,7 @@ impl Known {
         self.terms = (BELIEVED + size) / (BELIEVED + count);
     }
 
-    /// The row before it is fitted: its innovation against its covariance.
+    /// Judges a row before it is fitted: its innovation against its covariance.
     pub(crate) fn judge(&self, data: &Dataset, row: u32) -> Judged {
         self.innovation(&data.only(&[row]))
     }
@@ -158,7 +158,7 @@ impl Known {
         }
     }
 
-    /// What explains a row that is not as expected.
+    /// Explanation of an unexpected row.
     pub(crate) fn mistake(&self, data: &Dataset, row: u32, before: Option<u32>, off_m: f64) -> Mistake {
         let at = row as usize;
         let observation = &data.observations[at];
@@ -187,14 +187,14 @@ impl Known {
             turned[joint] = -turned[joint];
             propose(ratio(&turned), Mistake::Sign(name.clone()));
             if let Some((by, left)) = self.joint_off(&with, own, joint) {
-                // One more number fits better by itself.
+                // One more unknown fits better by itself.
                 propose(2.0 * left, Mistake::Joint(name.clone(), by));
             }
         }
         best.1.unwrap_or(Mistake::Off(off_m))
     }
 
-    /// The change of one reading that explains a row best, and the ratio that is left.
+    /// The change of one reading that explains a row best, and the remaining ratio.
     fn joint_off(
         &self,
         with: &impl Fn(&[f64]) -> Option<Dataset>,
@@ -203,7 +203,7 @@ impl Known {
     ) -> Option<(f64, f64)> {
         let mut readings = own.to_vec();
         let mut by = 0.0;
-        // Some steps: an offset may be large.
+        // Several steps: an offset may be large.
         for _ in 0..6 {
             let (rows, residuals) = self.experiment.rows(&with(&readings)?);
             let mut near = readings.clone();
@@ -224,7 +224,7 @@ impl Known {
         Some((by, self.innovation(&with(&readings)?).ratio))
     }
 
-    /// By how much the target of some of the fitted rows is elsewhere, if it evidently is; `before` is what was known before them.
+    /// Displacement of the target of some of the fitted rows, if it is evident; `before` is the scale and its degrees of freedom before them.
     pub(crate) fn shift(
         &self,
         data: &Dataset,
@@ -259,8 +259,8 @@ impl Known {
         (step.dot(&pull) > limit).then(|| step.norm())
     }
 
-    /// Expected errors now and after more rows, and the next configuration: of the best list of so many rows, which begins with that of
-    /// the row before, the one that gains most by itself.
+    /// Expected errors now and after more rows, and the next configuration: from the best list of [`AHEAD`] rows, which begins with that of the row
+    /// before, the one with the largest single gain.
     pub(crate) fn foresee(&mut self, found: &mut WatchedRow) {
         let Some((state, squares)) = State::new(&self.aim, &self.gram) else { return };
         found.now = Some(self.errors(&squares));
@@ -290,7 +290,7 @@ impl Known {
         found.next = next.and_then(|&(_, at)| each.nth(at)).map(<[f64]>::to_vec);
     }
 
-    /// Errors with noise and terms as large as the rows show them.
+    /// Errors with noise and terms as large as estimated from the rows.
     fn errors(&self, squares: &Squares) -> ExpectedErrors {
         let seen = Squares {
             true_noise: squares.true_noise * self.scale,

@@ -1,4 +1,4 @@
-//! A plan: configurations that determine the most, rows to judge by, and how the expected error falls with their number.
+//! A plan: the most informative configurations, judging rows, and the decrease of the expected error with their number.
 
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
@@ -26,8 +26,8 @@ const RANDOM: usize = 32;
 /// Plans a session: theory.md, *Choosing configurations*.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] for kinds of measurement whose configurations cannot be chosen, and where there are fewer candidates than
-/// configurations; [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
+/// [`ErrorKind::Option`] for kinds of measurement whose configurations cannot be chosen, and if there are fewer candidates than configurations;
+/// [`ErrorKind::Problem`] if the robot has more unknowns than one fit allows.
 pub fn plan(robot: &Robot, options: &PlanOptions) -> Result<Plan> {
     Planner::new(robot, options)?.plan()
 }
@@ -37,7 +37,7 @@ pub(crate) struct Planner<'a> {
     pub(crate) options: &'a PlanOptions,
     pub(crate) experiment: Experiment,
     pub(crate) candidates: Vec<f64>,
-    /// Where each candidate stands in the list.
+    /// Index of each candidate in the list.
     pub(crate) origins: Option<Vec<usize>>,
     pub(crate) refusals: Refusals,
     pub(crate) left_out: Vec<(String, String)>,
@@ -152,7 +152,7 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// Expected squared errors of rows beside the kept ones, and the logarithm of the determinant of geometry's information.
+    /// Expected squared errors of rows added to the kept ones, and the logarithm of the determinant of geometry's information.
     fn squares(&self, rows: &Blocks) -> Result<(Squares, f64)> {
         let mut aim = self.aim.clone();
         aim.weights.determinant = 1.0;
@@ -162,7 +162,7 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// Refuses configurations in which more numbers are measured than the updates of a plan have room for.
+/// Refuses configurations with more measured components than the updates of a plan allow.
 fn refuse_many_numbers(experiment: &Experiment) -> Result<()> {
     if experiment.numbers > MOST_NUMBERS {
         return ErrorKind::Option.refuse(format!(
@@ -182,13 +182,13 @@ fn kept_information(experiment: &Experiment, stay: &[f64], columns: usize) -> Re
     Ok((kept.gram(0..kept.count()), kept.count()))
 }
 
-/// The aim of a plan whose errors are not weighed against each other yet.
+/// The aim of a plan whose errors are not yet weighted against each other.
 fn aim_at(experiment: &Experiment, workspace: &[f64], has_terms: bool) -> Aim {
     let weights = Weights { calibrated: 1.0, corrected: if has_terms { 1.0 } else { 0.0 }, determinant: 0.0 };
     Aim::new(&experiment.prior, experiment.moments(workspace), weights, experiment.share())
 }
 
-/// The error of fewer configurations than the plan takes.
+/// The error of too few configurations for the plan.
 fn too_few(count: usize, new: usize, refusals: &Refusals) -> Error {
     let words = refusals.words();
     ErrorKind::Option.error(format!(

@@ -1,9 +1,9 @@
-//! Which configurations to measure, how many, and what error to expect: before anything is measured, and while it is (docs/theory.md,
-//! *Choosing configurations*).
+//! Choice of configurations, their number, and the expected error: before anything is measured, and during measurement (docs/theory.md, *Choosing
+//! configurations*).
 //!
-//! `make.rs` has the steps: an experiment at the nominal model (`experiment.rs`), what can be measured (`conditions.rs`, `capsule.rs`), which
-//! candidates (`search.rs`, by the low-rank updates of `state.rs`, `change.rs` and `caches.rs`), and the order of travel (`order.rs`). `watch.rs` judges
-//! a row against its prediction, then fits it. No files and no fits of its own beside that one.
+//! `make.rs` has the steps: an experiment at the nominal model (`experiment.rs`), conditions of measurement (`conditions.rs`, `capsule.rs`), the
+//! choice of candidates (`search.rs`, by the low-rank updates of `state.rs`, `change.rs` and `caches.rs`), and the order of travel (`order.rs`).
+//! `watch.rs` judges a row against its prediction, then fits it. No files and no fits of its own except that one.
 
 mod blocks;
 mod caches;

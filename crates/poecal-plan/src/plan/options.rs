@@ -1,4 +1,4 @@
-//! What is planned, and how.
+//! Options of a plan.
 
 use nalgebra::Vector3;
 
@@ -8,12 +8,12 @@ use poecal_fit::analysis::PlannedSession;
 use poecal_model::robot::{Corrections, Tolerance};
 use poecal_model::simulate::Kind;
 
-/// Where the first of several targets is if nothing else is stated, metres.
+/// Default position of the first of several targets, metres.
 const NEST_M: [f64; 3] = [0.05, 0.0, 0.0];
-/// Candidates that are drawn where none are given.
+/// Number of drawn candidates if none are supplied.
 const CANDIDATES: usize = 2000;
 
-/// The fit that will be made of planned measurements: what is measured, and what is believed before.
+/// The future fit of planned measurements: the measurements, and the priors.
 ///
 /// ```
 /// use poecal_plan::plan::PlannedFit;
@@ -21,26 +21,26 @@ const CANDIDATES: usize = 2000;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedFit {
-    /// Kind and noise of the measurements, and whether the device's frame is unknown.
+    /// Kind and noise of the measurements, and the choice of an unknown device frame.
     pub session: PlannedSession,
     /// Number of different configurations.
     pub count: usize,
     /// Prior of the axes ([`poecal_calibrate::CalibrationOptions::tolerance`]).
     pub tolerance: Option<Tolerance>,
-    /// Terms of the joints that are expected and will be fitted for the corrected model; of the common sizes unless sizes are given.
+    /// Expected joint terms, which will be fitted for the corrected model; of the common sizes unless sizes are stated.
     pub corrections: Corrections,
-    /// Where weights are pulled, in the base frame.
+    /// Direction of gravity, in the base frame.
     pub gravity: Vector3<f64>,
-    /// Error of the tip that remains however much is measured; 0.3 mm for each metre of reach if unknown.
+    /// Error of the tip that remains for any number of measurements; 0.3 mm for each metre of reach if unknown.
     pub robot_error: Option<RobotError>,
     /// Number of targets of a nest at the tip, all measured in each configuration.
     pub targets: usize,
-    /// Place of the first target in the tip's frame, metres, the others turned about its z; `None` plans for the targets of the model.
+    /// Position of the first target in the tip's frame, metres, the others turned about its z; `None` plans for the targets of the model.
     pub target_offset: Option<Vector3<f64>>,
 }
 
 impl Default for PlannedFit {
-    /// Points with 0.05 mm of 30 configurations.
+    /// Points with 0.05 mm in 30 configurations.
     fn default() -> Self {
         PlannedFit {
             session: PlannedSession { kind: Kind::POINT, ..PlannedSession::default() },
@@ -55,7 +55,7 @@ impl Default for PlannedFit {
     }
 }
 
-/// What to plan.
+/// Options of a plan.
 ///
 /// ```
 /// use poecal_plan::plan::{PlanOptions, PlannedFit, plan};
@@ -68,27 +68,27 @@ impl Default for PlannedFit {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanOptions {
-    /// The fit that will be made.
+    /// The future fit.
     pub fit: PlannedFit,
-    /// What the list shall be good at.
+    /// Criterion of the list.
     pub criterion: PlanCriterion,
-    /// Configurations to choose from, readings one after the other; where there are none, random ones are drawn and improved.
+    /// Configurations to choose from, readings one after the other; if there are none, random ones are drawn and improved.
     pub list: Option<Vec<f64>>,
-    /// Number of random ones that are drawn.
+    /// Number of drawn candidates.
     pub candidates: usize,
-    /// Configurations in which the robot will work, where predictions shall be good; random ones within the limits if there are none.
+    /// Configurations of the robot's work, in which predictions shall be good; random ones within the limits if there are none.
     pub workspace: Option<Vec<f64>>,
-    /// Number of random rows to judge by; a third of the configurations if it is not stated.
+    /// Number of random judging rows; by default a third of the configurations.
     pub judge: Option<usize>,
-    /// What a configuration must fulfil to be measured.
+    /// Conditions of measurement.
     pub conditions: Conditions,
-    /// Rows that are there already: those to fit count, those that return to an earlier one do not.
+    /// Existing rows: those to fit count, those that return to an earlier one do not.
     pub kept: Vec<PlannedRow>,
-    /// Indices of kept rows that could not be measured: new ones take their places, not within 10° of them, and the plan has all rows in their order.
+    /// Indices of kept rows that could not be measured: new ones replace them, not within 10° of them, and the plan has all rows in their order.
     pub replaced: Vec<usize>,
-    /// Whether lists of other lengths are planned too, which shows how many are enough and takes as long as the list.
+    /// True if lists of other lengths are planned too, which shows the sufficient number and takes as long as the list.
     pub with_curve: bool,
-    /// Seed of what is random.
+    /// Seed of random choices.
     pub seed: u64,
 }
 
@@ -121,7 +121,7 @@ impl PlanOptions {
         self.kept.iter().filter(stays).flat_map(|row| row.readings.clone()).collect()
     }
 
-    /// The rows that are replaced: of a row that returns, the one to which it does.
+    /// The rows that are replaced: for a row that returns, the one to which it returns.
     pub(crate) fn replaced_rows(&self) -> Vec<&PlannedRow> {
         let mut found: Vec<&PlannedRow> = Vec::new();
         for row in self.replaced.iter().filter_map(|&at| self.kept.get(at)) {
@@ -138,7 +138,7 @@ impl PlanOptions {
         self.replaced_rows().into_iter().flat_map(|row| row.readings.clone()).collect()
     }
 
-    /// How many new configurations there will be of a part: some that complete the kept ones, or those that take places.
+    /// Number of new configurations of a part: those that complete the kept ones, or those that replace rows.
     pub(crate) fn new_of(&self, part: RowPart, kept: usize) -> usize {
         if self.replaced.is_empty() {
             return match part {
@@ -151,7 +151,7 @@ impl PlanOptions {
 }
 
 impl PlannedFit {
-    /// The same with so many targets at the tip, the first at an offset, metres; several without one are beside the flange.
+    /// The fit with this number of targets at the tip, the first at an offset, metres; several without an offset are beside the flange.
     #[must_use]
     pub fn with_targets(self, targets: usize, offset_m: Option<[f64; 3]>) -> Self {
         let offset_m = offset_m.or((targets > 1).then_some(NEST_M));
@@ -159,17 +159,17 @@ impl PlannedFit {
     }
 }
 
-/// Root mean square error of the tip that a calibration leaves however much is measured, metres.
+/// Root mean square error of the tip that a calibration leaves for any number of measurements, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotError {
-    /// Of the calibrated model: what no geometry describes.
+    /// Error of the calibrated model: the part that no geometry describes.
     pub calibrated_m: f64,
-    /// Of the corrected model: what neither geometry nor terms of the joints describe; if unknown, what terms of the common sizes leave of the
-    /// former, and 0.4 of it at least.
+    /// Error of the corrected model: the part that neither geometry nor joint terms describe. If unknown, it is the rest of the former beyond terms
+    /// of the common sizes, and at least 0.4 of it.
     pub corrected_m: Option<f64>,
 }
 
-/// What a list of configurations shall be good at.
+/// Criterion of a list of configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PlanCriterion {
     /// Expected squared error of the tip over the workspace, of the calibrated and of the corrected model, each relative to that of random
@@ -187,7 +187,7 @@ pub enum PlanCriterion {
 }
 
 impl PlanCriterion {
-    /// Each with its word.
+    /// All criteria with their words.
     pub const WORDS: [(&'static str, PlanCriterion); 5] = [
         ("expected", PlanCriterion::Expected),
         ("D", PlanCriterion::D),
@@ -196,7 +196,7 @@ impl PlanCriterion {
         ("G", PlanCriterion::G),
     ];
 
-    /// Its word.
+    /// Word of the criterion.
     #[must_use]
     pub fn word(self) -> &'static str {
         Self::WORDS.into_iter().find(|it| it.1 == self).map_or("expected", |it| it.0)

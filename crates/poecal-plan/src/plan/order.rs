@@ -2,10 +2,10 @@
 
 use poecal_model::robot::{ReadingKind, Robot};
 
-/// Sweeps of shortening the way.
+/// Sweeps that shorten the path.
 const SWEEPS: usize = 20;
 
-/// How far configurations are from each other: the largest change of a joint, radians, of one that slides by the length that a radian counts.
+/// Distance between configurations: the largest change of a joint, radians; for a sliding joint over the length that a radian counts.
 pub(crate) struct Travel {
     scales: Vec<f64>,
 }
@@ -28,7 +28,7 @@ impl Travel {
             .fold(0.0, f64::max)
     }
 
-    /// An order of configurations with a short way from `start` on: from each to the nearest, then shortened by turning parts of it round.
+    /// An order of configurations with a short path from `start` on: from each to the nearest, then shortened by reversing parts of it.
     pub(crate) fn ordered(&self, start: &[f64], rows: &[&[f64]]) -> Vec<usize> {
         let mut left: Vec<usize> = (0..rows.len()).collect();
         let (mut order, mut at) = (Vec::new(), start);

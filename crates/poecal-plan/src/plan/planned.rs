@@ -1,4 +1,4 @@
-//! A plan that was made.
+//! Result of planning.
 
 use super::conditions::Refusals;
 use super::expected::{CurvePoint, ExpectedErrors};
@@ -7,32 +7,32 @@ use super::rows::PlannedRow;
 /// A plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The rows in the order in which to measure them.
+    /// The rows in the order of measurement.
     pub rows: Vec<PlannedRow>,
     /// Expected errors of a fit of the planned rows.
     pub expected: ExpectedErrors,
     /// Median expected errors of as many random configurations.
     pub random: ExpectedErrors,
-    /// Expected errors of fewer and more planned configurations, where they were wanted.
+    /// Expected errors of fewer and more planned configurations, if they were requested.
     pub curve: Vec<CurvePoint>,
     /// Number of configurations from which 10 more gain less than 5 %.
     pub enough: Option<usize>,
-    /// Unknowns of geometry, and numbers that a configuration gives.
+    /// Number of unknowns of geometry.
     pub unknowns: usize,
-    /// Numbers that a configuration gives.
+    /// Number of components measured in a configuration.
     pub numbers: usize,
-    /// Whether the robot error is a guess: 0.3 mm for each metre of reach.
+    /// True if the robot error is a guess: 0.3 mm for each metre of reach.
     pub robot_error_is_a_guess: bool,
     /// Logarithm of the determinant of geometry's information, to compare lists of one robot.
     pub log_determinant: f64,
-    /// Conditions that candidates did not fulfil.
+    /// Conditions that candidates did not meet.
     pub refusals: Refusals,
-    /// Pairs of links whose shapes always overlap, for which collisions are not looked.
+    /// Pairs of links whose shapes always overlap, which are not checked for collisions.
     pub left_out: Vec<(String, String)>,
     /// Joints without limits, which were taken within ±180° or ±0.5 m.
     pub without_limits: Vec<String>,
     /// Joints whose limits span more than a turn, which were taken within one.
     pub beyond_a_turn: Vec<String>,
-    /// The way from row to row: sum of the largest turn of a joint, radians (of one that slides, over the length that a radian counts).
+    /// Length of the path from row to row: sum of the largest turn of a joint, radians (for a sliding joint, over the length that a radian counts).
     pub travel_rad: f64,
 }

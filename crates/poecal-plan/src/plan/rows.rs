@@ -1,19 +1,19 @@
-//! Rows of a list: what each is for, and which return to the first.
+//! Rows of a list: the purpose of each, and those that return to the first.
 
-/// Every so many rows the first configuration is measured again.
+/// Interval of rows after which the first configuration is measured again.
 pub const RETURN_EVERY: usize = 20;
 
-/// What a planned row is for.
+/// Purpose of a planned row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowPart {
-    /// It is fitted.
+    /// The row is fitted.
     Fit,
-    /// It is held out, to judge by.
+    /// The row is held out, to judge the fit.
     Judge,
 }
 
 impl RowPart {
-    /// Its word in the column `set`.
+    /// Word in the column `set`.
     #[must_use]
     pub fn set(self) -> &'static str {
         match self {
@@ -28,16 +28,16 @@ impl RowPart {
 pub struct PlannedRow {
     /// Readings in the order of [`Robot::reading_names`](poecal_model::robot::Robot::reading_names), radians and metres.
     pub readings: Vec<f64>,
-    /// What it is for.
+    /// Purpose of the row.
     pub part: RowPart,
-    /// Whether it is the first configuration again.
+    /// True if it is the first configuration again.
     pub returns: bool,
-    /// Index of a candidate of the list from which it was chosen.
+    /// Index of the candidate of the list from which it was chosen.
     pub candidate: Option<usize>,
 }
 
 impl PlannedRow {
-    /// Rows of a list by their readings, one after the other, and by what each is for; rows with the readings of an earlier one return to it.
+    /// Rows of a list by their readings, one after the other, and by their purposes; rows with the readings of an earlier one return to it.
     #[must_use]
     pub fn of_list(readings: &[f64], width: usize, parts: &[RowPart]) -> Vec<PlannedRow> {
         let mut rows: Vec<PlannedRow> = Vec::new();
@@ -49,13 +49,13 @@ impl PlannedRow {
     }
 }
 
-/// How many rows of a list of so many return to the first: every twentieth.
+/// Number of rows of a list of `rows` that return to the first: every twentieth.
 #[must_use]
 pub fn returns_of(rows: usize) -> usize {
     rows / RETURN_EVERY
 }
 
-/// The rows with the first one again behind every so many.
+/// The rows with the first one inserted again at each interval.
 pub(crate) fn with_returns(rows: Vec<PlannedRow>) -> Vec<PlannedRow> {
     let Some(first) = rows.first().cloned() else { return rows };
     let again = PlannedRow { returns: true, candidate: None, ..first };

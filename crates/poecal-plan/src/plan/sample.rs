@@ -1,4 +1,4 @@
-//! What a sample of configurations settles of a planned session: layout, prior, robot error and modes.
+//! Properties of a planned session that a sample of configurations determines: layout, prior, robot error and modes.
 
 use nalgebra::DMatrix;
 
@@ -16,20 +16,20 @@ use poecal_numerics::linalg;
 use poecal_numerics::solve::Normal;
 use poecal_numerics::unit::Unit;
 
-/// Largest number of places from which one configuration is measured.
+/// Largest number of stations from which one configuration is measured.
 const MOST_PLACES: usize = 64;
-/// Information on every unknown that nothing else is known of, of the base's place too, 1/m²: it is known to a metre.
+/// Prior information on every unknown without another prior, including the base's position, 1/m²: a standard deviation of one metre.
 const RIDGE: f64 = 1.0;
-/// A combination of terms of whose prior variance all rows together take less than this share is left out.
+/// Least share of a combination's prior variance that all rows together must remove; below it the combination is left out.
 const NEGLIGIBLE: f64 = 0.01;
-/// Robot error where none is stated, as a share of the reach.
+/// Default robot error, as a share of the reach.
 const USUAL_ERROR: f64 = 3e-4;
-/// Share of the squared robot error that no terms describe, at least: 0.14 of an IRB 120, more of others.
+/// Least share of the squared robot error that no terms describe: 0.14 for an IRB 120, more for others.
 const LEAST_REST: f64 = 0.16;
-/// Share of the robot error that terms make at least, where it is stated with and without them.
+/// Least share of the robot error due to terms, if it is stated with and without them.
 const LEAST_TERMS: f64 = 0.2;
 
-/// Places of the unknowns in a step: of geometry, and of terms with their scales and prior standard deviations.
+/// Indices of the unknowns in a step: of geometry, and of terms with their scales and prior standard deviations.
 struct Places {
     geometry: Vec<usize>,
     terms: Vec<usize>,
@@ -74,7 +74,7 @@ impl Experiment {
         let session = self.session_of(&data, &packed);
         let joints = screw_axes(self.estimate.kinds());
         let free = match begun {
-            // Device frames turn about the middle of what was measured.
+            // Device frames turn about the middle of the measured points.
             Some((data, _)) => {
                 let packed = Packed::from_dataset(&self.model, data);
                 free_parameters(&self.session_of(data, &packed), &self.estimate, &data.all_rows(), joints)
@@ -98,7 +98,7 @@ impl Experiment {
         self.settle_modes(sample, fit.count)
     }
 
-    /// Counts the places that measure one configuration.
+    /// Counts the stations that measure one configuration.
     fn count_places(&self, sample: &[f64]) -> Result<usize> {
         let often = sample[..self.width()].repeat(MOST_PLACES);
         let (data, _) = predicted_data(&self.robot, &often, &self.session)?;
@@ -109,7 +109,7 @@ impl Experiment {
         Ok(sights.len().max(1))
     }
 
-    /// The prior information of geometry, with some on every unknown.
+    /// The prior information of geometry, with a minimum on every unknown.
     fn prior_information(
         &self,
         session: &Session<'_>,
@@ -127,7 +127,8 @@ impl Experiment {
         DMatrix::from_fn(geometry.len(), geometry.len(), own)
     }
 
-    /// The robot error: what of it the terms make, which are made less where it is less, and what is left as noise of every row.
+    /// Splits the robot error: the part due to the terms, whose sizes are scaled down for a smaller error, and the rest, which becomes noise of every
+    /// row.
     fn settle_error(&mut self, sample: &[f64], fit: &PlannedFit) -> Result<()> {
         let usual = RobotError { calibrated_m: USUAL_ERROR * self.robot.reach_m(), corrected_m: None };
         let stated = fit.robot_error.unwrap_or(usual);
@@ -148,7 +149,7 @@ impl Experiment {
         self.deviations.iter_mut().for_each(|it| it.deviation *= scale);
         self.rest_m = (error_m.powi(2) - (scale * of_terms).powi(2)).max(0.0).sqrt();
         self.left_m = stated.corrected_m.unwrap_or(self.rest_m);
-        // The rest is another in each configuration; what turns by it is as far away as a radian counts.
+        // The rest varies between configurations; for rotations it is converted by the length that a radian counts.
         let each = self.rest_m / 3f64.sqrt();
         let (stated, length_m) = (fit.session.noise, self.length_m);
         let leading = fit.session.kind.quantities().first().copied().unwrap_or(Quantity::Position);
@@ -162,7 +163,7 @@ impl Experiment {
         Ok(())
     }
 
-    /// What terms of their sizes make of the tip's error in the limit of many random rows, RMS.
+    /// Error of the tip due to terms of their sizes in the limit of many random rows, RMS.
     fn error_of_terms(&self, sample: &[f64]) -> Result<f64> {
         let (rows, moments) = (self.blocks(sample)?, self.moments(sample));
         let (g, c) = (self.geometry.len(), self.terms.len());
@@ -176,7 +177,7 @@ impl Experiment {
         Ok(bias.max(0.0).sqrt())
     }
 
-    /// Combines terms: directions of which a session of so many configurations says something.
+    /// Combines terms: directions about which a session of this number of configurations is informative.
     fn settle_modes(&mut self, sample: &[f64], count: usize) -> Result<()> {
         if self.terms.is_empty() {
             return Ok(());
@@ -192,7 +193,7 @@ impl Experiment {
     }
 }
 
-/// Sorts the places of a layout into those of geometry and of terms.
+/// Sorts the indices of a layout into those of geometry and of terms.
 fn sort_places(layout: &Layout, deviations: &[f64], corrected: &CorrectionModel) -> Places {
     let (mut geometry, mut terms, mut scales) = (Vec::new(), Vec::new(), Vec::new());
     let mut priors = Vec::new();

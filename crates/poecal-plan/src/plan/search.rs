@@ -1,4 +1,4 @@
-//! Which of the candidates: a greedy start, exchanges until nothing gains, and a search around each configuration.
+//! Choice among the candidates: a greedy start, exchanges until nothing gains, and a search around each configuration.
 
 use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
@@ -9,36 +9,36 @@ use super::caches::Caches;
 use super::state::{Aim, Squares, State};
 use poecal_model::simulate::random;
 
-/// Information that a greedy choice begins with beside the prior: that of so many average rows.
+/// Information of a greedy choice beside the prior: that of this number of average rows.
 const SOFT: f64 = 1.0;
 /// Most candidates among which rows are exchanged at a time: the best ones.
 const ACTIVE: usize = 500;
-/// Rounds with the best candidates found anew, and most passes over the list in each; of few candidates until nothing gains.
+/// Rounds with the best candidates searched again, and most passes over the list in each; with few candidates until nothing gains.
 const ROUNDS: usize = 2;
 const PASSES: usize = 4;
 const PASSES_OF_FEW: usize = 20;
-/// Candidates from which the best ones are found but once.
+/// Number of candidates from which the best ones are searched only once.
 const MANY: usize = 4000;
-/// Candidates of many among which the greedy list is chosen, and how many at least for each of its rows.
+/// Candidates of many from which the greedy list is chosen, and their least number for each of its rows.
 const SOME: usize = 2000;
 const FEWEST_EACH: usize = 20;
-/// Random lists from which exchanges begin beside the greedy one, of geometry alone.
+/// Random lists from which exchanges start beside the greedy one, for geometry alone.
 const STARTS: usize = 8;
-/// Share of the criterion below which a gain is none.
+/// Relative gain of the criterion that counts as none.
 const NO_GAIN: f64 = 1e-5;
 
-/// What is sought: rows of candidates beside those that are there already.
+/// Search for rows of candidates in addition to existing rows.
 pub(crate) struct Search<'a> {
     pub(crate) aim: &'a Aim,
-    /// Information of rows that are there in any case.
+    /// Information of existing rows.
     pub(crate) kept: &'a DMatrix<f64>,
     pub(crate) blocks: &'a Blocks,
-    /// Whether two candidates may be in one list.
+    /// True if two candidates may be in one list.
     pub(crate) apart: &'a (dyn Fn(usize, usize) -> bool + Sync),
 }
 
 impl Search<'_> {
-    /// Candidates that gain most, one after the other, behind those chosen already.
+    /// Candidates that gain most, one after the other, after those chosen already.
     pub(crate) fn greedy(&self, mut chosen: Vec<usize>, count: usize) -> Vec<usize> {
         let blocks = self.blocks;
         let every = blocks.count().div_ceil(500).max(1);
@@ -62,7 +62,7 @@ impl Search<'_> {
         chosen
     }
 
-    /// The greedy list; of many candidates that of some, since exchanges look at all.
+    /// The greedy list; with many candidates that of some, since exchanges consider all.
     fn start(&self, count: usize) -> Vec<usize> {
         if self.blocks.count() <= MANY.max(count * FEWEST_EACH) {
             return self.greedy(Vec::new(), count);
@@ -75,8 +75,7 @@ impl Search<'_> {
         found.into_iter().map(|at| some[at]).collect()
     }
 
-    /// The best list of so many: from the greedy one, and of geometry alone among few candidates, which takes little time,
-    /// from random ones too.
+    /// The best list of `count`: from the greedy one, and for geometry alone among few candidates, which takes little time, from random ones too.
     pub(crate) fn list(&self, count: usize, seed: u64) -> Vec<usize> {
         let all = || 0..self.blocks.count();
         if count >= self.blocks.count() && all().all(|a| all().all(|b| a == b || (self.apart)(a, b))) {
@@ -123,7 +122,7 @@ impl Search<'_> {
         })
     }
 
-    /// Exchanges rows of the list, but not its first `fixed` ones, for candidates until nothing gains.
+    /// Exchanges rows of the list, except its first `fixed` ones, for candidates until nothing gains.
     pub(crate) fn exchange(&self, mut chosen: Vec<usize>, fixed: usize) -> Vec<usize> {
         let rounds = if self.blocks.count() > MANY { 1 } else { ROUNDS };
         for _ in 0..rounds {
@@ -140,7 +139,7 @@ impl Search<'_> {
         chosen
     }
 
-    /// The candidates that would gain most beside the list, in their order, with those of the list.
+    /// The candidates with the largest gain beside the list, in their order, with those of the list.
     fn active(&self, chosen: &[usize]) -> Vec<usize> {
         let count = self.blocks.count();
         if count <= ACTIVE {
@@ -184,7 +183,7 @@ impl Search<'_> {
                     Some((at, gain)) if gain > kept + NO_GAIN * before.abs() => at,
                     _ => own,
                 };
-                // The last row took its place.
+                // The last row took the index of the removed one.
                 chosen.push(next);
                 let last = chosen.len() - 1;
                 chosen.swap(position, last);
@@ -195,7 +194,7 @@ impl Search<'_> {
             let Some(after) = self.squares(&chosen).map(|it| it.value(&aim.weights)) else {
                 return unchanged;
             };
-            // Rounding misled.
+            // Rounding caused a wrong exchange.
             if after > before {
                 return unchanged;
             }
@@ -213,8 +212,8 @@ impl Search<'_> {
     }
 }
 
-/// Replaces rows of a list by others nearby, round after round: of each row `near` proposes rows, of which the best is taken if it gains.
-/// `rows` are replaced together with what they are rows of, by `take(row, proposal)`, unless it refuses.
+/// Replaces rows of a list by others nearby, round after round. For each row `near` proposes rows; the best is taken if it gains. `rows` are replaced
+/// together with their configurations, by `take(row, proposal)`, unless it refuses.
 pub(crate) fn around(
     aim: &Aim,
     kept: &DMatrix<f64>,
@@ -277,7 +276,7 @@ mod tests {
         (experiment, aim, blocks, readings)
     }
 
-    /// The low-rank updates against new inverses: gains of all candidates, after rows more and less.
+    /// The low-rank updates compared with new inverses: gains of all candidates, after added and removed rows.
     #[test]
     fn gains_are_differences_of_the_criterion() {
         for kind in [poecal_model::simulate::Kind::POINT, poecal_model::simulate::Kind::POSE] {
@@ -311,7 +310,7 @@ mod tests {
         }
     }
 
-    /// Of points, the mean information of rows is the moments of the targets' motion in units of the noise.
+    /// For points, the mean information of rows equals the moments of the targets' motion in units of the noise.
     #[test]
     fn rows_and_moments_are_of_the_same_motions() {
         let (experiment, aim, blocks, _) = setup(&PlannedFit::default());
@@ -351,7 +350,7 @@ mod tests {
         assert_eq!(rows.len(), 24);
     }
 
-    /// Twenty rows of 120 against what no twenty rows can fall below: the best share of rows for each candidate, whole or not, with the bound of
+    /// Twenty rows of 120 compared with a lower bound for any twenty rows: the best share of rows for each candidate, whole or not, with the bound of
     /// convexity from there.
     #[test]
     fn twenty_rows_are_near_the_bound_by_approximate_design() {
@@ -393,12 +392,12 @@ mod tests {
             let own = search.squares(&found).unwrap().noise;
             let [own, value, bound] = [own, value, bound].map(|it: f64| 1e3 * it.sqrt());
             println!("{kind:?}: {own:.4} mm of {ROWS} rows, {value:.4} mm of shares, bound {bound:.4} mm");
-            // Rows are whole and each of the 120 is taken once; what moving them to better places nearby gains is left out.
+            // Rows are whole and each of the 120 is used once; the gain by moving them to better positions nearby is left out.
             assert!(own <= 1.05 * bound, "{own} {bound}");
         }
     }
 
-    /// The determinant of a planned list against the best that exchanges find from random lists.
+    /// The determinant of a planned list compared with the best that exchanges find from random lists.
     #[test]
     fn the_determinant_is_that_of_the_best_of_many_starts() {
         let fit = PlannedFit {

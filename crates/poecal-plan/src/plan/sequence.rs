@@ -1,4 +1,4 @@
-//! The rows of a plan in the order in which to measure them.
+//! The rows of a plan in the order of measurement.
 
 use super::conditions::{Checker, Obstacle};
 use super::make::Planner;
@@ -7,7 +7,7 @@ use super::rows::{PlannedRow, RowPart, with_returns};
 use poecal_model::simulate::random;
 
 impl Planner<'_> {
-    /// The rows in the order of measuring: those to fit by travel, then those to judge by, and the first one now and again.
+    /// The rows in the order of measurement: those to fit by travel, then the judging ones, and the first one at intervals.
     pub(crate) fn rows(&mut self, readings: Vec<Vec<f64>>, origins: &[Option<usize>]) -> Vec<PlannedRow> {
         let travel = Travel::new(&self.experiment.robot, self.experiment.length_m());
         let judged = self.options.new_of(RowPart::Judge, 0);
@@ -40,7 +40,7 @@ impl Planner<'_> {
         if self.options.replaced.is_empty() { with_returns(rows) } else { self.replaced(rows) }
     }
 
-    /// The kept rows in their order, with new ones in the places of those that are replaced.
+    /// The kept rows in their order, with new ones in place of those that are replaced.
     fn replaced(&self, mut new: Vec<PlannedRow>) -> Vec<PlannedRow> {
         let mut rows = self.options.kept.clone();
         for old in self.options.replaced_rows() {

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
 use poecal_model::robot::{Body, Mount, Robot};
 
-/// Places of the targets at joint frames of [`Robot::joint_poses`], the direction in which each looks, and the body that holds it.
+/// Positions of the targets at joint frames of [`Robot::joint_poses`], the frame that orients each, and the body that holds it.
 pub(crate) fn targets(robot: &Robot, readings: &[f64], frames: &[Pose]) -> Vec<(Vector3<f64>, Pose, Body)> {
     let mounted = &robot.mounted;
     if mounted.is_empty() {

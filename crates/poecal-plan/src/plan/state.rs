@@ -1,11 +1,11 @@
-//! The expected errors of a fit, and how they change with a configuration more or less (docs/theory.md, *Choosing configurations*).
+//! Expected errors of a fit, and their change by adding or removing a configuration (docs/theory.md, *Choosing configurations*).
 
 use nalgebra::DMatrix;
 
 use super::change::{Change, Part, add, dot, product};
 use super::experiment::inverse;
 
-/// What is minimised: weights of the expected squared errors of the calibrated and of the corrected model, and of the logarithm of the
+/// Weights of the minimised criterion: of the expected squared errors of the calibrated and of the corrected model, and of the logarithm of the
 /// determinant of geometry's covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights {
@@ -14,42 +14,42 @@ pub(crate) struct Weights {
     pub(crate) determinant: f64,
 }
 
-/// What does not change while configurations are chosen: priors, and moments of the workspace.
+/// Constants of the choice of configurations: priors, and moments of the workspace.
 #[derive(Clone, Debug)]
 pub(crate) struct Aim {
     /// Number of unknowns of geometry; those after them are modes of unit prior.
     pub(crate) geometry: usize,
-    /// Prior information of all.
+    /// Prior information of all unknowns.
     pub(crate) prior: DMatrix<f64>,
     /// Moments of the workspace.
     pub(crate) moments: DMatrix<f64>,
     pub(crate) weights: Weights,
-    /// Information of rows for the calibrated model, which takes for noise what it does not describe, as a share of that for the corrected one.
+    /// Information of rows for the calibrated model, which treats undescribed errors as noise, as a share of that for the corrected one.
     pub(crate) share: f64,
 }
 
 /// Expected squared errors over the workspace, m².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Squares {
-    /// Of the calibrated model: by noise and prior, where all that it does not describe were noise.
+    /// Error of the calibrated model by noise and prior, if all undescribed errors were noise.
     pub(crate) noise: f64,
-    /// The same with the noise that is.
+    /// The same error with the true noise.
     pub(crate) true_noise: f64,
-    /// Of the calibrated model: by the terms that it does not have.
+    /// Error of the calibrated model by its missing terms.
     pub(crate) terms: f64,
-    /// Of the corrected model.
+    /// Error of the corrected model.
     pub(crate) corrected: f64,
     /// Logarithm of the determinant of geometry's information.
     pub(crate) determinant: f64,
 }
 
 impl Squares {
-    /// Of the calibrated model, as it is made small.
+    /// Minimised error of the calibrated model.
     pub(crate) fn calibrated(&self) -> f64 {
         self.noise + self.terms
     }
 
-    /// What is minimised.
+    /// Minimised criterion.
     pub(crate) fn value(&self, weights: &Weights) -> f64 {
         weights.calibrated * self.calibrated() + weights.corrected * self.corrected
             - weights.determinant * self.determinant
@@ -77,19 +77,19 @@ impl Aim {
     }
 }
 
-/// Covariances, and what the criterion needs of them, of a fit with some information.
+/// Covariances of a fit with some information, and further matrices of the criterion.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     /// Covariance of all unknowns, and `H⁻¹ M H⁻¹`.
     pub(crate) all: [DMatrix<f64>; 2],
     /// The same of geometry alone.
     pub(crate) own: [DMatrix<f64>; 2],
-    /// How terms pull geometry, `A = H⁻¹ J_gᵀ J_c`, and `E = H⁻¹ (M_gg A - M_gc)`.
+    /// Bias of geometry by terms, `A = H⁻¹ J_gᵀ J_c`, and `E = H⁻¹ (M_gg A - M_gc)`.
     pull: [DMatrix<f64>; 2],
 }
 
 impl State {
-    /// Of the information of measurements; none if it is not positive definite with the prior.
+    /// State by the information of measurements; `None` if it is not positive definite with the prior.
     pub(crate) fn new(aim: &Aim, gram: &DMatrix<f64>) -> Option<(State, Squares)> {
         let (g, c) = (aim.geometry, aim.modes());
         let [mgg, mgc, mcc] = aim.parts();
@@ -119,7 +119,7 @@ impl State {
         Some((State { all: [all, q], own: [own, p], pull: [a, e] }, squares))
     }
 
-    /// What changes with these rows more (`sign` 1) or less (-1); none if nothing would remain positive definite.
+    /// Change by adding (`sign` 1) or removing (-1) these rows; `None` if the rest would not be positive definite.
     pub(crate) fn change(&self, aim: &Aim, rows: &[f64], numbers: usize, sign: f64) -> Option<Change> {
         let (g, c) = (aim.geometry, aim.modes());
         let n = g + c;
@@ -176,7 +176,7 @@ fn log_determinant(matrix: &DMatrix<f64>) -> Option<f64> {
     values.iter().all(|&value| value > 0.0).then(|| values.iter().map(|value| value.ln()).sum())
 }
 
-/// Rows as the calibrated model counts them.
+/// Rows with the weight of the calibrated model.
 pub(crate) fn scaled(rows: &[f64], aim: &Aim) -> Vec<f64> {
     let root = aim.share.sqrt();
     rows.iter().map(|value| value * root).collect()

@@ -1,4 +1,4 @@
-//! Rows judged as they arrive, before they are fitted; the error to expect now, and what to measure next (docs/theory.md, *While measuring*).
+//! Rows judged as they arrive, before they are fitted; the present expected error, and the next configuration (docs/theory.md, *While measuring*).
 
 use super::known::Known;
 use super::watched::{Mistake, WatchOptions, WatchedRow};
@@ -6,16 +6,16 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// Rows that are tested together against a target that was moved.
+/// Rows that are tested together for a moved target.
 const TOGETHER: usize = 3;
-/// Numbers from which rows can be judged, beside those of the unknown targets.
+/// Number of components, beyond the unknowns of the targets, from which rows can be judged.
 const FEWEST_NUMBERS: usize = 6;
 
-/// A session that is watched, row after row.
+/// A watched session, row after row.
 pub struct Watch {
     robot: Robot,
     options: WatchOptions,
-    /// Rows that are as expected, and fitted.
+    /// Expected rows, which are fitted.
     good: Vec<u32>,
     known: Option<Known>,
     /// Scales and degrees of freedom after each fitted row.
@@ -24,7 +24,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// A session of a robot of which nothing is measured yet.
+    /// A session of a robot without measurements yet.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] for kinds of measurement other than points and poses of a device.
@@ -109,7 +109,7 @@ impl Watch {
         Ok(())
     }
 
-    /// Whether the last rows have in common that their target is elsewhere.
+    /// Tests whether the last rows share a moved target.
     fn moved(&mut self, data: &Dataset) -> Option<Mistake> {
         let known = self.known.as_ref()?;
         let before = *self.history.len().checked_sub(TOGETHER + 1).and_then(|at| self.history.get(at))?;
@@ -131,7 +131,7 @@ impl Watch {
     }
 }
 
-/// Whether two rows have the same readings, target and numbers.
+/// True if two rows have the same readings, target and numbers.
 fn is_repeated(data: &Dataset, before: usize, row: usize) -> bool {
     let (Some(a), Some(b)) = (data.observations.get(before), data.observations.get(row)) else {
         return false;
@@ -149,7 +149,7 @@ mod tests {
     use poecal_model::measurement::Measurement;
     use poecal_model::simulate::{Kind, Simulation, elbow};
 
-    /// Rows of a simulated session of points, one of them off by 5 mm, one with the wrong sign of joint 5, one stale.
+    /// Rows of a simulated session of points, one with an error of 5 mm, one with the wrong sign of joint 5, one stale.
     #[test]
     fn mistakes_are_named_as_they_arrive() {
         let made = Simulation { count: 40, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();

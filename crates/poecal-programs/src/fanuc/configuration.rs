@@ -8,13 +8,13 @@ use super::super::parsed::Number;
 use super::super::posture::{MARGIN, Posture};
 use super::super::scan::{Token, signed};
 
-/// Letters and turn numbers.
+/// Letters and turn numbers of a configuration.
 ///
-/// `N` (no flip) and `F` (flip) tell the sign of the fifth joint, negative and positive, where negative angles bend the hand down of an arm
-/// whose forearm is level and to the front. `T` (toward, front) and `B` (back) tell on which side of the first axis the wrist's centre is;
-/// `U` (up) and `D` (down) whether the elbow is above the line from shoulder to wrist. With the wrist at the back it is not plain which of
-/// the two elbows is up: there, letters say nothing of it. A turn number t says that its joint is within half a turn of t turns. It is of
-/// joints 1, 4 and 6 or of joints 4, 5 and 6, as the controller is set up: both are tried.
+/// `N` (no flip) and `F` (flip) state the sign of the fifth joint, negative and positive. Negative angles bend the hand down on an arm with a
+/// horizontal forearm to the front. `T` (toward, front) and `B` (back) state the side of the first axis on which the wrist centre is. `U` (up) and
+/// `D` (down) state whether the elbow is above the line from shoulder to wrist. With the wrist at the back, the upper one of the two elbows is
+/// ambiguous: there, `U` and `D` are not checked. A joint with turn number t is within half a turn of t turns. The turn numbers are of joints 1, 4
+/// and 6 or of joints 4, 5 and 6, by the setup of the controller: both are tried.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Configuration {
     is_flipped: bool,
@@ -27,7 +27,7 @@ pub struct Configuration {
 const ORDERS: [[usize; 3]; 2] = [[0, 3, 5], [3, 4, 5]];
 
 impl Configuration {
-    /// Of what stands in quotes, with its turn numbers.
+    /// The configuration in quotes, with its turn numbers.
     pub(crate) fn read(text: &[u8], tokens: &[Token]) -> Option<(Self, Vec<Number>)> {
         let mut parts = tokens.split(|it| it.is(b','));
         let mut letters = (None, None, None);
@@ -39,7 +39,7 @@ impl Configuration {
                 "D" => (&mut letters.1, false),
                 "T" => (&mut letters.2, true),
                 "B" => (&mut letters.2, false),
-                // Others are of other arms.
+                // Other words belong to other arms.
                 _ => return None,
             };
             if place.0.replace(place.1).is_some() {
@@ -54,12 +54,12 @@ impl Configuration {
         Some((Configuration { is_flipped, is_up, is_front, turns }, numbers))
     }
 
-    /// Whether a configuration of the nominal arm (rad) fits, borders included; none of an arm that is built otherwise.
+    /// True if a configuration of the nominal arm (rad) fits, borders included; false for an arm with another structure.
     pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
         self.letters(nominal, q) && self.orders(nominal).any(|order| self.turns_off(order, counted) < MARGIN)
     }
 
-    /// Whether letters fit.
+    /// True if the letters fit.
     fn letters(&self, nominal: &Arm, q: &[f64]) -> bool {
         let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
         let Some(posture) = Posture::new(nominal).filter(Posture::is_down_negative) else { return false };
@@ -70,7 +70,7 @@ impl Configuration {
             && (!self.is_front || agrees(bent.is_before_arm, self.is_up))
     }
 
-    /// How far (rad) a joint is beyond the half turns of its turn number, at most.
+    /// The largest distance (rad) of a joint beyond the half turns of its turn number.
     fn turns_off(&self, order: &[usize; 3], q: &[f64]) -> f64 {
         let off = |(&joint, &turns): (&usize, &i32)| {
             let value = q.get(joint).copied().unwrap_or(f64::INFINITY);
@@ -91,7 +91,7 @@ impl Configuration {
         })
     }
 
-    /// The turn numbers at a configuration of the nominal arm (rad); `None` if letters change, or if it is not plain which number would.
+    /// The turn numbers at a configuration of the nominal arm (rad); `None` if letters change, or if the turn number that changes is ambiguous.
     pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Option<Vec<f64>> {
         let mut is_possible = false;
         for order in self.orders(nominal) {

@@ -10,24 +10,24 @@ use super::super::scan::{Kind, Token, shown};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Move {
     pub(crate) line: usize,
-    /// Whether the way is straight or an arc.
+    /// True if the path is straight or an arc.
     pub(crate) is_straight: bool,
-    /// `INC`.
+    /// True for `INC`.
     pub(crate) is_incremental: bool,
-    /// `COORD`, `RTCP`.
+    /// True for `COORD` or `RTCP`.
     pub(crate) is_coordinated: bool,
-    /// The user frame and the tool that are active, where that is plain from the statements before.
+    /// The active user frame and tool, if the statements before determine them.
     pub(crate) frame: Option<u32>,
     pub(crate) tool: Option<u32>,
 }
 
-/// Most different motions to positions of a computed number that are kept.
+/// Largest number of different motions to positions with a computed number that are kept.
 const MOST: usize = 16;
 
-/// What instructions say of positions.
+/// Instructions that concern positions.
 pub(crate) struct Instructions<'a> {
     text: &'a [u8],
-    /// The instruction that is not at its end.
+    /// The instruction that has not ended.
     open: Vec<Token>,
     frame: Option<u32>,
     tool: Option<u32>,
@@ -59,7 +59,7 @@ impl<'a> Instructions<'a> {
         own.filter_map(|&it| self.moves.get(it)).map(|(_, of)| of).chain(&self.any).collect()
     }
 
-    /// A line of the section: `12: instruction ;`, or what continues the line before.
+    /// Reads a line of the section: `12: instruction ;`, or a continuation of the line before.
     pub(crate) fn line(&mut self, line: Range<usize>, number: usize) {
         let bytes = self.text.get(line.clone()).unwrap_or_default();
         let digits = bytes.iter().take_while(|it| it.is_ascii_whitespace() || it.is_ascii_digit()).count();
@@ -67,13 +67,13 @@ impl<'a> Instructions<'a> {
             return;
         }
         if bytes.iter().take(digits).any(u8::is_ascii_digit) && !self.open.is_empty() {
-            // The one before has no end.
+            // The instruction before has no end.
             let instruction = std::mem::take(&mut self.open);
             self.instruction(&instruction);
         }
         let start = digits + 1;
         let rest = bytes.get(start..).unwrap_or_default().trim_ascii_start();
-        // Remarks, and instructions that are switched off.
+        // Remarks, and disabled instructions, are ignored.
         if self.open.is_empty() && [b"!".as_slice(), b"//", b"--"].iter().any(|it| rest.starts_with(it)) {
             return;
         }
@@ -107,7 +107,7 @@ impl<'a> Instructions<'a> {
         } else if let Some(tool) = set("UTOOL_NUM") {
             self.tool = tool;
         } else if !is(first, "WAIT") && !is(first, "DO") && !is(first, "RO") && !is(first, "R") {
-            // Anything else may be led to from elsewhere, or set them.
+            // Any other instruction may be a jump target, or set them.
             (self.frame, self.tool) = (None, None);
         }
     }
@@ -126,7 +126,7 @@ impl<'a> Instructions<'a> {
         };
         let offset = ["OFFSET", "TOOL_OFFSET", "VOFFSET"].into_iter().find(|it| has(it));
         let mut rest = tokens.get(1..).unwrap_or_default();
-        // An arc's instruction has two of them.
+        // An arc's instruction has two positions.
         while let Some((word, after)) = rest.split_first() {
             let inside = super::super::scan::bracket(after, b'[', b']');
             let is_register = word.is_word(text, "PR");

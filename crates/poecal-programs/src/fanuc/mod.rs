@@ -1,8 +1,8 @@
 //! Positions of programs of FANUC in their printed form (LS): `P[n]` of the section `/POS`, as joints or as poses.
 //!
-//! A position states its user frame, its tool and its configuration itself; frames and tools stand in the controller, and the user states
-//! them. Positions of joints are the controller's readings, whose third joint is counted from the level and not from the lower arm: so are
-//! those of a calibration whose joints were read from the controller.
+//! A position itself states its user frame, its tool and its configuration. The frames and tools are in the controller, and the user states them.
+//! Positions of joints are the controller's readings, whose third joint is measured from the horizontal and not from the lower arm. The readings of
+//! a calibration by the controller's joints have the same convention.
 
 pub(crate) mod configuration;
 mod instructions;
@@ -60,7 +60,7 @@ pub(crate) fn parse(text: &[u8], given: &Given, axes: &Axes) -> Parsed {
     Maker { given, axes, tracked, out: Parsed::default(), targets: HashMap::new() }.all(all, &instructions)
 }
 
-/// Whether a line of the section `/APPL` says that the program follows a moving line.
+/// True if a line of the section `/APPL` states that the program follows a moving line.
 fn follows_line(line: &[u8]) -> bool {
     let text = String::from_utf8_lossy(line).to_ascii_uppercase();
     let number = text
@@ -69,16 +69,16 @@ fn follows_line(line: &[u8]) -> bool {
     text.contains("LINE_TRACK_SCHEDULE_NUMBER") && number.is_some_and(|it| it > 0)
 }
 
-/// A target, and tool, frame and configuration of the motions to it.
+/// A target, with tool, frame and configuration of the motions to it.
 type Made = (Target, Option<Pose>, Option<Pose>, Stated);
 
 struct Maker<'a> {
     given: &'a Given,
     axes: &'a Axes,
-    /// Line that says that the program follows a moving line.
+    /// Line which states that the program follows a moving line.
     tracked: Option<usize>,
     out: Parsed,
-    /// Of each position, its motion.
+    /// Motion of each position.
     targets: HashMap<u32, Motion>,
 }
 
@@ -112,8 +112,8 @@ impl Maker<'_> {
         self.out.sorted()
     }
 
-    /// Motions in the order of the text, then positions without one: they are corrected too, since another program or an index that is
-    /// computed may lead there.
+    /// Motions in the order of the text, then positions without one: they are corrected too, since another program or a computed index may lead
+    /// there.
     fn motions(&mut self, instructions: &Instructions<'_>) {
         let mut is_moved = vec![false; self.out.targets.len()];
         for (number, of) in &instructions.moves {
@@ -128,7 +128,7 @@ impl Maker<'_> {
         self.out.motions.extend(rest.into_iter().cloned());
     }
 
-    /// The external axes that the model has, and the others.
+    /// The external axes of the model, and the others.
     fn external<'o>(&self, all: &'o [Option<Number>]) -> Result<(Vec<Number>, &'o [Option<Number>]), String> {
         let (own, others) = all.split_at_checked(self.axes.external.len()).ok_or(NO_EXTERNAL)?;
         let own: Option<Vec<Number>> = own.iter().cloned().collect();
@@ -136,7 +136,7 @@ impl Maker<'_> {
     }
 
     fn target(&self, position: &Position, moves: &[&Move]) -> Result<Made, String> {
-        // What other groups have in it moves without this arm, but for motions with COORD.
+        // Other groups in the position move without this arm, except for motions with COORD.
         let mut own = position.groups.iter().filter(|(number, _)| [0, ARM].contains(number));
         let group = match (own.next(), own.next()) {
             (Some((_, group)), None) => group,

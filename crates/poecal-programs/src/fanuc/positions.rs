@@ -9,35 +9,35 @@ use super::Configuration;
 pub(crate) struct Position {
     pub(crate) number: u32,
     pub(crate) line: usize,
-    /// As it is written: `P[3:above]`.
+    /// Name in the text: `P[3:above]`.
     pub(crate) name: String,
-    /// Its groups of axes, with their numbers; 0 of what is in none.
+    /// Its groups of axes, with their numbers; 0 for contents without a group.
     pub(crate) groups: Vec<(u32, Group)>,
 }
 
-/// What a position says of a group.
+/// Contents of a position for a group.
 #[derive(Clone, Debug)]
 pub(crate) enum Group {
     Joints(Vec<Number>, Vec<Option<Number>>),
     Pose(Box<PoseOf>),
-    /// Neither, and why.
+    /// Neither, with the reason.
     Unknown(&'static str),
 }
 
 /// A pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PoseOf {
-    /// Numbers of the user frame and the tool; none where they are not stated, or `F`: any.
+    /// Numbers of the user frame and the tool; `None` if they are not stated, or for `F`: any.
     pub(crate) frame: Option<u32>,
     pub(crate) tool: Option<u32>,
     pub(crate) configuration: Option<Configuration>,
     /// X, Y, Z, W, P, R, and the turn numbers of the configuration.
     pub(crate) numbers: Vec<Number>,
-    /// External axes, in rad and m; `None` of those without a number.
+    /// External axes, in rad and m; `None` for those without a number.
     pub(crate) external: Vec<Option<Number>>,
 }
 
-/// Positions from a byte on, which is on a line.
+/// Positions from a byte on; `line` is its line.
 pub(crate) fn positions(text: &[u8], start: usize, line: usize) -> Vec<Position> {
     let all: Vec<Token> =
         super::tokens(text, start..text.len(), line).filter(|it| it.kind != Kind::LineEnd).collect();
@@ -55,10 +55,10 @@ pub(crate) fn positions(text: &[u8], start: usize, line: usize) -> Vec<Position>
     out
 }
 
-/// Most tokens of a position's number and name.
+/// Largest number of tokens of a position's number and name.
 const LONGEST_HEAD: usize = 80;
 
-/// The position that begins with this word, and what follows it.
+/// The position that begins with this word, and the tokens behind it.
 fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Position, &'t [Token])> {
     let near = after.get(..after.len().min(LONGEST_HEAD))?;
     let (index, rest) = bracket(near, b'[', b']')?;
@@ -73,7 +73,7 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
         let is_head = |token: &Token| token.kind == Kind::Word && is_group(token.text(text));
         let next = inner.iter().skip(at + 1).position(is_head).map_or(inner.len(), |it| at + 1 + it);
         let part = inner.get(at..next).unwrap_or_default();
-        // `GP1 :`
+        // The head of a group, `GP1 :`.
         if part.first().is_some_and(is_head) {
             let head = part.first().map_or("", |it| it.text(text));
             let number = head.get(2..).and_then(|it| it.parse().ok()).unwrap_or(0);
@@ -86,7 +86,7 @@ fn position<'t>(text: &[u8], word: &Token, after: &'t [Token]) -> Option<(Positi
     Some((Position { number, line: word.line, name, groups }, rest))
 }
 
-/// What stands between braces; `None` where the closing one is missing.
+/// The tokens between braces, and those behind; `None` if the closing brace is missing.
 fn braces(tokens: &[Token]) -> Option<(&[Token], &[Token])> {
     if !tokens.first()?.is(b'{') {
         return None;

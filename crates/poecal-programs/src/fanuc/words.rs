@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::scan::{Rules, Scanner, Token, signed};
 
-/// How the language is written. Comments are told by where they stand, and a quote is also a letter of comments and names.
+/// Syntax of the language. The position of a comment marks it, and a quote is also a letter of comments and names.
 pub(crate) const RULES: Rules =
     Rules { comments: &[], quotes: b"", letters: b"", is_open_in_brackets: false };
 

@@ -1,4 +1,4 @@
-//! Lists of data (`.dat`): targets with the tool and base of their points, the motions being elsewhere.
+//! Lists of data (`.dat`): targets with the tool and base of their points; the motions are in other files.
 
 use super::super::forms::PoseForm;
 use super::super::given::Given;
@@ -48,7 +48,7 @@ fn target(variable: &Variable, numbers: Vec<Number>, meant: Meant) -> Target {
     Target { line: variable.line, name: variable.name.clone(), numbers, meant }
 }
 
-/// What the file says of a point's tool and base: of XP1 in FP1.
+/// Tool and base of a point in the file: those of XP1 are in FP1.
 fn of_point(variables: &Variables, key: &str) -> Option<Place> {
     variables.place(&format!("F{}", key.strip_prefix('X')?))
 }
@@ -75,7 +75,7 @@ fn motion(
     Motion { tool, frame, stated: status.into(), refused, ..Motion::to(target, line) }
 }
 
-/// A tool or base by its number: as the file states it, or the user; number 0 is none.
+/// A tool or base by its number, from the file or the user; number 0 is the identity.
 pub(crate) fn numbered(list: &str, number: i64, variables: &Variables, given: &Given) -> Option<Pose> {
     if number == 0 {
         return Some(Pose::identity());

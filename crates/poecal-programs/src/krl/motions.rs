@@ -1,4 +1,4 @@
-//! Programs of KRL (`.src`): statements, and the motions that they make.
+//! Programs of KRL (`.src`): statements, and their motions.
 
 use std::collections::BTreeSet;
 
@@ -17,10 +17,10 @@ use super::{MOTIONS, RULES, Way, reason};
 use poecal_arm::lie::Pose;
 use poecal_numerics::error::Result;
 
-/// Tool and base of a motion, where they are its own.
+/// Tool and base of a motion, if they are its own.
 type Own = (Option<Setting>, Option<Setting>);
 
-/// A statement that matters.
+/// A statement with an effect on motions.
 #[derive(Clone, Debug)]
 pub(crate) enum Step {
     /// A motion to the target with this index.
@@ -33,9 +33,9 @@ pub(crate) enum Step {
     },
     Tool(Setting),
     Frame(Setting),
-    /// Nobody knows where the robot is.
+    /// The position of the robot becomes unknown.
     Away,
-    /// Neither where it is, nor with which tool and base.
+    /// The position, the tool and the base become unknown.
     Lost,
 }
 
@@ -43,7 +43,7 @@ pub(crate) enum Step {
 const HARMLESS: &str = "WAIT HALT PULSE TRIGGER INTERRUPT SIGNAL CONTINUE DECL EXT EXTFCT IMPORT ENUM STRUC BRAKE \
                         ANIN ANOUT CWRITE SWRITE SREAD CAST_TO CAST_FROM CONFIRM";
 
-/// Words before a bracket that call nothing: operators, and functions of the language that only give a value.
+/// Words before a bracket that call no routine: operators, and functions of the language, which only return a value.
 const FUNCTIONS: &str = "AND OR NOT EXOR B_AND B_OR ABS SQRT SIN COS TAN ACOS ATAN2 VARSTATE STRLEN STRTODELETE INV_POS \
                          FORWARD INVERSE STRCOMP STRFIND ROUND";
 
@@ -54,7 +54,7 @@ pub(crate) struct Reader<'r> {
     axes: &'r Axes,
     variables: &'r Variables,
     out: Parsed,
-    /// Names that are told to be in another file.
+    /// Names of variables in another file, which were already reported.
     absent: BTreeSet<String>,
     blocks: Blocks<Step>,
     /// Routines that other files may call.
@@ -138,7 +138,7 @@ impl<'r> Reader<'r> {
                 if word == "GLOBAL" {
                     self.open.insert(name.clone());
                 }
-                // What does not end where the next begins has ended.
+                // A routine without an end, ends at the beginning of the next one.
                 while self.blocks.depth() > 0 {
                     self.blocks.end();
                 }
@@ -198,7 +198,7 @@ impl<'r> Reader<'r> {
         self.blocks.push(steps.into_iter().map(Node::Step));
     }
 
-    /// What is assigned to a variable of the controller.
+    /// Follows an assignment to a variable of the controller.
     fn assigned(&mut self, key: &str, is_part: bool, value: &[Token]) {
         match key {
             "$TOOL" | "$BASE" if is_part => self.steps([Step::Lost]),
@@ -215,7 +215,7 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// Tool and base of a point that is named.
+    /// Tool and base of a named point.
     fn place(&self, tokens: &[Token]) -> Option<Place> {
         let Value::Name(key) = value(self.text, tokens, self.axes) else { return None };
         self.variables.place(&key)
@@ -256,7 +256,7 @@ impl<'r> Reader<'r> {
         pose.map_or(Setting::Unknown, Setting::Is)
     }
 
-    /// `BAS(#TOOL, 3)` and others.
+    /// Follows `BAS(#TOOL, 3)` and other calls of BAS.
     fn bas(&mut self, rest: &[Token]) {
         let Some((inside, _)) = bracket(rest, b'(', b')') else { return };
         let arguments = parts(inside);
@@ -269,7 +269,7 @@ impl<'r> Reader<'r> {
             Some([Token { kind: Kind::Number(value, 0), .. }]) => Some(*value as i64),
             _ => None,
         };
-        // They set speeds; what they set of tool and base is in FDAT_ACT, which is assigned before.
+        // They set speeds; tool and base are set by FDAT_ACT, which is assigned before.
         const SPEEDS: &str = "PTP_PARAMS CP_PARAMS PTP_DAT CP_DAT VEL_PTP VEL_CP ACC_PTP ACC_CP OV_PRO";
         let step = match word.as_str() {
             "TOOL" => Step::Tool(self.numbered("TOOL_DATA", number)),
@@ -283,7 +283,7 @@ impl<'r> Reader<'r> {
     fn motion(&mut self, tokens: &[Token], way: Way) {
         let (word, rest) = (&tokens[0], &tokens[1..]);
         let line = word.line;
-        // Behind the targets stand words on the path.
+        // Words behind the targets concern the path.
         let ends = ["C_PTP", "C_DIS", "C_VEL", "C_ORI", "C_SPL", "WITH"];
         let is_end = |it: &Token| ends.iter().any(|end| it.is_word(self.text, end));
         let (targets, others) = rest.split_at(rest.iter().position(is_end).unwrap_or(rest.len()));
@@ -319,7 +319,7 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// Tool and base that stand with a motion itself.
+    /// Tool and base in the statement of the motion itself.
     fn own(&self, others: &[Token]) -> Own {
         let mut own = (None, None);
         let Some(start) = others.iter().position(|it| it.is_word(self.text, "WITH")) else { return own };
@@ -329,7 +329,7 @@ impl<'r> Reader<'r> {
                 [_, rest @ ..] => bracket(rest, b'(', b')').map_or(&[][..], |it| it.0),
                 [] => &[],
             };
-            // `STOOL2(FP1)`, `SBASE(FP1.BASE_NO)`: of the point that is named.
+            // `STOOL2(FP1)` and `SBASE(FP1.BASE_NO)` refer to the named point.
             let place = || self.of_place(self.place(inside.get(..1).unwrap_or(&[])));
             let is_call = !inside.is_empty();
             match it.key.as_str() {

@@ -1,4 +1,4 @@
-//! Why targets stay as they are.
+//! Reasons why targets stay unchanged.
 
 pub(crate) const COMPUTED: &str = "it is computed while the program runs";
 pub(crate) const ABSENT: &str = "its values are in another file: correct the one that states them";

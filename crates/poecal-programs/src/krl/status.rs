@@ -8,17 +8,16 @@ use super::super::shape::{axes, wrist_centre};
 /// `S` and `T` of a pose, as far as they are stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Status {
-    /// Status: bit 0 where the wrist's centre is behind axis 1, bit 1 where axis 3 is bent up from the stretched arm, bit 2 where axis 5 is
-    /// negative.
+    /// Status: bit 0 if the wrist centre is behind axis 1, bit 1 if axis 3 is bent up from the stretched arm, bit 2 if axis 5 is negative.
     pub(crate) status: Option<u32>,
-    /// Turn: bit i where axis i + 1 is negative.
+    /// Turn: bit i if axis i + 1 is negative.
     pub(crate) turn: Option<u32>,
 }
 
-/// Angle (rad), and distance over the reach, from a border at which the numbers of a program may round either way.
+/// Angle (rad), and distance over the reach, from a border at which the numbers of a program may be rounded to either side.
 const BORDER: f64 = 2e-4;
 
-/// A bit of a configuration; `None` at the border, where it is what the program says.
+/// A bit of a configuration; `None` at the border, where the program's bit applies.
 type Bit = Option<bool>;
 
 fn sided(value: f64, border: f64) -> Bit {
@@ -26,7 +25,7 @@ fn sided(value: f64, border: f64) -> Bit {
 }
 
 impl Status {
-    /// Whether a configuration of the nominal arm is what is stated; at borders either bit is.
+    /// True if a configuration of the nominal arm has the stated bits; at borders either value is accepted.
     pub(crate) fn fits(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> bool {
         let fit = |stated: Option<u32>, bits: &[Bit]| {
             let Some(stated) = stated else { return true };
@@ -36,7 +35,7 @@ impl Status {
         fit(self.turn, &turns) && fit(self.status, &status(nominal, q, BORDER))
     }
 
-    /// What is stated, for another configuration: bits that the program has beside these stay.
+    /// The stated numbers for another configuration: further bits of the program are kept.
     pub(crate) fn words(&self, nominal: &Arm, q: &[f64], counted: &[f64]) -> Vec<f64> {
         let with = |stated: u32, bits: &[Bit]| {
             let put = |all: u32, (at, bit): (usize, &Bit)| match bit {
@@ -52,16 +51,16 @@ impl Status {
     }
 }
 
-/// The three bits of the status of six turning axes.
+/// The three bits of the status of six revolute axes.
 fn status(nominal: &Arm, q: &[f64], border: f64) -> [Bit; 3] {
     let placed = axes(nominal, q);
     let Some(centre) = wrist_centre(&placed) else { return [None; 3] };
     let [(p1, w1), (p2, _), (p3, w3), ..] = placed[..] else { return [None; 3] };
     let reach = nominal.reach_m();
-    // Bit 0: the frame of axis 1 has its x as the base has it where the axis is at zero.
+    // Bit 0: at zero of axis 1, the x axis of its frame is that of the base.
     let turned = poecal_arm::lie::rotation::exp(&(w1 * q[0]));
     let behind = -(turned * Vector3::x()).dot(&(centre - p1)) / reach;
-    // Bit 1: on which side of the stretched arm the forearm is; the angle of axis 3 itself where that lies between the two.
+    // Bit 1: side of the stretched arm on which the forearm is; undetermined within the border, or if the sign of axis 3 differs.
     let across = |it: Vector3<f64>| it - w3 * w3.dot(&it);
     let bent = across(p3 - p2).cross(&across(centre - p3)).dot(&w3) / (reach * reach);
     let elbow = match (sided(bent, border), sided(q[2], border)) {

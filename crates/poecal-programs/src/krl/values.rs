@@ -8,14 +8,14 @@ use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, outsid
 use super::reason;
 use super::status::Status;
 
-/// What an expression is.
+/// Kind and contents of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     /// A pose: X, Y, Z, A, B, C, then S and T as far as they are stated.
     Pose(Vec<Number>, Status),
-    /// Of each reading.
+    /// Joints: a number for each reading.
     Joints(Vec<Number>),
-    /// An aggregate of a target that cannot be taken, and why.
+    /// An aggregate of a target that cannot be taken, with the reason.
     Broken(&'static str),
     /// Tool and base of a point of an inline form.
     Place(Place),
@@ -30,34 +30,34 @@ pub(crate) enum Value {
 pub(crate) struct Place {
     pub(crate) tool: Option<i64>,
     pub(crate) base: Option<i64>,
-    /// Whether the tool stands and the workpiece moves.
+    /// True if the tool is stationary and the workpiece moves.
     pub(crate) is_external: bool,
 }
 
-/// A variable as a file has it.
+/// A variable of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Variable {
     pub(crate) assignments: usize,
     pub(crate) line: usize,
     pub(crate) value: Value,
-    /// Name as it is written.
+    /// Name in the text.
     pub(crate) name: String,
-    /// Whether it is declared as a frame.
+    /// True if it is declared as a frame.
     pub(crate) is_frame: bool,
 }
 
 /// The variables of a file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Variables {
-    /// By name in capitals.
+    /// Variables by name in capitals.
     pub(crate) known: BTreeMap<String, Variable>,
-    /// Whether the file is a list of data.
+    /// True if the file is a list of data.
     pub(crate) is_data: bool,
-    /// Whether the file moves the robot's foot.
+    /// True if the file moves the robot's base.
     pub(crate) moves_root: bool,
 }
 
-/// Name and assigned value of a statement: name, whether a part of it is assigned, its first token, and the value.
+/// Name and assigned value of a statement: name, true if only a part is assigned, its first token, and the value.
 pub(crate) struct Assignment<'t> {
     pub(crate) key: String,
     pub(crate) is_part: bool,
@@ -66,7 +66,7 @@ pub(crate) struct Assignment<'t> {
     pub(crate) value: &'t [Token],
 }
 
-/// An assignment, if a statement is one.
+/// The assignment of a statement, if it is one.
 pub(crate) fn assignment<'t>(text: &[u8], tokens: &'t [Token]) -> Option<Assignment<'t>> {
     let (equals, _) = outside(tokens).find(|(_, it)| it.is(b'='))?;
     let (left, value) = (&tokens[..equals], &tokens[equals + 1..]);
@@ -94,7 +94,7 @@ pub(crate) fn key(text: &[u8], name: &Token, index: Option<&[Token]>) -> String 
 const CONDITIONS: &str = "IF WHILE UNTIL WAIT FOR SIGNAL INTERRUPT TRIGGER ON_ERROR_PROCEED";
 
 impl Variables {
-    /// Of a text.
+    /// The variables of a text.
     pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
         let mut out = Variables::default();
         let mut scanner = Scanner::new(text, rules);
@@ -125,7 +125,7 @@ impl Variables {
         out
     }
 
-    /// Variables that a routine gets may be changed by it.
+    /// Counts variables that are passed to a routine as changed.
     fn hand_over(&mut self, text: &[u8], tokens: &[Token]) {
         for (at, token) in tokens.iter().enumerate().filter(|(_, it)| it.kind == Kind::Word) {
             let Some((inside, _)) = bracket(&tokens[at + 1..], b'(', b')') else { continue };
@@ -153,7 +153,7 @@ impl Variables {
         self.known.entry(key.to_owned()).or_insert_with(new).assignments += times;
     }
 
-    /// The variable by a name in capitals, if it is assigned once, or why it has no value.
+    /// The variable by a name in capitals, if it is assigned once, else the reason why it has no value.
     pub(crate) fn of_name(&self, key: &str) -> Result<&Variable, &'static str> {
         let base = key.split('[').next().unwrap_or(key);
         let is_written = |key: String| self.known.contains_key(&key);
@@ -163,7 +163,7 @@ impl Variables {
         match self.known.get(key) {
             None => Err(reason::ABSENT),
             Some(it) if it.assignments > 1 => Err(reason::SEVERAL),
-            // An element may be written by an index that is computed, or with all the others.
+            // An element may be written by a computed index, or with all other elements.
             Some(_) if key != base && (is_written(format!("{base}[*]")) || is_written(base.to_owned())) => {
                 Err(reason::SEVERAL)
             }
@@ -178,7 +178,7 @@ impl Variables {
     }
 }
 
-/// What an expression is.
+/// Kind and contents of an expression.
 pub(crate) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
     match tokens {
         [name] if name.kind == Kind::Word => Value::Name(key(text, name, None)),
@@ -197,7 +197,7 @@ pub(crate) fn value(text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
 struct Fields<'t>(Vec<(String, Option<Number>, &'t [Token])>);
 
 impl<'t> Fields<'t> {
-    /// Of an aggregate without its brackets; `None` if it has a field twice, or none of a name.
+    /// The fields of an aggregate without its brackets; `None` if a field occurs twice, or has no name.
     fn from_tokens(text: &[u8], inside: &'t [Token]) -> Option<Self> {
         let inside = match inside {
             [kind, colon, rest @ ..] if kind.kind == Kind::Word && colon.is(b':') => rest,
@@ -220,17 +220,17 @@ impl<'t> Fields<'t> {
         self.0.iter().find(|it| it.0 == name).map(|it| (it.1.as_ref(), it.2))
     }
 
-    /// The number of a field, or why there is none.
+    /// The number of a field, or the reason why there is none.
     fn number(&self, name: &str, absent: &'static str) -> Result<Number, &'static str> {
         self.get(name).ok_or(absent)?.0.cloned().ok_or(reason::EXPRESSIONS)
     }
 
-    /// How many fields are axes of a letter.
+    /// Number of fields that are axes of a letter.
     fn axes(&self, letter: u8) -> usize {
         self.0.iter().filter(|it| is_axis(&it.0, letter)).count()
     }
 
-    /// Whether fields of external axes that are none of the model's, nor of these names, are other than zero.
+    /// True if external axes are not zero that are neither of the model nor among these names.
     fn has_external(&self, axes: &Axes, names: &[String]) -> bool {
         let is_known = |name: &str| names.iter().any(|it| it.eq_ignore_ascii_case(name));
         let is_of_model = |name: &str| (1..=axes.external.len()).any(|it| name == format!("E{it}"));
@@ -301,7 +301,7 @@ fn pose(fields: &Fields<'_>, axes: &Axes) -> Result<Value, &'static str> {
         *word = Some(number.value as u32);
         numbers.push(number.clone());
     }
-    // A frame has none.
+    // A frame has neither.
     if fields.axes(b'E') > 0 || words.iter().any(Option::is_some) {
         for it in 1..=axes.external.len() {
             let number = fields.number(&format!("E{it}"), reason::NO_EXTERNAL)?;

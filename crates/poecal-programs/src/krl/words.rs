@@ -5,14 +5,14 @@ use crate::scan::Rules;
 pub(crate) const RULES: Rules =
     Rules { comments: &[";"], quotes: b"\"'", letters: b"$", is_open_in_brackets: false };
 
-/// How a motion gets to its target.
+/// Path of a motion to its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// All axes at once.
     Joints,
-    /// Straight, by an arc or a curve.
+    /// A line, an arc or a curve.
     Straight,
-    /// By an amount, not to a target.
+    /// Relative motion, not to a target.
     Relative,
 }
 

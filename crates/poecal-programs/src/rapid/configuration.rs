@@ -8,30 +8,30 @@ use super::super::posture::{MARGIN, Posture};
 
 /// Quarter turns of joints 1, 4 and 6, and the branch.
 ///
-/// A joint with quarter turn c is at `[c, c + 1)·90°`. The branch is 4 with the wrist's centre behind the first axis, else 0, and 2 with
-/// the centre behind the lower arm, and 1 with a negative angle of the fifth joint.
+/// A joint with quarter turn c is at `[c, c + 1)·90°`. The branch is a sum of 4 if the wrist centre is behind the first axis, 2 if it is behind the
+/// lower arm, and 1 for a negative angle of the fifth joint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// cf1, cf4, cf6.
+    /// Quarter turns cf1, cf4, cf6.
     pub(crate) quarters: [i32; 3],
-    /// cfx.
+    /// Branch cfx.
     pub(crate) branch: i32,
 }
 
 /// Joints of the quarter turns, from 0.
 const JOINTS: [usize; 3] = [0, 3, 5];
-/// Angle (rad) beyond a border that is rounding of written numbers.
+/// Angle (rad) beyond a border that is attributed to rounding of written numbers.
 const ROUNDING: f64 = 1e-6;
 
 impl Configuration {
-    /// Whether the quarter turns of a configuration of the nominal arm (rad) fit, borders included.
+    /// True if the quarter turns of a configuration of the nominal arm (rad) fit, borders included.
     pub(crate) fn fits(&self, q: &[f64]) -> bool {
         q.len() == 6
             && self.quarters.iter().zip(JOINTS).all(|(&quarter, joint)| is_in(quarter, q.get(joint), MARGIN))
     }
 
-    /// Whether the branch fits, as far as it is told: of arms whose sides are plain. What is before and behind the lower arm is plain where
-    /// that is upright, and the wrist before the first axis.
+    /// True if the branch fits, as far as it is determined, for arms with defined sides. The sides of the lower arm are defined if the lower arm
+    /// points up and the wrist is before the first axis.
     pub(crate) fn branch_fits(&self, nominal: &Arm, q: &[f64]) -> bool {
         let Ok(q) = <&[f64; 6]>::try_from(q) else { return false };
         let Some(posture) = Posture::new(nominal).filter(|_| (0..8).contains(&self.branch)) else {
@@ -44,7 +44,7 @@ impl Configuration {
             && (bent.is_arm_up != Some(true) || bent.is_front != Some(true) || agrees(bent.is_before_arm, 2))
     }
 
-    /// The four numbers at a configuration of the nominal arm (rad): quarter turns as they are, where they hold.
+    /// The four numbers at a configuration of the nominal arm (rad): stated quarter turns are kept if they still hold.
     pub(crate) fn words(&self, q: &[f64]) -> Vec<f64> {
         let quarter = |(&stated, joint): (&i32, usize)| {
             let value = q.get(joint);
@@ -55,7 +55,7 @@ impl Configuration {
     }
 }
 
-/// Whether a joint (rad) is in a quarter turn, or not farther beyond it.
+/// True if a joint (rad) is in a quarter turn, or at most `beyond` outside of it.
 fn is_in(quarter: i32, value: Option<&f64>, beyond: f64) -> bool {
     let start = f64::from(quarter) * FRAC_PI_2;
     value.is_some_and(|it| (start - beyond..=start + FRAC_PI_2 + beyond).contains(it))

@@ -1,4 +1,4 @@
-//! Data of RAPID: what is declared, where it can be seen, and what becomes of it.
+//! Data of RAPID: declarations, their visibility, and their use.
 
 use std::collections::HashMap;
 
@@ -13,29 +13,29 @@ pub(crate) enum Sort {
     Joints,
     Tool,
     WorkObject,
-    /// A parameter of a routine: its value is that of each call.
+    /// A parameter of a routine: its value depends on the call.
     Parameter,
     /// Anything else, which hides data of the same name.
     Other,
 }
 
-/// What data is given to.
+/// A receiver of data.
 #[derive(Clone, Debug)]
 pub(crate) struct Given {
     pub(crate) line: usize,
-    /// Its name as it is written.
+    /// Its name in the text.
     pub(crate) to: String,
     pub(crate) is_function: bool,
 }
 
-/// Most different names of routines that are kept for one.
+/// Largest number of different routines that are kept for one item.
 const MOST_GIVEN: usize = 32;
 
 /// Data by its declaration.
 #[derive(Clone, Debug)]
 pub(crate) struct Data {
     pub(crate) sort: Sort,
-    /// Its name as it is written.
+    /// Its name in the text.
     pub(crate) name: String,
     pub(crate) line: usize,
     /// Number of dimensions of an array.
@@ -43,9 +43,9 @@ pub(crate) struct Data {
     pub(crate) value: Option<Value>,
     /// Line of the first statement that changes it.
     pub(crate) changed: Option<usize>,
-    /// Routines, instructions and functions that are given it: the line of each.
+    /// Routines, instructions and functions that receive it, with the line of each.
     pub(crate) given: Vec<Given>,
-    /// Whether another declaration has the same name at the same place.
+    /// True if another declaration has the same name and visibility.
     pub(crate) is_double: bool,
 }
 
@@ -56,7 +56,7 @@ impl Data {
     }
 }
 
-/// From where data can be seen: a routine, a module, everywhere.
+/// Visibility of data: a routine, a module, everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Seen {
     Routine(usize),
@@ -99,7 +99,7 @@ impl Declared {
         match self.places.get(&key).and_then(|&at| self.data.get_mut(at)) {
             Some(other) => {
                 other.is_double = true;
-                // Which of the two counts is not known: neither is corrected.
+                // The declaration that counts is ambiguous: neither is corrected.
                 self.data.push(Data { is_double: true, ..data });
             }
             None => {
@@ -116,7 +116,7 @@ impl Declared {
         places.into_iter().find_map(|seen| self.places.get(&(seen, name.to_owned())).copied())
     }
 
-    /// Takes down what statements do with data beside moving to it.
+    /// Records the use of data by a statement, except moves to it.
     pub(crate) fn follow(&mut self, statement: &Statement, tokens: &[Token], text: &[u8]) {
         let own = tokens.get(statement.tokens.clone()).unwrap_or_default();
         if declaration(own, text).is_some() {
@@ -124,7 +124,7 @@ impl Declared {
             return;
         }
         let Some(at) = own.iter().position(|it| it.is(ASSIGN)) else { return };
-        // `name := …`, `name.trans.x := …`, `name{3} := …`, and no option of an instruction.
+        // Matches `name := …`, `name.trans.x := …`, `name{3} := …`, but no option of an instruction.
         let head = own.get(..at).unwrap_or_default();
         let is_assignment = head.first().is_some_and(|it| it.kind == Kind::Word)
             && (head.len() == 1 || head.get(1).is_some_and(|it| it.is(b'.') || it.is(b'{')));
@@ -134,14 +134,14 @@ impl Declared {
         }
     }
 
-    /// Data that a statement changes.
+    /// Records that a statement changes data.
     pub(crate) fn change(&mut self, name: &str, statement: &Statement) {
         if let Some(data) = self.find(name, statement).and_then(|at| self.data.get_mut(at)) {
             data.changed.get_or_insert(statement.line);
         }
     }
 
-    /// Data that a statement hands to a routine or function.
+    /// Records that a statement passes data to a routine or function.
     pub(crate) fn give(&mut self, name: &str, to: &str, is_function: bool, statement: &Statement) {
         let Some(data) = self.find(name, statement).and_then(|at| self.data.get_mut(at)) else { return };
         let is_known = data.given.iter().any(|it| it.to.eq_ignore_ascii_case(to));
@@ -150,8 +150,8 @@ impl Declared {
         }
     }
 
-    /// What may change a tool or a work object that it is given: routines that are not in the file, and those that change one of their
-    /// parameters or hand it on. Functions of the controller do not.
+    /// A receiver that may change a tool or a work object. It is a routine outside the file, or one that changes one of its parameters or passes it
+    /// on. Functions of the controller do not.
     pub(crate) fn changes_it<'d>(&self, data: &'d Data, outline: &Outline) -> Option<&'d Given> {
         let mut routines = data.given.iter().filter(|it| !it.is_function);
         routines.find(|it| {
@@ -164,7 +164,7 @@ impl Declared {
         })
     }
 
-    /// Functions in an expression, and the data that they are given: those that only take a target somewhere else, or measure it, are none.
+    /// Records the data that functions in an expression receive, except functions that only offset a target or measure it.
     pub(crate) fn handed(&mut self, tokens: &[Token], statement: &Statement, text: &[u8]) {
         let mut open: Vec<Option<String>> = Vec::new();
         for (at, token) in tokens.iter().enumerate() {
@@ -192,10 +192,10 @@ impl Declared {
     }
 }
 
-/// Functions whose result stays right if a target that they are given is corrected.
+/// Functions whose result stays right if their target is corrected.
 const HARMLESS: &str = "offs reltool distance valtostr";
 
-/// A declaration and whether it is `LOCAL`.
+/// A declaration, and true if it is `LOCAL`.
 fn declaration(tokens: &[Token], text: &[u8]) -> Option<(Data, bool)> {
     let mut rest = tokens;
     let mut is_local = false;

@@ -5,15 +5,15 @@ use super::super::parsed::Number;
 use super::tokens::Value;
 use poecal_arm::lie::Pose;
 
-/// Difference from 1 of a quaternion's length up to which it is one.
+/// Largest deviation of a quaternion's length from 1.
 const LENGTH: f64 = 5e-3;
 
-/// Whether a quaternion has about the length 1.
+/// True if a quaternion has about the length 1.
 pub(crate) fn has_length(quaternion: &[Number]) -> bool {
     (quaternion.iter().map(|it| it.value * it.value).sum::<f64>().sqrt() - 1.0).abs() < LENGTH
 }
 
-/// `[[x, y, z], [q1, q2, q3, q4]]`.
+/// The pose `[[x, y, z], [q1, q2, q3, q4]]`.
 fn frame(value: &Value) -> Option<Pose> {
     let [place, quaternion] = value.list(2)? else { return None };
     let (place, quaternion) = (place.numbers(3)?, quaternion.numbers(4)?);
@@ -21,7 +21,7 @@ fn frame(value: &Value) -> Option<Pose> {
     PoseForm::Quaternion.pose(&all).filter(|_| has_length(&quaternion))
 }
 
-/// `flange_from_tool` of a `tooldata`, or why it is not known.
+/// `flange_from_tool` of a `tooldata`, or the reason why it is not known.
 pub(crate) fn tool(value: &Value) -> Result<Pose, &'static str> {
     const SHAPE: &str = "is not written as [TRUE,[[x,y,z],[q1,q2,q3,q4]],[load]] with numbers";
     let [held, pose, _] = value.list(3).ok_or(SHAPE)? else { return Err(SHAPE) };
@@ -31,7 +31,7 @@ pub(crate) fn tool(value: &Value) -> Result<Pose, &'static str> {
     if held.is("true") { frame(pose).ok_or(SHAPE) } else { Err(SHAPE) }
 }
 
-/// `base_from_object` of a `wobjdata`, or why it is not known.
+/// `base_from_object` of a `wobjdata`, or the reason why it is not known.
 pub(crate) fn work_object(value: &Value) -> Result<Pose, &'static str> {
     const SHAPE: &str = "is not written as [FALSE,TRUE,\"\",[uframe],[oframe]] with numbers";
     let [held, is_fixed, unit, user, object] = value.list(5).ok_or(SHAPE)? else { return Err(SHAPE) };

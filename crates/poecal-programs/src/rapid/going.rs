@@ -9,16 +9,16 @@ use super::tokens::Value;
 /// A tool or a work object of a move.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Held {
-    /// `tool0`, `wobj0`.
+    /// `tool0` or `wobj0`.
     BuiltIn,
-    /// Declared in the file.
+    /// Data of the file.
     Data(usize),
-    /// Not declared there, or no name.
+    /// A name that is not declared there, or no name.
     Unknown(String),
 }
 
 impl Held {
-    /// Of what a move writes.
+    /// The tool or work object by its text in a move.
     pub(crate) fn from_written(written: &str, statement: &Statement, declared: &Declared) -> Self {
         let name = written.to_ascii_lowercase();
         match declared.find(&name, statement) {
@@ -29,7 +29,7 @@ impl Held {
     }
 }
 
-/// What a move says of its target.
+/// Statements of a move on its target.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Move {
     pub(crate) line: usize,
@@ -37,7 +37,7 @@ pub(crate) struct Move {
     pub(crate) object: Held,
     /// Line of a program displacement that may be active.
     pub(crate) displaced: Option<usize>,
-    /// Whether a `ConfL\Off` or `ConfJ\Off` may be active.
+    /// True if a `ConfL\Off` or `ConfJ\Off` may be active.
     pub(crate) is_not_followed: bool,
     pub(crate) is_straight: bool,
 }
@@ -48,17 +48,17 @@ impl Move {
     }
 }
 
-/// Most different moves to all elements of an array that are kept: three already disagree.
+/// Largest number of different moves to all elements of an array that are kept: three already disagree.
 const MOST: usize = 4;
 
-/// A place of numbers: data and the indices of an element, or a target in a move.
+/// Position of numbers: data and the indices of an element, or a target in a move.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum To {
     Data(usize, Vec<usize>),
     InPlace(usize),
 }
 
-/// A move and the move before it, where that is always the one before.
+/// A move and its predecessor, if this is always the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Going {
     pub(crate) to: To,
@@ -76,7 +76,7 @@ pub(crate) struct Moves {
 }
 
 impl Moves {
-    /// Adds a move to declared data; its number, unless it goes to an element that is not known.
+    /// Adds a move to declared data. Returns its number, unless it goes to an unknown element.
     pub(crate) fn add_to_data(
         &mut self,
         data: usize,
@@ -95,7 +95,7 @@ impl Moves {
         None
     }
 
-    /// Adds a move to a target that stands in it; its number.
+    /// Adds a move to a target in its own text. Returns its number.
     pub(crate) fn in_place(
         &mut self,
         name: String,

@@ -1,8 +1,8 @@
 //! Targets of programs in RAPID (ABB): `robtarget` and `jointtarget`, declared or in place.
 //!
-//! A `robtarget` says where the tool is in a work object, but neither which tool nor which work object: the moves to it do. Its
-//! configuration `[cf1,cf4,cf6,cfx]` has the quarter turns of joints 1, 4 and 6, and of eight branches the one (ABB, *Technical reference
-//! manual, RAPID*, `confdata`).
+//! A `robtarget` is a pose of the tool in a work object, but states neither the tool nor the work object: the moves to it do. Its configuration
+//! `[cf1,cf4,cf6,cfx]` has the quarter turns of joints 1, 4 and 6, and one of eight branches (ABB, *Technical reference manual, RAPID*,
+//! `confdata`).
 
 pub(crate) mod configuration;
 mod declared;
@@ -28,7 +28,7 @@ use super::listed::Listed;
 use super::parsed::Parsed;
 use super::scan::{Kind, Token, is_one_of, shown};
 
-/// What is said of a target that a move counts from another one.
+/// Message on a target to which a move is relative.
 const RELATIVE: &str = "relative to a target: the offset is left as it is, at most its target is corrected";
 
 /// The targets and motions of a program.
@@ -51,7 +51,7 @@ struct Reader<'a> {
     text: &'a [u8],
     modals: [Modal; 3],
     moves: Moves,
-    /// Number and block of the last move, if the next one always comes after it.
+    /// Number and block of the last move, if the next one always follows it.
     last: Option<(usize, usize)>,
     listed: Vec<Listed>,
 }
@@ -81,7 +81,7 @@ impl Reader<'_> {
         }
     }
 
-    /// An instruction that is no move: what it is given is used in ways that are not known.
+    /// An instruction that is no move: its use of data is unknown.
     fn not_moved(
         &mut self,
         statement: &Statement,
@@ -147,7 +147,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A move to a target as it is written; its number, if it is known where it goes.
+    /// A move to a target by its text. Returns its number, if its target is known.
     #[allow(clippy::too_many_arguments)]
     fn to(
         &mut self,

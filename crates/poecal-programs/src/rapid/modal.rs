@@ -1,22 +1,22 @@
-//! What instructions of RAPID leave switched on for moves after them: program displacements, and configurations that are not followed.
+//! Modal states of RAPID that instructions leave on for later moves: program displacements, and configurations that are not followed.
 
 use super::super::scan::{Token, is_one_of};
 use super::moves::{Instruction, layout};
 use super::outline::Outline;
 use super::tokens::ASSIGN;
 
-/// What can be switched on.
+/// A modal state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Switch {
-    /// `PDispOn`, `PDispSet`: targets are displaced.
+    /// Targets are displaced (`PDispOn`, `PDispSet`).
     Displacement,
-    /// `ConfL\Off`: the configuration that a target states is not that which the robot takes on lines and arcs.
+    /// The robot does not take the stated configuration on lines and arcs (`ConfL\Off`).
     Lines,
-    /// `ConfJ\Off`: the same where joints move on their own ways.
+    /// The robot does not take it in joint motions (`ConfJ\Off`).
     Joints,
 }
 
-/// Where something is on: of each statement, the line of what has switched it on.
+/// Range in which a state is on: for each statement, the line that switched it on.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modal {
     on: Vec<Option<usize>>,
@@ -24,11 +24,11 @@ pub(crate) struct Modal {
 }
 
 impl Modal {
-    /// Follows a switch through a file. It is off where a routine begins; where it may be on at the end of a block, or is on while other
+    /// Follows a state through a file. It is off at the beginning of a routine. If it may be on at the end of a block, or is on while other
     /// routines are called, it may be on everywhere.
     pub(crate) fn follow(switch: Switch, outline: &Outline, tokens: &[Token], text: &[u8]) -> Self {
         let mut out = Modal { on: vec![None; outline.statements.len()], everywhere: None };
-        // Line and block of what has switched it on.
+        // Line and block of the instruction that switched it on.
         let mut on: Option<(usize, usize)> = None;
         let (mut routine, mut handler) = (None, 0);
         let everywhere = |all: &mut Option<usize>, on: Option<(usize, usize)>| {
@@ -64,13 +64,13 @@ impl Modal {
         out
     }
 
-    /// The line of what may have switched it on at a statement.
+    /// The line that may have switched it on at a statement.
     pub(crate) fn at(&self, index: usize) -> Option<usize> {
         self.on.get(index).copied().flatten().or(self.everywhere)
     }
 }
 
-/// Whether an instruction switches it on or off.
+/// True if an instruction switches it on, false if off; `None` if neither.
 fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
     let of = |name: &str| {
         if instruction.name != name {
@@ -91,7 +91,7 @@ fn switched(switch: Switch, instruction: &Instruction<'_>) -> Option<bool> {
     }
 }
 
-/// Whether a statement may run other routines or leave this one: all that is no instruction known to do neither.
+/// True if a statement may run other routines or leave this one: all except instructions known to do neither.
 pub(crate) fn leads_elsewhere(tokens: &[Token], instruction: Option<&Instruction<'_>>) -> bool {
     const STAY: &str = "accset clkreset clkstart clkstop confj confl const decr eoffsoff eoffson eoffsset gripload incr \
                         invertdo moveextj pdispoff pdispon pdispset pers pulsedo reset set setao setdo setgo singarea stop \

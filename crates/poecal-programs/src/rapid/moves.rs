@@ -1,28 +1,28 @@
-//! Instructions of RAPID that move the robot, and where their arguments are.
+//! Instructions of RAPID that move the robot, and the positions of their arguments.
 
 use super::super::parsed::Number;
 use super::super::scan::{Kind, Token, cut, signed};
 use super::tokens::{ASSIGN, lower};
 
-/// Where an instruction has its tool.
+/// Position of an instruction's tool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ToolAt {
-    /// At this place.
+    /// The argument at this index.
     Place(usize),
-    /// Last.
+    /// The last argument.
     Last,
 }
 
-/// What an instruction's arguments are, counted without optional ones.
+/// Arguments of an instruction, counted without optional ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Layout {
-    /// Whether its target is a `jointtarget`.
+    /// True if its target is a `jointtarget`.
     pub(crate) is_joints: bool,
-    /// Whether joints move on their own ways (`ConfJ`), else on lines or arcs (`ConfL`).
+    /// True if joints move independently (`ConfJ`), false on lines or arcs (`ConfL`).
     pub(crate) is_free: bool,
-    /// Places of its targets, in the order in which they are reached.
+    /// Indices of its targets, in the order in which they are reached.
     pub(crate) targets: &'static [usize],
-    /// Place of what it sets.
+    /// Index of the argument that it sets.
     pub(crate) sets: Option<usize>,
     pub(crate) tool: ToolAt,
 }
@@ -58,7 +58,7 @@ pub(crate) struct Instruction<'a> {
 }
 
 impl<'a> Instruction<'a> {
-    /// Of a statement's tokens; `None` if it does not begin with a word, or if its brackets do not match.
+    /// The instruction of a statement's tokens; `None` if it does not begin with a word, or if its brackets do not match.
     pub(crate) fn from_tokens(tokens: &'a [Token], text: &[u8]) -> Option<Self> {
         let (first, rest) = tokens.split_first()?;
         if first.kind != Kind::Word {
@@ -81,26 +81,26 @@ impl<'a> Instruction<'a> {
         Some(out)
     }
 
-    /// The value of an option, if it is there.
+    /// The value of an option, if it exists.
     pub(crate) fn option(&self, name: &str) -> Option<&'a [Token]> {
         self.options.iter().find(|(it, _)| it == name).map(|(_, value)| *value)
     }
 }
 
-/// How a target is written.
+/// Form of a target in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Argument<'a> {
-    /// A name in lower case, and its indices if it is an element of an array: `None` in place of those that are no numbers.
+    /// A name in lower case, and its indices if it is an element of an array: `None` for indices that are no numbers.
     Name(String, Option<Vec<Option<usize>>>),
-    /// Numbers in place.
+    /// Numbers in the move.
     Numbers(&'a [Token]),
-    /// `Offs` or `RelTool` of a target.
+    /// Offset of a target by `Offs` or `RelTool`.
     Relative(Box<Argument<'a>>),
     /// Anything else.
     Computed,
 }
 
-/// How these tokens write a target.
+/// The form of a target in these tokens.
 pub(crate) fn argument<'a>(tokens: &'a [Token], text: &[u8]) -> Argument<'a> {
     argument_in(tokens, text, 0)
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::scan::{Kind, Token, bracket, cut, is_one_of};
 use super::tokens::lower;
 
-/// A statement that ends with a semicolon, and where it stands.
+/// A statement that ends with a semicolon, and its position in the outline.
 #[derive(Clone, Debug)]
 pub(crate) struct Statement {
     /// Its tokens, without the semicolon.
@@ -16,7 +16,7 @@ pub(crate) struct Statement {
     pub(crate) module: usize,
     /// Index of its block.
     pub(crate) block: usize,
-    /// Whether something may lead here beside the statement before it: a label, or the end of a block before it.
+    /// True if control may come here other than from the statement before: a label, or the end of a block before it.
     pub(crate) is_entry: bool,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Block {
 }
 
 impl Outline {
-    /// Whether a block is another one or lies in it.
+    /// True if a block is another one or is inside it.
     pub(crate) fn is_in(&self, block: usize, other: usize) -> bool {
         block >= other && self.blocks.get(other).is_some_and(|it| block < it.end)
     }
@@ -57,7 +57,7 @@ impl Outline {
     }
 }
 
-/// Reads a file's statements: what is no statement (heads of routines, loops and branches) only says where they stand.
+/// Reads a file's statements; heads of routines, loops and branches, which are no statements, only determine positions of statements.
 pub(crate) fn outline(tokens: &[Token], text: &[u8]) -> Outline {
     let reader = Reader {
         tokens,
@@ -106,7 +106,7 @@ impl Reader<'_> {
 
     fn next(&mut self) {
         let Some(word) = self.word(self.at) else {
-            // A call by a text between percent signs, or what is left of a placeholder.
+            // A call by a text between percent signs, or the rest of a placeholder.
             if self.is(self.at, b';') {
                 self.at += 1
             } else {
@@ -115,7 +115,7 @@ impl Reader<'_> {
             return;
         };
         if self.is(self.at + 1, b':') {
-            // A label, or `DEFAULT:`.
+            // The word is a label, or `DEFAULT:`.
             if word == "default" {
                 self.sibling();
             }
@@ -126,7 +126,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What begins with a word.
+    /// Reads a part that begins with a word.
     fn keyword(&mut self, word: &str) {
         match word {
             "module" => {
@@ -172,7 +172,7 @@ impl Reader<'_> {
                 self.at += 1;
             }
             "error" | "undo" | "backward" if self.routine.is_some() => {
-                // Reached from anywhere in the routine: a block of its own.
+                // Control may come from anywhere in the routine: a block of its own.
                 self.leave_all();
                 self.enter();
                 self.at += 1;
@@ -213,7 +213,7 @@ impl Reader<'_> {
         self.enter();
     }
 
-    /// The head of a routine whose name is at an index.
+    /// Reads the head of a routine whose name is at an index.
     fn routine(&mut self, at: usize) {
         let name = self.word(at).unwrap_or_default();
         self.at = at + 1;
@@ -222,7 +222,7 @@ impl Reader<'_> {
         let inner = self.tokens.get(start..self.at.saturating_sub(1)).unwrap_or_default();
         let mut parameters = Vec::new();
         for part in cut(inner, b',').unwrap_or_default() {
-            // `\switch a | switch b`, `VAR num x{*}`: the last word of each.
+            // Parameters are like `\switch a | switch b`, `VAR num x{*}`: the last word of each is the name.
             for one in part.split(|it| it.is(b'|')) {
                 let words = one.iter().take_while(|it| !it.is(b'{')).filter(|it| it.kind == Kind::Word);
                 parameters.extend(words.last().map(|it| lower(self.text, it)));
@@ -234,7 +234,7 @@ impl Reader<'_> {
         self.enter();
     }
 
-    /// `IF … THEN`, or `IF condition instruction;`.
+    /// Reads `IF … THEN`, or `IF condition instruction;`.
     fn branch(&mut self) {
         self.enter();
         let mut start = None;
@@ -264,7 +264,7 @@ impl Reader<'_> {
         self.leave();
     }
 
-    /// The statement that begins at an index, to its semicolon.
+    /// Reads the statement that begins at an index, to its semicolon.
     fn statement(&mut self, start: usize) {
         let rest = self.tokens.get(start..).unwrap_or_default();
         let end = start + rest.iter().position(|it| it.is(b';')).unwrap_or(rest.len());
@@ -279,20 +279,20 @@ impl Reader<'_> {
         self.at = end + 1;
     }
 
-    /// Goes on to what this is true of, or to the end.
+    /// Advances until the condition holds, or to the end.
     fn skip(&mut self, is_end: impl Fn(&Self) -> bool) {
         while self.at < self.tokens.len() && !is_end(self) {
             self.at += 1;
         }
     }
 
-    /// The same, and beyond it.
+    /// Advances until the condition holds, and beyond this token.
     fn skip_behind(&mut self, is_end: impl Fn(&Self) -> bool) {
         self.skip(is_end);
         self.at += 1;
     }
 
-    /// Goes on behind a word, or to the end of the statement.
+    /// Advances behind a word, or to the end of the statement.
     fn skip_behind_in_statement(&mut self, word: &str) {
         self.skip(|it| it.is(it.at, b';') || it.is_word(it.at, word));
         self.at += usize::from(self.is_word(self.at, word));

@@ -1,4 +1,4 @@
-//! From declarations and moves to targets and motions, or to reasons why a target is left as it is.
+//! Conversion of declarations and moves to targets and motions, or to reasons why a target stays unchanged.
 
 use std::collections::HashMap;
 
@@ -53,7 +53,7 @@ pub(crate) fn parsed(
     maker.parsed()
 }
 
-/// What a motion has beside its line.
+/// Tool and frame of a motion.
 type Known = (Pose, Pose);
 
 struct Maker<'a> {
@@ -65,7 +65,7 @@ struct Maker<'a> {
     axes: &'a Axes,
     /// Ends of lines.
     lines: Vec<usize>,
-    /// Of each move, its motion.
+    /// Motion of each move.
     motions: Vec<Option<Motion>>,
     /// Motions to any element of an array.
     more: Vec<Motion>,
@@ -96,7 +96,7 @@ impl Maker<'_> {
         }
     }
 
-    /// A target by its value and its place.
+    /// Adds a target by its value and its position.
     fn one(&mut self, name: String, line: usize, value: &Value, is_joints: bool, to: &To) {
         let line = first_number(value).map_or(line, |at| self.lines.partition_point(|end| *end < at) + 1);
         let own = self.by_place.get(to).cloned().unwrap_or_default();
@@ -150,7 +150,7 @@ impl Maker<'_> {
         let external = external.numbers(6).ok_or(SHAPE)?;
         let mut known = Vec::new();
         if moves.is_empty() {
-            // The moves are in another module: the user says what is true of them.
+            // The moves are in another module: the user states their tool and work object.
             let (Some(tool), Some(frame)) = (self.given.tool(None), self.given.frame(None)) else {
                 return Err(
                     "no move of this file goes to it: state its tool and work object by --tool-data and --work-object"
@@ -210,7 +210,7 @@ impl Maker<'_> {
         }
     }
 
-    /// A tool or a work object: as the user states it, else as the file declares it.
+    /// A tool or a work object: as stated by the user, else as declared in the file.
     fn known(
         &self,
         (what, flag): (&str, &str),
@@ -251,7 +251,7 @@ impl Maker<'_> {
     }
 
     fn parsed(mut self) -> Parsed {
-        // Numbers of motions, where moves without one are left out.
+        // Numbers of motions, without moves that have none.
         let mut place = Vec::with_capacity(self.motions.len());
         let mut count = 0;
         for motion in &self.motions {
@@ -260,7 +260,7 @@ impl Maker<'_> {
         }
         let mut motions = Vec::with_capacity(count + self.more.len());
         for (motion, going) in self.motions.into_iter().zip(&self.moves.going) {
-            // A configuration that is stated and followed does not depend on the motion before.
+            // A stated configuration that is followed does not depend on the motion before.
             let after = going.after.filter(|_| going.of.is_not_followed);
             let after = after.and_then(|it| place.get(it).copied().flatten());
             motions.extend(motion.map(|motion| Motion { after, ..motion }));
@@ -271,7 +271,7 @@ impl Maker<'_> {
     }
 }
 
-/// `[cf1,cf4,cf6,cfx]`.
+/// The configuration `[cf1,cf4,cf6,cfx]`.
 fn configuration(numbers: &[Number]) -> Stated {
     match numbers.iter().map(|it| it.value as i32).collect::<Vec<i32>>()[..] {
         [cf1, cf4, cf6, branch] => Stated::Rapid(Configuration { quarters: [cf1, cf4, cf6], branch }),
@@ -279,10 +279,10 @@ fn configuration(numbers: &[Number]) -> Stated {
     }
 }
 
-/// Value from which on an axis is not there: `9E9`.
+/// Smallest value of an axis that means absence: `9E9`.
 const NONE: f64 = 8.9e9;
 
-/// The external axes that the model has, mm; others must not be there, or be at 0, where they leave the arm.
+/// The external axes of the model, mm; others must be absent, or at 0, where they do not affect the arm.
 fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, String> {
     let others = numbers.split_off(axes.external.len().min(numbers.len()));
     if others.iter().any(|it| it.value != 0.0 && it.value < NONE) {
@@ -295,7 +295,7 @@ fn external_axes(mut numbers: Vec<Number>, axes: &Axes) -> Result<Vec<Number>, S
     Ok(numbers)
 }
 
-/// `[[six angles in degrees],[external axes]]`: those that the model does not have do not change where the arm's joints are.
+/// The joints `[[six angles in degrees],[external axes]]`. External axes that the model lacks do not change the arm's joint positions.
 fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
     const SHAPE: &str = "not written as [[six angles],[external axes]] with numbers";
     let Some([arm, external]) = value.list(2) else { return Err(SHAPE.to_owned()) };
@@ -310,7 +310,7 @@ fn joints(value: &Value, axes: &Axes) -> Result<Vec<Number>, String> {
     axes.joined(&arm, &external).ok_or_else(|| SHAPE.to_owned())
 }
 
-/// The elements of an array of so many dimensions.
+/// The elements of an array with this number of dimensions.
 fn spread<'a>(
     value: &'a Value,
     dimensions: usize,
@@ -330,7 +330,7 @@ fn spread<'a>(
     }
 }
 
-/// Where the first number of a value is.
+/// The first byte of the first number of a value.
 fn first_number(value: &Value) -> Option<usize> {
     match value {
         Value::Number(number) => Some(number.range.start),

@@ -3,14 +3,14 @@
 use super::super::parsed::Number;
 use super::super::scan::{Kind, Rules, Scanner, Token, cut, signed};
 
-/// How RAPID is written.
+/// Syntax of RAPID.
 pub(crate) const RULES: Rules =
     Rules { comments: &["!"], quotes: b"\"", letters: b"", is_open_in_brackets: false };
 
-/// The sign that stands for `:=`, which is one token.
+/// The sign for `:=`, which is one token.
 pub(crate) const ASSIGN: u8 = b'\x01';
 
-/// The tokens of a file, without line ends and without the header of older files, which stands between lines that begin with `%%%`.
+/// The tokens of a file, without line ends and without the header of older files, which is between lines that begin with `%%%`.
 pub(crate) fn tokens(text: &[u8]) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut is_header = false;
@@ -42,42 +42,42 @@ pub(crate) fn tokens(text: &[u8]) -> Vec<Token> {
     out
 }
 
-/// A value as it is written.
+/// A value in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Number(Number),
     List(Vec<Value>),
     /// A name alone, in lower case: `TRUE`, or a constant.
     Word(String),
-    /// A text in quotes, and whether it is empty.
+    /// A text in quotes, and true if it is empty.
     Text(bool),
     /// An expression.
     Other,
 }
 
 impl Value {
-    /// The values of a list of so many.
+    /// The values of a list with `count` entries.
     pub(crate) fn list(&self, count: usize) -> Option<&[Value]> {
         let Value::List(values) = self else { return None };
         Some(&values[..]).filter(|it| it.len() == count)
     }
 
-    /// The numbers of a list of so many.
+    /// The numbers of a list with `count` entries.
     pub(crate) fn numbers(&self, count: usize) -> Option<Vec<Number>> {
         let number = |it: &Value| if let Value::Number(number) = it { Some(number.clone()) } else { None };
         self.list(count)?.iter().map(number).collect()
     }
 
-    /// Whether it is this name.
+    /// True if it is this name.
     pub(crate) fn is(&self, word: &str) -> bool {
         matches!(self, Value::Word(it) if it == word)
     }
 }
 
-/// Most brackets in one another that are looked into: arrays of three dimensions of data of three levels are fewer.
+/// Largest depth of brackets that are read: arrays of three dimensions of data of three levels need fewer.
 const DEEPEST: usize = 8;
 
-/// The value that these tokens are.
+/// The value of these tokens.
 pub(crate) fn value(tokens: &[Token], text: &[u8], depth: usize) -> Value {
     if let Some(number) = signed(tokens) {
         return Value::Number(number);
@@ -103,7 +103,7 @@ pub(crate) fn lower(text: &[u8], token: &Token) -> String {
     written(text, token).to_ascii_lowercase()
 }
 
-/// A token as it is written.
+/// The text of a token.
 pub(crate) fn written(text: &[u8], token: &Token) -> String {
     String::from_utf8_lossy(text.get(token.range.clone()).unwrap_or_default()).into_owned()
 }

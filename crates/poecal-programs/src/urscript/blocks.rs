@@ -14,15 +14,15 @@ type Make<'m> = &'m mut dyn FnMut(&[Token], &mut Vec<Node<Step>>);
 pub(crate) struct Program {
     pub(crate) main: Vec<Node<Step>>,
     pub(crate) blocks: Blocks<Step>,
-    /// Whether a thread moves the robot.
+    /// True if a thread moves the robot.
     pub(crate) threads_move: bool,
-    /// Whether a thread sets the tool.
+    /// True if a thread sets the tool.
     pub(crate) threads_set: bool,
-    /// Open blocks around the thread in which the text is.
+    /// Number of open blocks around the present thread.
     thread: Option<usize>,
 }
 
-/// Statements of a line: `if x: movej(q) end` are three.
+/// Statements of a line: `if x: movej(q) end` has three.
 pub(crate) fn cut<'t>(text: &[u8], line: &'t [Token]) -> Vec<&'t [Token]> {
     let mut out = Vec::new();
     let mut start = 0;
@@ -80,7 +80,7 @@ impl Program {
             let depth = self.blocks.depth();
             self.blocks.begin_routine(name, line)?;
             if word == "thread" {
-                // It runs beside the program, which may have set any tool.
+                // It runs in parallel with the program, which may have set any tool.
                 self.thread.get_or_insert(depth);
                 self.blocks.push([Node::Step(Step::Tool(Setting::Unknown))]);
             }
@@ -102,7 +102,7 @@ impl Program {
             }
             "elif" | "else" => {
                 self.blocks.arm(word == "else");
-                // A condition that acts has acted if a later one is asked.
+                // A condition with effects has already run when a later one is evaluated.
                 let label = (!nodes.is_empty()).then_some(Node::Label);
                 self.blocks.push(nodes.into_iter().chain(label));
             }
@@ -126,7 +126,7 @@ impl Program {
             match node {
                 Node::Step(Step::Tool(_) | Step::Moving(_)) => self.threads_set = true,
                 Node::Step(Step::Move { .. } | Step::Away) => self.threads_move = true,
-                // What it calls is not looked into.
+                // The called routine is not examined.
                 Node::Call(_) => (self.threads_set, self.threads_move) = (true, true),
                 Node::Either(_) | Node::Loop(_) | Node::Leave | Node::Label => {}
             }

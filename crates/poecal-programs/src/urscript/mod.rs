@@ -23,10 +23,10 @@ use values::{Value, Variables};
 pub(crate) const RULES: Rules =
     Rules { comments: &["#"], quotes: b"\"'", letters: b"", is_open_in_brackets: true };
 
-/// How poses are written.
+/// Form of poses in the language.
 const FORM: PoseForm = PoseForm::RotationVector;
 
-/// Statements that move the robot to targets: their name, the places of the targets among the arguments, and the way there.
+/// Statements that move the robot to targets: their name, the indices of the targets among the arguments, and the path.
 const MOTIONS: [(&str, &[usize], Way); 9] = [
     ("movej", &[0], Way::Joints),
     ("movel", &[0], Way::Straight),
@@ -39,7 +39,7 @@ const MOTIONS: [(&str, &[usize], Way); 9] = [
     ("mc_add_linear", &[0], Way::Unknown),
 ];
 
-/// Statements after which nobody knows where the robot is.
+/// Statements after which the position of the robot is unknown.
 const AWAY: &str = "speedj speedl freedrive_mode teach_mode force_mode move_until mc_run_motion tool_contact";
 
 /// Targets and motions of a program.
@@ -59,11 +59,11 @@ struct Reader<'r> {
     out: Parsed,
 }
 
-/// A target of a motion, or why it is none.
+/// A target of a motion, or the reason why it is none.
 type Found = std::result::Result<Aim, String>;
 
 impl Reader<'_> {
-    /// What a statement does, as nodes.
+    /// Adds the effects of a statement as nodes.
     fn statement(&mut self, tokens: &[Token], nodes: &mut Vec<Node<Step>>) {
         for (at, token) in tokens.iter().enumerate() {
             let rest = &tokens[at + 1..];
@@ -102,7 +102,7 @@ impl Reader<'_> {
         self.out.list(line, shown(self.text, tokens), reason);
     }
 
-    /// Targets that are handed to a routine.
+    /// Lists targets that are passed to a routine.
     fn arguments(&mut self, inside: &[Token]) {
         for argument in parts(inside) {
             let is_target = match self.variables.value(self.text, argument, self.axes) {
@@ -134,7 +134,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The target that an expression means.
+    /// The target of an expression.
     fn aim(&mut self, tokens: &[Token]) -> Found {
         let line = tokens.first().map_or(0, |it| it.line);
         let (value, line, name) = match self.variables.value(self.text, tokens, self.axes) {
@@ -154,7 +154,7 @@ impl Reader<'_> {
         Ok(Aim { target, frames: Vec::new(), stated: Stated::Nothing, tool: None, is_inverse: false })
     }
 
-    /// A pose that is stated, to be changed once more.
+    /// A stated pose, which is changed once more.
     fn pose(&mut self, tokens: &[Token]) -> Found {
         let aim = self.aim(tokens)?;
         let is_pose = self.out.targets.get(aim.target).is_some_and(|it| it.meant != Meant::Joints);
@@ -207,7 +207,7 @@ impl Reader<'_> {
         Ok(aim)
     }
 
-    /// What stands there in numbers, or of a variable that is assigned once.
+    /// The value of a literal, or of a variable that is assigned once.
     fn literal(&self, tokens: &[Token]) -> Option<Value> {
         match self.variables.value(self.text, tokens, self.axes) {
             Value::Name(name) => self.variables.of_name(&name).ok(),

@@ -1,4 +1,4 @@
-//! Why targets stay as they are.
+//! Reasons why targets stay unchanged.
 
 pub(crate) const COMPUTED: &str = "it is computed while the program runs";
 pub(crate) const ABSENT: &str = "it is stated in no line of this file";

@@ -1,15 +1,15 @@
-//! Statements that matter.
+//! Statements with an effect on motions.
 
 use crate::parsed::Setting;
 use crate::stated::Stated;
 use poecal_arm::lie::Pose;
 
-/// How a motion gets to its target.
+/// Path of a motion to its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Way {
     Joints,
     Straight,
-    /// Many targets in short steps, not each of which is reached.
+    /// Many targets in short steps, not all of which are reached.
     Stream,
     Unknown,
 }
@@ -18,30 +18,30 @@ pub(crate) enum Way {
 #[derive(Clone, Debug)]
 pub(crate) enum Frame {
     Is(Pose),
-    /// By the variable that has it.
+    /// A frame by its variable.
     Named(String),
 }
 
-/// A statement that matters.
+/// A statement with an effect on motions.
 #[derive(Clone, Debug)]
 pub(crate) enum Step {
     /// A motion to the target with this index, in these frames.
     Move { aim: Aim, line: usize, way: Way },
-    /// The tool is set.
+    /// Sets the tool.
     Tool(Setting),
-    /// Poses are those of a frame that moves; or no longer.
+    /// True if poses are in a moving frame from here on, false if no longer.
     Moving(bool),
-    /// Nobody knows where the robot is.
+    /// The position of the robot becomes unknown.
     Away,
 }
 
-/// What the argument of a motion says.
+/// Target and settings in the argument of a motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Aim {
     pub(crate) target: usize,
     pub(crate) frames: Vec<Frame>,
     pub(crate) stated: Stated,
     pub(crate) tool: Option<Setting>,
-    /// Whether it is made a configuration before the motion: the nearest, whatever the way.
+    /// True if it is converted to a configuration before the motion: the nearest, whatever the path.
     pub(crate) is_inverse: bool,
 }

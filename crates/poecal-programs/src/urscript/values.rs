@@ -8,14 +8,14 @@ use super::super::scan::{Kind, Rules, Scanner, Token, bracket, is_one_of, parts,
 use super::blocks::{cut, header};
 use super::reason;
 
-/// What an expression is.
+/// Kind and contents of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
-    /// `p[x, y, z, rx, ry, rz]`, all in numbers.
+    /// A pose `p[x, y, z, rx, ry, rz]`, all in numbers.
     Pose(Vec<Number>),
-    /// A list of as many numbers as the robot has readings.
+    /// A list with a number for each of the robot's readings.
     Joints(Vec<Number>),
-    /// A pose or list that is not of numbers alone, and what is wrong.
+    /// A pose or list that is not of numbers only, with the defect.
     Broken(&'static str),
     /// A variable.
     Name(String),
@@ -39,7 +39,7 @@ pub(crate) struct Variables {
 }
 
 impl Variables {
-    /// Of a text.
+    /// The variables of a text.
     pub(crate) fn from_text(text: &[u8], rules: &Rules, axes: &Axes) -> Self {
         let mut out = Variables::default();
         let mut scanner = Scanner::new(text, rules);
@@ -76,12 +76,12 @@ impl Variables {
         self.known.entry(name.to_owned()).or_insert_with(new).assignments += times;
     }
 
-    /// Line where a variable is assigned.
+    /// Line in which a variable is assigned.
     pub(crate) fn line(&self, name: &str) -> usize {
         self.known.get(name).map_or(0, |it| it.line)
     }
 
-    /// The value of a variable that is assigned once, or why it has none.
+    /// The value of a variable that is assigned once, or the reason why it has none.
     pub(crate) fn of_name(&self, name: &str) -> Result<Value, String> {
         match self.known.get(name) {
             None => Err(reason::ABSENT.to_owned()),
@@ -90,7 +90,7 @@ impl Variables {
         }
     }
 
-    /// What an expression is.
+    /// Kind and contents of an expression.
     pub(crate) fn value(&self, text: &[u8], tokens: &[Token], axes: &Axes) -> Value {
         let list = |tokens: &[Token]| {
             let (inside, rest) = bracket(tokens, b'[', b']')?;

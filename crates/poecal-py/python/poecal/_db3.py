@@ -25,14 +25,14 @@ TYPES = {
 
 
 class NotRead(ValueError):
-    """A bag that is not read, and why; the file comes with it."""
+    """A bag that is not read, with the reason; the file comes with it."""
 
     def __init__(self, path: Path, message: str) -> None:
         super().__init__(str(path), message)
 
 
 def parts(path: str | Path) -> list[Path]:
-    """The files of a bag in SQLite by their numbers, one or those of a folder; none of anything else."""
+    """The files of a bag in SQLite by their numbers, one or those of a folder; empty for anything else."""
     path = Path(path)
     if path.is_dir():
         names = sorted(path.glob("*.db3"), key=lambda it: (int((re.findall(r"\d+", it.stem) or ["0"])[-1]), it.name))
@@ -45,7 +45,7 @@ def parts(path: str | Path) -> list[Path]:
 
 
 def text(value: str) -> bytes:
-    """A text as MCAP has it."""
+    """A text in the form of MCAP."""
     encoded = value.encode()
     return struct.pack("<I", len(encoded)) + encoded
 
@@ -56,7 +56,7 @@ def record(kind: int, content: bytes) -> bytes:
 
 
 def connected(path: Path) -> sqlite3.Connection:
-    """The database, which nothing is written to."""
+    """The database, opened for reading only."""
     name = urllib.parse.quote(str(path.resolve()).replace("\\", "/"), safe="/:")
     return sqlite3.connect(f"file:{'' if name.startswith('/') else '/'}{name}?mode=ro", uri=True)
 
@@ -85,7 +85,7 @@ def records_of(path: Path, channels: dict[tuple[str, str, str], int]) -> Iterato
 
 
 def as_mcap(path: str | Path) -> tuple[bytes, str] | None:
-    """The bytes of a bag as MCAP, and the checksum of its files; none of what is no bag in SQLite."""
+    """The bytes of a bag as MCAP, and the checksum of its files; None for a file that is no bag in SQLite."""
     files = parts(path)
     if not files:
         return None

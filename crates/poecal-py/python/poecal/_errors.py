@@ -1,4 +1,4 @@
-"""Exceptions and warnings, by what went wrong."""
+"""Exceptions and warnings, by the kind of fault."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import sys
 
 
 class Error(Exception):
-    """Any error of poecal: one sentence that says where, what was found, what was expected and what to do.
+    """Any error of poecal: one sentence with the place, what was found, what was expected and the remedy.
 
-    ``path``, ``line`` and ``column`` (from 1) tell where in a file it happened, ``row`` (from 0) where in a data frame or an array;
-    each is None where that is not known.
+    ``path``, ``line`` and ``column`` (from 1) state the position in a file, ``row`` (from 0) that in a data frame or an array; each is None if it is
+    not known.
     """
 
     path: str | None
@@ -32,13 +32,13 @@ class Error(Exception):
     if sys.version_info >= (3, 11):
 
         def add_note(self, note: str, /) -> None:
-            # PyO3 adds one that names the argument, which the sentence does.
+            # PyO3 adds one that names the argument, which the sentence already names.
             if not note.startswith("while processing '"):
                 super().add_note(note)
 
 
 class InputError(Error, ValueError):
-    """Something is wrong with what was given: a file, an array or an option."""
+    """A fault in the input: a file, an array or an option."""
 
 
 class FileError(InputError):
@@ -46,7 +46,7 @@ class FileError(InputError):
 
 
 class FormatError(InputError):
-    """A text is not of the form that it should be (XML, TOML, JSON, CSV)."""
+    """A text that is not of the expected form (XML, TOML, JSON, CSV)."""
 
 
 class ModelError(InputError):
@@ -83,7 +83,7 @@ def missing(package: str) -> PackageError:
 
 
 class ProblemError(Error):
-    """Too few or unsuitable measurements for what is asked."""
+    """Too few or unsuitable measurements for the request."""
 
 
 class ExportError(Error):
@@ -95,4 +95,4 @@ class SolverError(Error):
 
 
 class PoecalWarning(UserWarning):
-    """What the user should know of a file or a result: what the program writes to standard error."""
+    """Facts that the user should know of a file or a result: the program writes them to standard error."""

@@ -1,4 +1,4 @@
-"""What all results have: the answer in a sentence, a table, and all that the program prints with `--json`."""
+"""Common parts of all results: the answer in a sentence, a table, and the program's output with `--json`."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def table(text: str) -> _pandas.DataFrame:
 
 
 class Findings(Mapping[str, Any]):
-    """A result: `str` is the program's table, `repr` the answer, and `found["key"]` a part of what the program prints with `--json`.
+    """A result: `str` is the program's table, `repr` the answer, and `found["key"]` a part of the program's output with `--json`.
 
-    Its kinds have the numbers that matter as attributes, with units in their names.
+    Its kinds have the important numbers as attributes, with units in their names.
     """
 
     __slots__ = ("_answer", "_found", "_json", "_text", "_warnings")
@@ -52,14 +52,14 @@ class Findings(Mapping[str, Any]):
         return list(self._warnings)
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as dicts and lists: what the program prints with `--json`.
+        """The result as dicts and lists: the program's output with `--json`.
 
         Returns
         -------
         dict
             The result.
         """
-        # Loaded where it is needed, as by the rest of the package.
+        # Loaded on demand, as by the rest of the package.
         import json
 
         return cast("dict[str, Any]", json.loads(self._json))
@@ -75,7 +75,7 @@ class Findings(Mapping[str, Any]):
         return self._json
 
     def to_dataframe(self) -> _pandas.DataFrame:
-        """The result as a data frame of pandas, which has to be installed; each kind of result says what its rows are.
+        """The result as a data frame of pandas, which has to be installed; each kind of result states its rows.
 
         Returns
         -------
@@ -85,7 +85,7 @@ class Findings(Mapping[str, Any]):
         return imported("pandas").json_normalize(self._rows())
 
     def _rows(self) -> list[dict[str, Any]]:
-        """What the data frame has: by default the whole result as one row."""
+        """Rows of the data frame: by default the whole result as one row."""
         return [self.to_dict()]
 
     def _at(self, kind: type[T], *keys: str) -> T:
@@ -93,14 +93,14 @@ class Findings(Mapping[str, Any]):
         return cast("T", self._maybe(kind, *keys))
 
     def _maybe(self, kind: type[T], *keys: str) -> T | None:
-        """The same where it may be missing or null."""
+        """The part at some keys, of a known type; None if it is missing or null."""
         part: Any = self._whole()
         for key in keys:
             part = None if part is None else part.get(key)
         return cast("T | None", part)
 
     def _texts(self, *keys: str) -> list[str]:
-        """A list of texts; empty where there is none."""
+        """A list of texts; empty if it is missing."""
         return list(self._maybe(list, *keys) or [])
 
     def _whole(self) -> dict[str, Any]:

@@ -47,7 +47,7 @@ def answering(function: Callable[..., Any]) -> Callable[..., Any]:
         except TypeError as error:
             refused = REFUSED.search(str(error))
             keyword = refused and (refused[1] or next(iter(keywords), None))
-            # Not one that a function of the user does not have.
+            # Not a keyword that a function of the user does not have.
             if keyword not in keywords:
                 raise
             wrong = unknown(function, keyword)
@@ -68,7 +68,7 @@ def answer(module: ModuleType) -> None:
 
 
 def answer_methods(owner: type) -> None:
-    """The same of a class; its constructor answers by itself."""
+    """Makes all methods of a class answer; its constructor answers by itself."""
     for name, thing in list(vars(owner).items()):
         if name.startswith("_"):
             continue

@@ -20,7 +20,7 @@ SETS = [("fitted", False, "tab:blue", "."), ("held out", True, "tab:orange", "x"
 
 
 def plot(calibration: Calibration, axes: Sequence[Axes] | NDArray[Any] | None = None) -> Figure:
-    """Draws errors of the leading quantity (of poses and points the position) of the delivered model into two axes, and returns their figure."""
+    """Draws errors of the delivered model in the leading quantity (for poses and points the position) into two axes, and returns their figure."""
     try:
         import matplotlib.pyplot as plt
         from matplotlib.axes import Axes

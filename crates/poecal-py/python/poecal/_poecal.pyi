@@ -110,12 +110,12 @@ class Robot:
         instruments: Mapping[str, str] | None = None,
         targets: Mapping[str, str] | None = None,
     ) -> Robot:
-        """Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or calibration.json, of which it is the calibrated robot.
+        """Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or the calibrated robot of a calibration.json.
 
         Parameters
         ----------
         path
-            The file; its extension gives the form, or else the beginning of its text.
+            The file; its extension determines the form, or else the beginning of its text.
         base_link, tip_link
             The chain of a URDF that has several.
         instruments, targets
@@ -151,7 +151,7 @@ class Robot:
         path
             The file.
         base_link, tip_link
-            First and last link of the chain, where there are several.
+            First and last link of the chain, if there are several.
         instruments, targets
             Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
 
@@ -216,8 +216,8 @@ class Robot:
         Parameters
         ----------
         screws
-            Array of shape (n, 6), a unit twist a joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding
-            joint has w = 0 and |v| = 1.
+            Array of shape (n, 6), a unit twist for each joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding joint
+            has w = 0 and |v| = 1.
         home
             Pose of the tip in the base at zero joint values, shape (4, 4).
         names
@@ -225,7 +225,7 @@ class Robot:
         limits
             Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
         angular_first
-            Whether the angular part comes first.
+            True if the angular part comes first.
         name, base_link, tip_link
             Names of the robot and of its first and last frame.
 
@@ -315,14 +315,15 @@ class Robot:
         """Name of the tip frame."""
     @property
     def path(self) -> str:
-        """The file that it was read from, as it was named; for robots of arrays their name."""
+        """The file from which it was read, as it was named; for robots of arrays their name."""
     @property
     def joint_names(self) -> list[str]:
         """Names of the n moving joints from base to tip."""
     def with_factors(self, names: Sequence[str]) -> Robot:
         """The same robot with further columns of the measurements on which terms of its joints may depend, like temperature.
 
-        "approach" or "approach_JOINT" says from which side joints came, 1 or -1, "payload" which mass hangs at the tip, in kg. They are readings behind those of the joints.
+        "approach" or "approach_JOINT" states from which side joints came, 1 or -1, "payload" the mass at the tip, in kg. They are readings behind
+        those of the joints.
 
         Parameters
         ----------
@@ -336,10 +337,10 @@ class Robot:
         """
     @property
     def reading_names(self) -> list[str]:
-        """Names of the readings that a configuration consists of: those of the joints but for mimic joints, which follow another."""
+        """Names of the readings that a configuration consists of: those of the joints except mimic joints, which follow another."""
     @property
     def kinds(self) -> list[Literal["revolute", "prismatic"]]:
-        """"revolute" or "prismatic", a joint each."""
+        """"revolute" or "prismatic" for each joint."""
     @property
     def screws(self) -> _Array:
         """Screws in the base frame at zero joint values, shape (n, 6): linear part (metres), then angular part."""
@@ -348,7 +349,7 @@ class Robot:
         """Frames of the joints in the base at zero joint values, shape (n, 4, 4)."""
     @property
     def limits(self) -> _Array:
-        """Lower and upper limits, shape (n, 2), radians or metres; infinite where a joint has none."""
+        """Lower and upper limits, shape (n, 2), radians or metres; infinite for a joint without limits."""
     @property
     def home(self) -> _Array:
         """Pose of the tip in the base at zero joint values, shape (4, 4)."""
@@ -376,9 +377,9 @@ class Robot:
         path
             The file.
         format
-            "urdf" or "toml", default as the extension says.
+            "urdf" or "toml", by default from the extension.
         force
-            Whether to write over a file that exists.
+            True to overwrite a file that exists.
         """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -430,17 +431,17 @@ class Measurements:
         train_where
             "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
         ignore_sets
-            Whether the files' column `set` means nothing, as for rows that judge a calibration.
+            True to ignore the files' column `set`, as for rows that judge a calibration.
         strict
-            Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+            True to treat beam breaks (empty or zero positions) as an error instead of skipping them with a warning.
         device_frames
-            Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
-            "per-file", those of a file.
+            Rows that share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or "per-file", those of
+            a file.
         join
-            How joint readings and measurements in two files find each other: "name", "rows" or "time"; by default by name, else recordings at the
-            times of their stands, and lists by their order, if the nominal robot agrees with no other one as well.
+            Rule by which joint readings and measurements in two files are joined: "name", "rows" or "time". By default by name, else recordings at
+            the times of their static intervals, and lists by their order, if the nominal robot agrees with no other one as well.
         lag
-            Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
+            Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is estimated.
         units
             Units of columns that state none, "mm,deg"; a mapping file takes precedence.
         sheet
@@ -457,7 +458,7 @@ class Measurements:
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.
         cameras
-            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION if it has several), YAML of OpenCV, ROS, Kalibr or
             industrial_calibration, XML of ViSP.
         markers
             Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
@@ -472,17 +473,17 @@ class Measurements:
         FileError
             A file cannot be read.
         MeasurementError
-            It holds no measurements of this robot; the error tells the line and the column.
+            It holds no measurements of this robot; the error states the line and the column.
         """
     @staticmethod
     def from_files(paths: _Path | Sequence[_Path], robot: Robot, **options: Any) -> Measurements:
-        """Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, with all of its options, under the name of what it is for.
+        """Reads files of instruments, controllers and recorders in their own forms: the same files and options as `from_csv`, under a clearer name.
 
         Parameters
         ----------
         paths
-            A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or, which the
-            program does not read, in SQLite (`.db3`); those of ROS 1 are written as MCAP with `rosbags-convert`.
+            A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or in SQLite
+            (`.db3`), which the program does not read. Bags of ROS 1 are converted to MCAP with `rosbags-convert`.
         robot
             The robot whose joints the columns name.
 
@@ -496,17 +497,17 @@ class Measurements:
         FileError
             A file cannot be read.
         MeasurementError
-            It holds no measurements of this robot; the error tells the line and the column.
+            It holds no measurements of this robot; the error states the line and the column.
         """
     @staticmethod
     def from_contents(contents: Mapping[str, str | bytes], robot: Robot, **options: Any) -> Measurements:
-        """Reads files whose contents are here, as from a database or an upload: what `from_files` reads, with all of its options.
+        """Reads files from their contents, as from a database or an upload: the same files and options as `from_files`.
 
         Parameters
         ----------
         contents
-            Names of the files, of which the endings count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite
-            (`.db3`) is read as a file alone.
+            Names of the files, whose extensions count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite (`.db3`) is
+            read as a file only.
         robot
             The robot whose joints the columns name.
 
@@ -518,7 +519,7 @@ class Measurements:
         Raises
         ------
         MeasurementError
-            They hold no measurements of this robot; the error tells the line and the column.
+            They hold no measurements of this robot; the error states the line and the column.
         """
     @staticmethod
     def from_arrays(
@@ -537,10 +538,10 @@ class Measurements:
         angle_unit: str = "rad",
         length_unit: str = "m",
     ) -> Measurements:
-        """Measurements of arrays: positions, with orientations or without, or poses.
+        """Measurements from arrays: positions, with orientations or without, or poses.
 
-        Arrays may be read-only and of any layout. Masked numbers count as NaN: they are a missing orientation, or standard deviation, where
-        the whole row is masked, and refused elsewhere.
+        Arrays may be read-only and of any layout. Masked numbers count as NaN. If the whole row is masked, they are a missing orientation or standard
+        deviation; otherwise they are refused.
 
         Parameters
         ----------
@@ -559,11 +560,11 @@ class Measurements:
         instruments
             m names of measuring devices, each with a frame of its own.
         sets
-            "fit", "held_out" or None (which says nothing) for each row.
+            "fit", "held_out" or None (unstated) for each row.
         ids
             m names of the rows.
         sigma_position_mm, sigma_rotation_deg
-            Standard deviations of each measured component, where rows state them: a number, or shape (m,), NaN where a row does not.
+            Standard deviations of each measured component, if rows state them: a number, or shape (m,), NaN for a row without one.
         angle_unit, length_unit
             "rad", "deg", …; "m", "mm", …
 
@@ -588,7 +589,7 @@ class Measurements:
         cameras: Sequence[str] | None = None,
         markers: Sequence[str] | None = None,
     ) -> Measurements:
-        """Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
+        """Measurements from a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
 
         Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`. Missing and masked values are
         empty cells.
@@ -604,9 +605,9 @@ class Measurements:
         train_where
             "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
         ignore_sets
-            Whether the column `set` means nothing, as for rows that judge a calibration.
+            True to ignore the column `set`, as for rows that judge a calibration.
         strict
-            Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+            True to treat beam breaks (empty or zero positions) as an error instead of skipping them with a warning.
         units
             Units of columns that state none, "mm,deg"; a mapping file takes precedence.
         socket_distance
@@ -617,7 +618,7 @@ class Measurements:
             Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
             across the line of sight for each metre; of all instruments without a name. For rows that state none.
         cameras
-            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+            Files of the cameras that saw corners in pixels: CSV (FILE#VERSION if it has several), YAML of OpenCV, ROS, Kalibr or
             industrial_calibration, XML of ViSP.
         markers
             Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
@@ -630,15 +631,14 @@ class Measurements:
         Raises
         ------
         MeasurementError
-            The table holds no measurements of this robot; the error tells the row.
+            The table holds no measurements of this robot; the error states the row.
         """
     @staticmethod
     def join(parts: Sequence[Measurements]) -> Measurements:
-        """Rows of several measurements of one robot, one after the other; `a + b` is that of two.
+        """Rows of several measurements of one robot, in sequence; `a + b` joins two.
 
-        Rows keep what is known of them: target, instrument, set, id, standard deviations, file and line. Targets of one name are one
-        target. Rows of instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments
-        if it was moved in between.
+        Rows keep their attributes: target, instrument, set, id, standard deviations, file and line. Targets of one name are one target. Rows of
+        instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments if it was moved in between.
 
         Parameters
         ----------
@@ -661,16 +661,16 @@ class Measurements:
         """Measured positions in the device's frame, shape (m, 3), metres."""
     @property
     def poses(self) -> _Array:
-        """Measured poses device_from_target, shape (m, 4, 4); with the identity where a row has no orientation (`has_orientation`)."""
+        """Measured poses device_from_target, shape (m, 4, 4); with the identity if a row has no orientation (`has_orientation`)."""
     @property
     def has_orientation(self) -> NDArray[np.bool_]:
-        """Whether a row's orientation was measured, shape (m,)."""
+        """Rows with a measured orientation, shape (m,): True if it was measured."""
     @property
     def targets(self) -> list[str | None]:
         """The target of each row; None for the tip itself."""
     @property
     def instruments(self) -> list[str | None]:
-        """The instrument, or the place of it, that measured each row; None where there is one without a name."""
+        """The instrument, or its station, that measured each row; None if there is one without a name."""
     @property
     def sets(self) -> list[Literal["fit", "held_out"] | None]:
         """"fit", "held_out", or None, for each row."""
@@ -679,10 +679,10 @@ class Measurements:
         """The rows' ids; empty if they have none."""
     @property
     def files(self) -> list[str]:
-        """The files that the rows came from, as they were named."""
+        """The files of the rows, as they were named."""
     @property
     def notes(self) -> list[str]:
-        """What was found in the files, such as where a camera is, a sentence each."""
+        """Findings in the files, such as the position of a camera, a sentence each."""
     @property
     def warnings(self) -> list[str]:
         """Warnings about the files, a sentence each."""
@@ -726,7 +726,7 @@ class ModelAccuracy:
         """Distance from measured to predicted position, millimetres."""
     @property
     def rotation_deg(self) -> Statistic | None:
-        """Angle from measured to predicted orientation, degrees; None where no orientation was measured."""
+        """Angle from measured to predicted orientation, degrees; None if no orientation was measured."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
@@ -748,7 +748,7 @@ class SetAccuracy:
         """Screws fitted too."""
     @property
     def corrected(self) -> ModelAccuracy | None:
-        """Screws and terms of the joints fitted together; None if no terms were asked for."""
+        """Screws and terms of the joints fitted together; None if no terms were requested."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
@@ -758,20 +758,20 @@ class Accuracy:
     """Errors on the rows that were fitted and on those that were held out."""
     @property
     def training(self) -> SetAccuracy:
-        """On the rows that were fitted."""
+        """Errors on the rows that were fitted."""
     @property
     def held_out(self) -> SetAccuracy | None:
-        """On the rows that were not; None if none was held out."""
+        """Errors on the rows that were not fitted; None if none was held out."""
     @property
     def few_configurations(self) -> int | None:
-        """Number of configurations where all were fitted because too few would have been held out; None otherwise."""
+        """Number of configurations if all were fitted because too few would have been held out; None otherwise."""
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Verdict:
-    """Verdict: how far a calibration may be used, and why no farther."""
+    """Verdict: permitted use of a calibration, and the reasons against a wider one."""
     @property
     def level(self) -> _Level:
         """"good", "inside_sampled_range", "measured_configurations", "located" or "do_not_use"."""
@@ -780,10 +780,10 @@ class Verdict:
         """Sentences with the deciding figures."""
     @property
     def model(self) -> str | None:
-        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
+        """The delivered model: "corrected" if it has terms, else "calibrated"."""
     @property
     def expected_error_mm(self) -> float | None:
-        """Expected error of that model in configurations like those that were measured, millimetres (RMS); None where no use is advised."""
+        """Expected error of that model in configurations like those that were measured, millimetres (RMS); None if no use is advised."""
     @property
     def bound95_mm(self) -> float | None:
         """The distance that 95 % of its errors do not exceed there, millimetres."""
@@ -795,12 +795,12 @@ class Verdict:
         """Distance of the nominal model's predictions from its own there, with targets and devices fitted, millimetres (RMS)."""
     @property
     def gain(self) -> str | None:
-        """Whether it predicts better than the nominal model there: "clear", "unclear" or "loss"."""
+        """Comparison with the nominal model's predictions there: "clear", "unclear" or "loss"."""
     @property
     def confirmed(self) -> str | None:
-        """That the axes of the nominal model are confirmed, a sentence with its figures; None where they are not."""
+        """Sentence with figures if the axes of the nominal model are confirmed; None if they are not."""
     def is_at_least(self, level: _Level) -> bool:
-        """Whether a calibration may be used as far as this.
+        """True if a calibration may be used at least to this level.
 
         Parameters
         ----------
@@ -810,7 +810,7 @@ class Verdict:
         Returns
         -------
         bool
-            Whether the verdict's level is `level` or a better one.
+            True if the verdict's level is `level` or a better one.
         """
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
@@ -836,7 +836,7 @@ class Prediction:
         """Distance that is not exceeded in 95 % of all cases, shape (m,), metres."""
     @property
     def inside_sampled_range(self) -> NDArray[np.bool_]:
-        """Whether every joint lies within the range that was sampled, shape (m,)."""
+        """Configurations inside the sampled range, shape (m,): True if every joint is inside its range."""
     def __len__(self) -> int: ...
 
 @final
@@ -847,58 +847,58 @@ class Residuals:
     """
     @property
     def files(self) -> list[str | None]:
-        """File of each row; None where it came from memory."""
+        """File of each row; None if it came from memory."""
     @property
     def lines(self) -> NDArray[np.uint32]:
-        """Line of each row in its file, from 1, shape (m,); 0 where it came from memory."""
+        """Line of each row in its file, from 1, shape (m,); 0 if it came from memory."""
     @property
     def ids(self) -> list[str | None]:
-        """Id of each row; None where it has none."""
+        """Id of each row; None if it has none."""
     @property
     def held_out(self) -> NDArray[np.bool_]:
-        """Whether each row was held out, shape (m,)."""
+        """Held-out rows, shape (m,): True if the row was held out."""
     @property
     def targets(self) -> list[str | None]:
         """Target of each row; None for the tip itself."""
     @property
     def instruments(self) -> list[str | None]:
-        """Instrument of each row; None where there is only one."""
+        """Instrument of each row; None if there is only one."""
     @property
     def position_mm(self) -> _Array:
-        """Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN where no position was measured."""
+        """Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN if no position was measured."""
     @property
     def rotation_deg(self) -> _Array:
-        """Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN where no orientation was measured."""
+        """Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN if no orientation was measured."""
     @property
     def position_nominal_mm(self) -> _Array:
-        """Error of position of the nominal model, shape (m,), millimetres; NaN where no position was measured."""
+        """Error of position of the nominal model, shape (m,), millimetres; NaN if no position was measured."""
     @property
     def position_registered_mm(self) -> _Array:
-        """Error of position of the registered model, shape (m,), millimetres; NaN where no position was measured."""
+        """Error of position of the registered model, shape (m,), millimetres; NaN if no position was measured."""
     @property
     def position_calibrated_mm(self) -> _Array:
-        """Error of position of the calibrated model, shape (m,), millimetres; NaN where no position was measured."""
+        """Error of position of the calibrated model, shape (m,), millimetres; NaN if no position was measured."""
     @property
     def position_corrected_mm(self) -> _Array:
-        """Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or where no position was measured."""
+        """Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or if no position was measured."""
     @property
     def rotation_nominal_deg(self) -> _Array:
-        """Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured."""
+        """Error of rotation of the nominal model, shape (m,), degrees; NaN if no orientation was measured."""
     @property
     def rotation_registered_deg(self) -> _Array:
-        """Error of rotation of the registered model, shape (m,), degrees; NaN where no orientation was measured."""
+        """Error of rotation of the registered model, shape (m,), degrees; NaN if no orientation was measured."""
     @property
     def rotation_calibrated_deg(self) -> _Array:
-        """Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured."""
+        """Error of rotation of the calibrated model, shape (m,), degrees; NaN if no orientation was measured."""
     @property
     def rotation_corrected_deg(self) -> _Array:
-        """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured."""
+        """Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or if no orientation was measured."""
     @property
     def model(self) -> Literal["corrected", "calibrated"]:
-        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
+        """The delivered model: "corrected" if it has terms, else "calibrated"."""
     @property
     def quantities(self) -> dict[str, str]:
-        """Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged."""
+        """Quantities that some row measured, such as "position", with their units; first the one that judges the calibration."""
     def components(self, quantity: str) -> _Array:
         """Residual of any quantity of the delivered model by component.
 
@@ -910,7 +910,7 @@ class Residuals:
         Returns
         -------
         numpy.ndarray
-            Shape (m, n), millimetres or degrees; NaN where it was not measured.
+            Shape (m, n), millimetres or degrees; NaN if it was not measured.
         """
     def errors(self, quantity: str, *, model: _Model = "delivered") -> _Array:
         """Error of any quantity of a model.
@@ -925,10 +925,10 @@ class Residuals:
         Returns
         -------
         numpy.ndarray
-            Shape (m,), millimetres or degrees; NaN where it was not measured.
+            Shape (m,), millimetres or degrees; NaN if it was not measured.
         """
     def corners_px(self, *, model: _Model = "delivered") -> _Array:
-        """Root mean square distance of the corners of each picture from where a model sees them.
+        """Root mean square distance of the corners of each picture from a model's predicted positions.
 
         Parameters
         ----------
@@ -938,20 +938,20 @@ class Residuals:
         Returns
         -------
         numpy.ndarray
-            Shape (m,), pixels; NaN of rows that are no pictures.
+            Shape (m,), pixels; NaN for rows that are no pictures.
         """
     @property
     def weight(self) -> _Array:
-        """Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had."""
+        """Weight of each row in the fit, shape (m,); for a held-out row the weight that it would have had."""
     @property
     def leverage(self) -> _Array:
-        """Leverage of each row, shape (m,): how much it decides its own prediction."""
+        """Leverage of each row, shape (m,): its influence on its own prediction."""
     @property
     def studentized(self) -> _Array:
         """Studentised residual of each row, shape (m,): its length over its own standard deviation."""
     @property
     def suspected(self) -> NDArray[np.bool_]:
-        """Whether each row is suspected of a gross error, shape (m,)."""
+        """Suspected rows, shape (m,): True if the row is suspected of a gross error."""
     def to_dict(self) -> dict[str, Any]:
         """The columns of residuals.csv by their names there, with the readings of each row.
 
@@ -1008,7 +1008,7 @@ class Covariance:
 
 @final
 class Calibration:
-    """A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
+    """A calibration: the calibrated robot, its errors on fitted and held-out rows, and the verdict on its trustworthiness.
 
     `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`,
     converted on demand.
@@ -1027,17 +1027,17 @@ class Calibration:
         Returns
         -------
         Calibration
-            The calibration, which does what it did before it was written.
+            The calibration, with the same behaviour as before it was written.
         """
     @property
     def robot(self) -> Robot:
         """The calibrated robot, with the targets in its tip frame."""
     @property
     def corrected_robot(self) -> Robot | None:
-        """The corrected robot, with gives and terms beside its joints; None if no terms were asked for."""
+        """The corrected robot, with compliant joints and terms beside its joints; None if no terms were requested."""
     @property
     def corrected(self) -> dict[str, Any] | None:
-        """Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were asked for."""
+        """Screws and terms of the joints, fitted together: `corrected` of calibration.json; None if no terms were requested."""
     @property
     def nominal(self) -> Robot:
         """The nominal robot."""
@@ -1046,22 +1046,22 @@ class Calibration:
         """Errors of the nominal, registered, calibrated and corrected model on fitted and held-out rows."""
     @property
     def verdict(self) -> Verdict:
-        """How far the calibration may be used, and why no farther; an error for a file that does not say so."""
+        """Permitted use of the calibration, and the reasons against a wider one; an error for a file that does not state it."""
     @property
     def acceptance(self) -> dict[str, Any] | None:
-        """Whether the limits that were asked for are kept: `acceptance` of calibration.json; None if none were."""
+        """Result of the requested acceptance limits: `acceptance` of calibration.json; None if none were requested."""
     @property
     def record(self) -> dict[str, str]:
-        """What is stated of the session: a dict of texts."""
+        """Statements about the session: a dict of texts."""
     @property
     def converged(self) -> bool:
-        """Whether the fit reached an optimum."""
+        """True if the fit reached an optimum."""
     @property
     def warnings(self) -> list[str]:
         """Warnings, and mistakes in the input, a sentence each."""
     @property
     def library_seconds(self) -> float | None:
-        """Seconds that the library took for the fit; None if it was read. What a call took beyond them is Python's."""
+        """Seconds that the library took for the fit; None if it was read. Further time of a call is Python's."""
     @property
     def base_from_device(self) -> _Array:
         """Pose of the measuring device in the base, shape (4, 4)."""
@@ -1073,7 +1073,7 @@ class Calibration:
         """Each joint's correction, its uncertainty and its effect: `corrections` of calibration.json."""
     @property
     def compensation(self) -> dict[str, Any] | None:
-        """How far programs for the nominal robot miss over the workspace, and which corrections mend it.
+        """Errors of programs for the nominal robot over the workspace, and the corrections that remove them.
 
         `compensation` of calibration.json; None if the calibration is not to be used.
         """
@@ -1082,7 +1082,7 @@ class Calibration:
         """Expected errors of predictions: `uncertainty` of calibration.json; None if there are no more residuals than unknowns."""
     @property
     def identifiability(self) -> dict[str, Any]:
-        """Which unknowns the measurements determine: `identifiability` of calibration.json."""
+        """Unknowns that the measurements determine: `identifiability` of calibration.json."""
     @property
     def residuals(self) -> Residuals:
         """Residuals of each row, fitted or held out; an error if the calibration was read without its residuals.csv."""
@@ -1136,9 +1136,9 @@ class Calibration:
         folder
             The folder.
         force
-            Whether to write over files that exist.
+            True to overwrite files that exist.
         report
-            Whether to write the report too, or the path of another file for it.
+            True to write the report too, or the path of another file for it.
 
         Returns
         -------
@@ -1150,7 +1150,7 @@ class Calibration:
         FileError
             The folder exists, and `force` is not set.
         ExportError
-            Written files did not reproduce what was fitted.
+            Written files did not reproduce the fitted model.
         """
     def export(
         self,
@@ -1174,12 +1174,12 @@ class Calibration:
         hash
             The controller's checksum, for "ur".
         motors
-            The text of the calibration of motors that LeRobot has, for "lerobot".
+            The text of LeRobot's existing calibration of motors, for "lerobot".
 
         Returns
         -------
         str
-            The text. What the form cannot say is a warning.
+            The text. A warning names the properties that the form cannot hold.
 
         Raises
         ------
@@ -1202,9 +1202,9 @@ class Calibration:
         path
             The file.
         record
-            What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+            Statements beside and in place of the calibration's record, as {"serial": "4711"}.
         force
-            Whether to write over a file that is no report of poecal.
+            True to overwrite a file that is no report of poecal.
         """
     def certificate(
         self,
@@ -1223,9 +1223,9 @@ class Calibration:
         logo
             Picture for its head: PNG, JPEG or SVG.
         record
-            What it states beside and in place of what the calibration's record states, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
+            Statements beside and in place of the calibration's record, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
         force
-            Whether to write over a file that is none of poecal.
+            True to overwrite a file that is not poecal's.
         """
     @overload
     def predict(
@@ -1245,15 +1245,15 @@ class Calibration:
         joints
             Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
         with_uncertainty
-            Whether to give the expected error of each pose too.
+            True to return the expected error of each pose too.
         output_frame
             Frame of the poses: "base" or "device".
         target
             Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
         model
-            Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
+            Model that predicts: "corrected", if there is one, or "calibrated", geometry alone.
         readings
-            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
             these differ.
 
         Returns
@@ -1300,9 +1300,9 @@ class Calibration:
         factors
             Values of the corrected model's factors by their names, default their references.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
         readings
-            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
             these differ.
 
         Returns
@@ -1317,7 +1317,7 @@ class Calibration:
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array:
-        """How the tip moves with each reading: the motion of its point, then its turn, in the axes of the base. What weights add is in it.
+        """Motion of the tip with each reading: of its point, then its turn, in the axes of the base, deflection under weights included.
 
         Parameters
         ----------
@@ -1326,7 +1326,7 @@ class Calibration:
         factors
             Values of the corrected model's factors by their names, default their references.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
 
         Returns
         -------
@@ -1340,9 +1340,9 @@ class Calibration:
         factors: Mapping[str, float] | None = None,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> _Array:
-        """What weights move the tip, from where it would be without what joints and links give under weights.
+        """Deflection of the tip under weights: its motion from the pose without compliance of joints and links.
 
-        How far its point is shifted and how far it is turned, in the axes of the base. Zero where the model has no such terms.
+        Shift of its point and its turn, in the axes of the base. Zero if the model has no such terms.
 
         Parameters
         ----------
@@ -1351,7 +1351,7 @@ class Calibration:
         factors
             Values of the corrected model's factors by their names, default their references.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
 
         Returns
         -------
@@ -1373,7 +1373,7 @@ class Calibration:
         model: Literal["corrected", "calibrated"] = "corrected",
         readings: Literal["model", "controller"] | None = None,
     ) -> _Array:
-        """Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
+        """Joint readings by which the actual robot's tip reaches the poses of a program for the nominal robot.
 
         Parameters
         ----------
@@ -1382,24 +1382,25 @@ class Calibration:
         factors
             Values of the corrected model's factors by their names, default their references.
         nearest
-            Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
+            True to return the nearest configuration if a pose cannot be reached, instead of leaving the row unchanged.
         max_turn_deg, max_slide_mm
-            How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+            Largest change of a joint that turns, or slides, beyond its zero, default 2 degrees and 2 mm. A row that needs more, at a singularity, is
+            unchanged.
         max_turn_rad, max_slide_m
-            The same in radians and metres.
+            The same limits in radians and metres.
         summary
-            Whether to give the summary as well.
+            True to return the summary as well.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
         readings
-            What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+            Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
             these differ.
 
         Returns
         -------
         numpy.ndarray
-            Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
-            `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+            Readings to command, of the same shape. A PoecalWarning names the unchanged rows. With summary=True a tuple of these and a `Compensation`:
+            `targets` has every corrected row by its index (`line`), `listed` every other one with the reason.
         """
     @overload
     def compensate(
@@ -1417,12 +1418,12 @@ class Calibration:
         readings: Literal["model", "controller"] | None = None,
     ) -> tuple[_Array, Compensation]: ...
     def taught(self, *, model: Literal["corrected", "calibrated"] = "corrected") -> Robot:
-        """The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
+        """The nominal robot with base and tool of the actual one: corrected programs move the actual robot to the poses of this one.
 
         Parameters
         ----------
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
 
         Returns
         -------
@@ -1449,16 +1450,17 @@ class Calibration:
         check: bool = False,
         model: Literal["corrected", "calibrated"] = "corrected",
     ) -> tuple[bytes, Compensation]:
-        """A robot program with its targets corrected in place, everything else as it was, byte for byte.
+        """A robot program with its targets corrected in place; everything else is unchanged, byte for byte.
 
         Parameters
         ----------
         path
             The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
         language
-            Its language, default by the end of its name.
+            Its language, by default from the extension of its name.
         tool_data
-            Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
+            Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers in the language's
+            notation of poses.
         work_objects
             Frames of poses (work object, base, user frame) in the controller's base, as tools.
         controller_base
@@ -1466,26 +1468,29 @@ class Calibration:
         controller_flange
             The controller's flange in the model's tip, default the same.
         start
-            Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
+            Readings of the robot before the first motion, "J1,J2,…" in the language's notation of joints: for programs that begin with a pose and
+            state no configuration.
         factors
             Values of the corrected model's factors by their names, default their references.
         nearest
-            Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+            True to write the nearest configuration if the robot cannot reach a target, instead of leaving it unchanged.
         max_turn_deg, max_slide_mm
-            How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+            Largest change of a joint that turns, or slides, beyond its zero, default 2 degrees and 2 mm. A target that needs more, at a singularity,
+            is unchanged and listed.
         max_turn_rad, max_slide_m
-            The same in radians and metres.
+            The same limits in radians and metres.
         third_axis
-            From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
+            Zero of J3 in a program of FANUC: "level" or "arm"; by default from the calibration's mapping and its rows.
         check
-            Whether to compute what is left once more, from the written text.
+            True to compute the remaining error once more, from the written text.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
 
         Returns
         -------
         tuple of bytes and Compensation
-            The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
+            The program, and the summary: the number of corrected targets, the unchanged ones with the reason, the largest corrections, and the
+            remaining error.
         """
     @overload
     def ik(
@@ -1505,22 +1510,23 @@ class Calibration:
         poses
             Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
         near
-            Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+            Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, for a robot with six turning
+            joints.
         held
-            Of a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,); then all branches
-            of the others are found.
+            For a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,).
+            All branches of the other joints are then found.
         limits
-            Whether to keep the joints' limits.
+            True to keep the joints' limits.
         factors
             Values of the corrected model's factors by their names, default their references.
         model
-            Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+            Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
 
         Returns
         -------
         numpy.ndarray or list of numpy.ndarray
-            With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN where there is none; without, the branches of each
-            pose, a list of arrays of shape (k, n), or one array for one pose.
+            With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN if there is none. Without, the branches of
+            each pose, a list of arrays of shape (k, n), or one array for one pose.
         """
     @overload
     def ik(
@@ -1546,27 +1552,27 @@ class Calibration:
         record: Mapping[str, str] | None = None,
         history: _Path | None = None,
     ) -> Validation:
-        """Judges the calibration by measurements that it did not see; every row counts.
+        """Judges the calibration by measurements that it did not use; every row counts.
 
         Parameters
         ----------
         measurements
             The measurements.
         refit
-            What is refitted to them: "device" (its frame), "tool" (the targets), or a list of both; "auto" refits the device's frame where the
-            measurements show that the device stands elsewhere, which is stated otherwise.
+            Parts that are refitted to them: "device" (its frame), "tool" (the targets), or a list of both. "auto" refits the device's frame if the
+            measurements show that the device moved; otherwise such a move is only reported.
         accept
             Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
         accept_model
-            Which model must meet them: "corrected", if there is one, or "calibrated".
+            Model that must meet them: "corrected", if there is one, or "calibrated".
         out
             Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
         force
-            Whether to write over results of a check and a report that exist.
+            True to overwrite existing results of a check and a report.
         report
-            Whether to write a report among the results, or the path of another file for it.
+            True to write a report among the results, or the path of another file for it.
         record
-            What the report states of this session, by key; see `poecal.calibrate`.
+            Statements of the report about this session, by key; see `poecal.calibrate`.
         history
             File to which the check is appended as a line, like the history.jsonl that the program keeps beside a calibration.
 
@@ -1585,7 +1591,7 @@ class Calibration:
         device_frame: _Frame = "unknown",
         robot_error_mm: _Number | _Pair | None = None,
     ) -> Identification:
-        """Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
+        """Unknowns that measurements of the calibrated robot in stated configurations would determine; see `poecal.identify`.
 
         Parameters
         ----------
@@ -1598,12 +1604,13 @@ class Calibration:
         device_frame
             The measuring device's frame: "unknown" or "base".
         robot_error_mm
-            Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
+            Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections (default those of this
+            calibration).
 
         Returns
         -------
         Identification
-            What would be determined, and the expected error.
+            The unknowns that would be determined, and the expected error.
         """
     def _repr_html_(self) -> str: ...
     def __eq__(self, other: object, /) -> bool: ...
@@ -1615,19 +1622,19 @@ class Calibration:
 
 @final
 class Plan:
-    """A planned list of configurations. `str` is the program's table, `to_dict` what the program prints with `--json`."""
+    """A planned list of configurations. `str` is the program's table, `to_dict` the program's output with `--json`."""
     @property
     def joints(self) -> NDArray[np.float64]:
         """The configurations in the order in which to measure them, shape (m, n), radians and metres, in the order of `robot.reading_names`."""
     @property
     def sets(self) -> list[Literal["fit", "held_out"]]:
-        """What each row is for: "fit" or "held_out"."""
+        """Purpose of each row: "fit" or "held_out"."""
     @property
     def returns(self) -> list[bool]:
-        """Whether each row is the first configuration again."""
+        """Returns, a bool for each row: True if it is the first configuration again."""
     @property
     def candidates(self) -> list[int | None]:
-        """Index of each row among the candidates, where these were given."""
+        """Index of each row among the candidates, if these were stated."""
     @property
     def expected_calibrated_mm(self) -> float:
         """Expected error of the calibrated model (RMS over the workspace), millimetres."""
@@ -1654,7 +1661,7 @@ class Plan:
             The table that `write` writes: "id", "set", "returns", and the readings in degrees and millimetres.
         """
     def to_dict(self) -> dict[str, Any]:
-        """The plan as dicts and lists: what the program prints with `--json`.
+        """The plan as dicts and lists: the program's output with `--json`.
 
         Returns
         -------
@@ -1662,14 +1669,14 @@ class Plan:
             The plan, with "curve" and "rows".
         """
     def write(self, path: _Path, *, force: bool = False) -> None:
-        """Writes the list as a table that `poecal.Measurements` reads once it has what was measured.
+        """Writes the list as a table that `poecal.Measurements` reads once the measured quantities are filled in.
 
         Parameters
         ----------
         path
             The file (CSV).
         force
-            Whether to write over a file that exists.
+            True to overwrite a file that exists.
         """
     def write_program(self, path: _Path, *, force: bool = False) -> None:
         """Writes the list as a program of slow joint motions with a stop at each row.
@@ -1679,23 +1686,23 @@ class Plan:
         path
             The file: its name ends in .script (Universal Robots), .mod (ABB), .src (KUKA) or .ls (FANUC).
         force
-            Whether to write over a file that exists.
+            True to overwrite a file that exists.
         """
     def write_report(self, path: _Path, *, force: bool = False) -> None:
-        """Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, how each joint is sampled.
+        """Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, the sampled part of each joint's range.
 
         Parameters
         ----------
         path
             The file (HTML).
         force
-            Whether to write over a file that exists.
+            True to overwrite a file that exists.
         """
     def __len__(self) -> int: ...
 
 @final
 class Watch:
-    """A session that is watched: each row is judged before it is fitted, while the target is still there.
+    """A session that is watched: each row is judged before it is fitted, while the target is still in place.
 
     Parameters
     ----------
@@ -1710,15 +1717,15 @@ class Watch:
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     robot_error_mm
-        Error of the tip (RMS) that a calibration leaves however much is measured, as of `plan`.
+        Remaining error of the tip (RMS) after a calibration with any number of rows, as of `plan`.
     device_frame
         The measuring device's frame: "unknown" or "base".
     tolerance_deg_mm
         Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
     corrections
-        What joints are expected to do beyond geometry, as of `plan`.
+        Expected joint effects beyond geometry, as of `plan`.
     gravity
-        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+        Direction of gravity in the robot's base frame, default (0, 0, -1).
     seed
         Seed of everything random.
     """
@@ -1765,11 +1772,11 @@ class Watch:
         Returns
         -------
         WatchedRow
-            Whether the row is as expected (`ok`, None while there are too few rows to judge by), else its `mistake`; which error would be noticed
-            (`noticed_mm`); the errors to expect now and after ten more rows; the configuration that gains most (`next`).
+            Comparison of the row with the expectation (`ok`, None while there are too few rows), or else its `mistake`; the detectable error
+            (`noticed_mm`); the expected errors now and after ten more rows; the configuration that gains most (`next`).
         """
     def add_all(self, measurements: Measurements) -> list[WatchedRow]:
-        """Judges the rows of measurements, one after the other.
+        """Judges the rows of measurements in sequence.
 
         Parameters
         ----------
@@ -1779,7 +1786,7 @@ class Watch:
         Returns
         -------
         list of WatchedRow
-            As of `add`, one for each row.
+            Results as of `add`, one for each row.
         """
     def __len__(self) -> int: ...
 
@@ -1797,7 +1804,7 @@ class Simulation:
         """The measurements."""
     @property
     def held_out(self) -> Measurements | None:
-        """Further rows, free of noise, to judge a calibration by; None if none were asked for."""
+        """Further rows, free of noise, for validation of a calibration; None if none were requested."""
     @property
     def device_from_base(self) -> _Array:
         """Pose of the base in the measuring device, shape (4, 4)."""
@@ -1809,7 +1816,7 @@ class Simulation:
         folder
             The folder.
         force
-            Whether to write over files that exist.
+            True to overwrite files that exist.
 
         Returns
         -------
@@ -1858,37 +1865,37 @@ def calibrate(
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component, default estimated from the data.
     tolerance_deg_mm
-        Prior: deviation of each axis from nominal, standard deviations of angle and place (default 0.5 deg and 5 mm), or None; it
-        decides where the measurements determine nothing. "auto" takes the best of (0.05, 0.5), (0.2, 2), (0.5, 5), (1, 10) and (3, 10) by cross-validation. The
-        path of a MOC.cfg of a controller of ABB stands for what the maker found.
+        Prior: deviation of each axis from nominal, standard deviations of angle and position (default 0.5 deg and 5 mm), or None. It decides for
+        unknowns that the measurements do not determine. "auto" takes the best of (0.05, 0.5), (0.2, 2), (0.5, 5), (1, 10) and (3, 10) by
+        cross-validation. The path of a MOC.cfg of a controller of ABB uses the maker's calibration.
     corrections
-        What joints do beyond geometry: "auto" fits the terms that predict rows best which were not fitted, "all" looks among more of them,
-        "off" fits none; or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of
-        their sizes in radians or metres, or as texts with a unit.
+        Joint effects beyond geometry. "auto" fits the terms with the best prediction of rows that were not fitted, "all" searches more of them, "off"
+        fits none. Or groups of terms, some of "sag,tilt,ratio,harmonics,wobble,backlash,factors,payload,shift,runout", or a dict of their sizes in
+        radians or metres, or as texts with a unit.
     harmonics
         Highest order of the harmonics of a turn among these terms, 1 to 8 (default 2).
     gravity
-        Where gravity pulls, in the robot's base frame, default (0, 0, -1), or "find": where the terms leave the least noise.
+        Direction of gravity in the robot's base frame, default (0, 0, -1), or "find": the direction for which the terms leave the least noise.
     fix
-        Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * stands for any letters.
+        Blocks to hold as in the model: "joints", "targets", "frames", or names like "joint2.axis", in which * matches any letters.
     free
-        Blocks to fit, also those that are usually held, like "joint2.offset", and after `fix`.
+        Blocks to fit, also those that are held by default, like "joint2.offset", and after `fix`.
     move_tip
-        Whether to put the tip where the measured point is, for a model that ends in its reflector. Otherwise the links beyond the last joint stay
-        as in the model, and the point is the target "measured".
+        True to put the tip at the measured point, for a model that ends in its reflector. Otherwise the links beyond the last joint stay as in the
+        model, and the point is the target "measured".
     held_out
-        Share of the configurations held out, where nothing else says which rows are; 0 fits every row (default 0.3; 0 if fewer than 12 would be
-        held out, but for pictures, rows in motion and `accept`).
+        Share of the configurations held out, if nothing else determines the rows; 0 fits every row (default 0.3; 0 if fewer than 12 would be held
+        out, except for pictures, rows in motion and `accept`).
     seed
         Seed of that choice (default 1).
     robust
-        How to treat outliers: "auto", "off", "huber", "cauchy" or "tukey".
+        Treatment of outliers: "auto", "off", "huber", "cauchy" or "tukey".
     repair
         "auto" repairs a session in which a device, a target, a nest or a joint's zero evidently moved, or configurations are wrong as a whole, if
-        other rows are predicted better then; "off" only says it. `Calibration.to_dict()` has `repairs` and `suspicions`.
+        that improves the prediction of other rows; "off" only reports it. `Calibration.to_dict()` has `repairs` and `suspicions`.
     repair_limit
-        Largest repair of a device (usually 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
-        arcs at a third of the robot's reach. What is larger is named, not acted upon.
+        Largest repair of a device (default 50 mm), a tool (20 mm) or a zero (5 deg), like "device=100mm" or "tool=30mm,zero=10deg"; turns count as
+        arcs at a third of the robot's reach. A larger motion is named, not repaired.
     formulation
         Parameterisation of joint errors: "adjoint", "screw", "screw-offsets" or "adjoint-offsets".
     residual
@@ -1896,14 +1903,14 @@ def calibrate(
     method
         "levenberg-marquardt" or "gauss-newton" (default for formulations with free screws).
     validate
-        Measurements to judge by: all other rows are fitted.
+        Measurements for validation: all other rows are fitted.
     accept
-        Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or
-        max of all errors in a unit. `Calibration.acceptance` says whether each is shown to be kept.
+        Limits that the errors of rows that were not fitted must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg": rms (the default), p95 or max of all
+        errors in a unit. `Calibration.acceptance` reports whether each is shown to be kept.
     accept_model
-        Which model must meet them: "corrected", if there is one, or "calibrated".
+        Model that must meet them: "corrected", if there is one, or "calibrated".
     record
-        What the report states of the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
+        Statements of the report about the session: a dict of texts with keys among "certificate", "laboratory", "customer", "robot", "serial",
         "instrument", "operator", "date", "place", "temperature" and "note".
     progress
         Called with the next stage, in words; True for a bar on standard error.
@@ -1911,7 +1918,7 @@ def calibrate(
     Returns
     -------
     Calibration
-        The calibrated robot, its errors, and how far to trust it.
+        The calibrated robot, its errors, and the verdict on its trustworthiness.
 
     Raises
     ------
@@ -1925,7 +1932,7 @@ def calibrate(
 def check(
     robot: Robot | _Path, measurements: Measurements | _Path | Sequence[_Path] | None = None, *, device_frame: _Frame = "unknown"
 ) -> Check:
-    """How a model and measurements are understood, and mistakes that they show.
+    """Interpretation of a model and measurements, and the mistakes that they show.
 
     Parameters
     ----------
@@ -1934,28 +1941,28 @@ def check(
     measurements
         Its measurements, or the path of their file, or several paths; None if there are none yet.
     device_frame
-        The measuring device's frame; with "base", mistakes in it are looked for too.
+        The measuring device's frame; with "base", mistakes in it are searched too.
 
     Returns
     -------
     Check
-        What is understood, with mistakes under "diagnosis".
+        The interpretation, with mistakes under "diagnosis".
     """
 def compare(first: Calibration, second: Calibration, *, limit_mm: _Number | None = None) -> Comparison:
-    """Two calibrations of one robot: what changed, and what is noise.
+    """Changes between two calibrations of one robot, and their comparison with noise.
 
     Parameters
     ----------
     first, second
         The calibrations.
     limit_mm
-        How far the tip may have moved (RMS), default the expected errors of both together.
+        Largest permitted motion of the tip (RMS), default the expected errors of both together.
 
     Returns
     -------
     Comparison
-        Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
-        change with its test.
+        Motion of the tip (`tip`), its comparison with the limit (`moved`), the test of all changes against noise (`changed`), and each joint's change
+        with its test.
     """
 def export(
     robot: Robot,
@@ -1972,14 +1979,14 @@ def export(
     robot
         The robot.
     format
-        "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), default as the extension of `out` says.
+        "urdf" (a new one, of links, joints and a tip) or "toml" (a table of screws), by default from the extension of `out`.
     offset
-        Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with these
-        offsets. Mimic joints that follow a joint stay.
+        Offsets of joint values by the joints' names, radians or metres, or texts with a unit: the text has the screws and home pose of the robot with
+        these offsets. Mimic joints that follow a joint stay.
     out
         The file.
     force
-        Whether to write over a file that exists.
+        True to overwrite a file that exists.
 
     Returns
     -------
@@ -1987,10 +1994,10 @@ def export(
         The text.
     """
 def guess_columns(path: _Path, robot: Robot | _Path, *, columns: Mapping[str, str] | None = None) -> ColumnGuess:
-    """Guesses which columns of a foreign file are the joints and what was measured, as `poecal init --columns-from` does.
+    """Guesses the columns of joints and measured quantities in a foreign file, as `poecal init --columns-from` does.
 
-    Look the mapping over, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by
-    `Measurements.from_csv(path, robot, columns="columns.toml")`.
+    Check the mapping, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by `Measurements.from_csv(path, robot,
+    columns="columns.toml")`.
 
     Parameters
     ----------
@@ -2004,7 +2011,7 @@ def guess_columns(path: _Path, robot: Robot | _Path, *, columns: Mapping[str, st
     Returns
     -------
     ColumnGuess
-        The columns of the file, the fields of a mapping with what is chosen, columns that are left, and the mapping as a text (TOML).
+        The columns of the file, the fields of a mapping with their choices, unused columns, and the mapping as a text (TOML).
     """
 def iso9283(
     measurements: _Path,
@@ -2052,31 +2059,31 @@ def hand_eye(
     names: Sequence[str] | None = None,
     frame_names: Sequence[str] | None = None,
 ) -> HandEye:
-    """Where a camera is on the flange or beside the robot, from poses of the flange and of a board that it saw.
+    """Pose of a camera on the flange or beside the robot, from poses of the flange and of a board that it saw.
 
-    With bounds of 95 %; mistakes in the poses are named, wrong ones left out.
+    The result has bounds of 95 %. Mistakes in the poses are named, wrong poses left out.
 
     Parameters
     ----------
     base_from_flange
-        Poses of the arm's flange, shape (m, 4, 4), metres; of joint readings `robot.forward_kinematics(joints)`.
+        Poses of the arm's flange, shape (m, 4, 4), metres; for joint readings `robot.forward_kinematics(joints)`.
     camera_from_target
         Poses of the board or marker as the camera saw it there, shape (m, 4, 4), metres.
     camera
-        Where the camera is: "in-hand" or "beside".
+        Position of the camera: "in-hand" or "beside".
     flange, target
-        Which way round the poses are: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera"; by default it is found, and
-        said under "findings".
+        Sense of the poses: "base-from-flange" or "flange-from-base", "camera-from-target" or "target-from-camera". By default it is recognised, and
+        reported under "findings".
     names
-        What messages call each row.
+        Names of the rows in messages.
     frame_names
         Names of base, flange, camera and target in the result.
 
     Returns
     -------
     HandEye
-        The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict", what
-        was held out, and "findings": all that `hand_eye.json` has.
+        The frame of the camera, "camera_frame", and of the board, "target_frame", each with "matrix", "bound95_mm" and "bound95_deg"; the "verdict",
+        the held-out errors, and "findings": all entries of `hand_eye.json`.
     """
 def identify(
     robot: Robot,
@@ -2088,7 +2095,7 @@ def identify(
     device_frame: _Frame = "unknown",
     robot_error_mm: _Number | _Pair | None = None,
 ) -> Identification:
-    """Which unknowns measurements in given configurations would determine, before anything is measured.
+    """Unknowns that measurements in stated configurations would determine, before anything is measured.
 
     Parameters
     ----------
@@ -2103,13 +2110,13 @@ def identify(
     device_frame
         The measuring device's frame: "unknown" or "base".
     robot_error_mm
-        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
-        each metre of reach, which is a guess).
+        Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections. By default those of a
+        calibration of this robot, else 0.3 mm for each metre of reach, which is a guess.
 
     Returns
     -------
     Identification
-        What would be determined, and the expected error.
+        The unknowns that would be determined, and the expected error.
     """
 def init(
     model: _Path,
@@ -2167,7 +2174,7 @@ def init(
 def offsets(
     nominal: Robot, actual: Robot | Calibration, *, free: Sequence[_End] | None = None, fix: Sequence[_End] | None = None
 ) -> Offsets:
-    """The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
+    """The joint offsets of the best fit of a model's tip to that of a robot, and the remaining errors.
 
     Parameters
     ----------
@@ -2176,7 +2183,8 @@ def offsets(
     actual
         The robot, or a calibration of it.
     free, fix
-        Which of the frames "base" and "tip" are found with the offsets, and which are the same in both; by default what a calibration fitted is free.
+        Frames "base" and "tip" that are fitted with the offsets, and those that are equal in both; by default those that a calibration fitted are
+        free.
 
     Returns
     -------
@@ -2184,7 +2192,7 @@ def offsets(
         The offsets, and the errors with and without them.
     """
 def read_joints(path: _Path, robot: Robot, *, columns: _Path | None = None, units: str | None = None) -> _Array:
-    """Reads the joint readings of a file, whatever other columns it has.
+    """Reads the joint readings of a file; other columns are ignored.
 
     Parameters
     ----------
@@ -2212,24 +2220,24 @@ def recalibrate(
     tool: Literal["same", "refit"] = "same",
     repeatability_mm: _Number | None = None,
 ) -> Calibration:
-    """Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
+    """Recalibrates the zero or the axis of one joint by the few measurements of a visit, with everything else held.
 
     Parameters
     ----------
     calibration
-        The calibration before.
+        The earlier calibration.
     measurements
         Measurements of the visit, as of `track`.
     earlier
-        The rows that the calibration was made of, or those of an earlier visit; None: the visit is judged by the model.
+        The rows of the calibration, or those of an earlier visit; None: the visit is judged by the model.
     part
-        What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
+        Recalibrated part: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
     device
         "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
     tool
         "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
     repeatability_mm
-        Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
+        Standard deviation of one visit and coordinate; None: estimated from repeats within a visit and from the changes that no explanation removes.
 
     Returns
     -------
@@ -2254,7 +2262,7 @@ def reproduce(
     out
         Folder for the report.
     force
-        Whether to write over files that exist.
+        True to overwrite files that exist.
     trials
         Number of sessions that compare the formulations, or the losses.
     starts
@@ -2265,7 +2273,7 @@ def reproduce(
     Returns
     -------
     Reproduction
-        The runs, and the claims with what was found.
+        The runs, and the claims with their results.
     """
 def run_program(arguments: Sequence[str]) -> int:
     """Runs the program `poecal`.
@@ -2289,7 +2297,7 @@ def schema() -> str:
         The schema, as a text.
     """
 def set_limit(name: str, most: int | str) -> None:
-    """Sets what files may take, where that is less than they need.
+    """Sets a limit of files, if the default is less than they need.
 
     Parameters
     ----------
@@ -2326,7 +2334,7 @@ def simulate(
     Parameters
     ----------
     robot
-        The robot to deviate from.
+        The nominal robot, from which the actual one deviates.
     kind
         Kind of the measurements: "pose", "point", or "mixed" (both in turn).
     count
@@ -2334,18 +2342,18 @@ def simulate(
     seed
         Seed of everything random.
     error_position_mm, error_rotation_deg
-        Distance and angle by which every axis, and the tip, is off.
+        Distance and angle of the error of every axis, and of the tip.
     noise_position_mm, noise_rotation_deg
         Standard deviation of each measured component.
     device_frame
         The measuring device's frame: "unknown" or "base".
     held_out_count
-        Number of further measurements, free of noise, to judge a calibration by.
+        Number of further measurements, free of noise, for validation of a calibration.
     terms
-        What the joints do beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
+        Joint effects beyond geometry: "off", or groups of terms with the standard deviations of their coefficients in radians or metres, as a dict
         (also of texts with a unit) or "sag=1e-3,ratio=1e-4".
     gravity
-        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+        Direction of gravity in the robot's base frame, default (0, 0, -1).
 
     Returns
     -------
@@ -2361,23 +2369,23 @@ def tcp(
 ) -> ToolTip:
     """The tip of a tool from poses of the flange in which it touched a fixed point.
 
-    With bounds of 95 %; wrong touches are named and left out.
+    The result has bounds of 95 %. Wrong touches are named and left out.
 
     Parameters
     ----------
     base_from_flange
         Poses of the arm's flange at the touches, shape (m, 4, 4), metres.
     points
-        Which point each touch is of, if there are several.
+        The touched point of each touch, if there are several.
     tips
-        With which of two tips along the tool it was, for the tool's direction.
+        The touching tip of each touch, of two tips along the tool, for the tool's direction.
     names
-        What messages call each row.
+        Names of the rows in messages.
 
     Returns
     -------
     ToolTip
-        The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all that `tcp.json` has.
+        The "tips", with "position_m" and "bound95_mm", the "axis" of two, and the "verdict": all entries of `tcp.json`.
     """
 @overload
 def plan(
@@ -2421,10 +2429,11 @@ def plan(
     repeatability_mm: None = None,
     target: None = None,
 ) -> Plan:
-    """Plans a session: configurations that determine the most, rows to judge by, how many are worth it, and the error to expect.
+    """Plans a session: configurations that determine the most, rows for validation, the worthwhile number, and the expected error.
 
-    With `purpose="drift"` it plans visits to a calibrated robot: of the configurations that were measured, those whose repeats show the smallest shift
-    of the worst joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state what is known of the visits, `target` which target will be measured.
+    With `purpose="drift"` it plans visits to a calibrated robot: the measured configurations whose repeats detect the smallest shift of the worst
+    joint. `candidates`, `count`, `earlier`, `device`, `tool` and `repeatability_mm` state the knowledge of the visits, `target` the target that will
+    be measured.
 
     Parameters
     ----------
@@ -2437,7 +2446,7 @@ def plan(
     count
         Number of different configurations to fit, from 1 to 1000 (default 30); with "drift" to measure at each visit (default 8).
     held_out_count
-        Number of further rows to judge by, at random over the workspace (default a third of `count`).
+        Number of further rows for validation, at random over the workspace (default a third of `count`).
     candidates
         Configurations to choose from alone, shape (m, n).
     workspace
@@ -2445,30 +2454,30 @@ def plan(
     workspace_box_mm
         Two corners of a box of the base frame in which the tip will work, shape (2, 3), instead of `workspace`.
     keep_rows
-        Rows that are there already, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
+        Existing rows, which new ones complete: a `Plan`, or configurations to fit of shape (m, n). `count` counts both.
     replace_rows
-        Rows of `keep_rows`, from 0, that could not be measured: others take their places, and all other rows stay.
+        Rows of `keep_rows`, from 0, that could not be measured: they are replaced, and all other rows stay.
     criterion
         "expected" (expected error of the calibrated and the corrected model), or a measure of the design: "D", "A", "E", "G".
     targets
         Number of targets of a nest at the tip, from 1 to 8, all measured in each configuration.
     target_offset_mm
-        Where the target is in the tip's frame, of several the first, the others turned about z.
+        Position of the target in the tip's frame; for several the first, the others turned about z.
     sigma_position_mm, sigma_rotation_deg
         Standard deviation of each measured component (default 0.05 mm, 0.01 deg).
     robot_error_mm
-        Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm per
-        metre of reach is assumed).
+        Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections. By default those of a
+        calibration of this robot, else 0.3 mm for each metre of reach is assumed.
     device_frame
         The measuring device's frame: "unknown" or "base".
     tolerance_deg_mm
         Prior of the fit: deviation of each axis from nominal, as standard deviations, or None.
     corrections
-        What joints are expected to do beyond geometry: "auto" and "all" terms of the common sizes, "off" nothing, or groups with their sizes.
+        Expected joint effects beyond geometry: "auto" and "all" terms of the common sizes, "off" nothing, or groups with their sizes.
     gravity
-        Where gravity pulls, in the robot's base frame, default (0, 0, -1).
+        Direction of gravity in the robot's base frame, default (0, 0, -1).
     margin_deg_mm
-        How far every joint stays from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
+        Distance of every joint from its limits; None for 2 degrees and 5 mm, and for none of a list of candidates.
     keep_out_mm
         Boxes into which no part of the robot may reach, each two corners in the base frame.
     floor_height_mm
@@ -2476,17 +2485,17 @@ def plan(
     separation_deg
         Least change of some joint between any two configurations.
     device_mm
-        Where the measuring device is, in the base frame; targets that links hide from it are left out.
+        Position of the measuring device in the base frame; targets that links hide from it are left out.
     device_half_angle_deg, device_aim_mm
-        Half the angle of the device's cone, and where it looks (default the base).
+        Half the angle of the device's cone, and the point at which it is aimed (default the base).
     distance_mm
         Least and largest distance of the target from the device.
     target_half_angle_deg, target_normal
-        Largest angle between the direction in which the target looks, in its own frame (default (0, 0, 1)), and the line to the device.
+        Largest angle between the normal of the target, in its own frame (default (0, 0, 1)), and the line to the device.
     self_collision
-        "avoid" links that overlap by their shapes in the URDF, or "ignore" shapes.
+        "avoid" overlaps of links by their shapes in the URDF, or "ignore" shapes.
     stop_s
-        How long the robot stands at each row, for how long all takes.
+        Duration of the robot's stop at each row, for the total duration.
     seed
         Seed of everything random.
     earlier
@@ -2496,15 +2505,15 @@ def plan(
     tool
         For "drift": "same" if the tool will be on the flange as it was, "refit" if not (default "same").
     target
-        For "drift": the target that will be measured, of several (default all that the rows have).
+        For "drift": the target that will be measured, of several (default all targets of the rows).
     repeatability_mm
         For "drift": standard deviation of one visit and coordinate, as repeats show it (default the noise of the calibration).
 
     Returns
     -------
     Plan or VisitPlan
-        The rows in the order in which to measure them, with the errors to expect; with "drift" what each joint would show. Only configurations are
-        checked, never the way between them.
+        The rows in the order of their measurement, with the expected errors; with "drift" the detectable shift of each joint. Only configurations are
+        checked, never the path between them.
     """
 @overload
 def plan(
@@ -2573,7 +2582,7 @@ def track(
     record: Mapping[str, str] | None = None,
     force: bool = False,
 ) -> Visit:
-    """Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
+    """Detection of a robot's change since its calibration by a few measurements, with the changed joint.
 
     Parameters
     ----------
@@ -2582,25 +2591,25 @@ def track(
     measurements
         Measurements of the visit: best some configurations of the calibration again.
     earlier
-        The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
-        are judged by the model.
+        The rows of the calibration, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all are judged
+        by the model.
     device
         "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
     tool
         "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
     repeatability_mm
-        Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+        Standard deviation of one visit and coordinate; None: estimated from repeats within a visit and from the changes that no explanation removes.
     report
         File for the page of the visit: then and now, on one page of A4 to sign.
     record
-        What the page states of this visit, as {"operator": "Mia"}.
+        Statements of the page about this visit, as {"operator": "Mia"}.
     force
-        Whether to write over a file that exists.
+        True to overwrite a file that exists.
 
     Returns
     -------
     Visit
-        The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
+        The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the present error.
     """
 def version() -> str:
     """The version of poecal.
@@ -2608,7 +2617,7 @@ def version() -> str:
     Returns
     -------
     str
-        The version that this module was built from.
+        The version from which this module was built.
     """
 def _robot(state: bytes) -> Robot: ...
 def _measurements(state: bytes) -> Measurements: ...

@@ -1,4 +1,4 @@
-"""What `progress=True` shows while a calibration is fitted."""
+"""Progress bar of `progress=True` while a calibration is fitted."""
 
 import sys
 

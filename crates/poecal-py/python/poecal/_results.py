@@ -1,4 +1,4 @@
-"""Results about a calibrated robot and its models, with the numbers that matter as attributes."""
+"""Results about a calibrated robot and its models, with the important numbers as attributes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 class Check(Findings):
-    """How a model and measurements are understood: the result of `check`. Its data frame has a row for each column of a file that was read."""
+    """Interpretation of a model and measurements: the result of `check`. Its data frame has a row for each column of a file that was read."""
 
     __slots__ = ()
 
@@ -31,7 +31,7 @@ class Check(Findings):
 
     @property
     def mistakes(self) -> list[str]:
-        """Mistakes that the measurements show, a sentence each with what to do."""
+        """Mistakes that the measurements show, a sentence each with the remedy."""
         return [found["statement"] for found in self["diagnosis"]]
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -78,43 +78,43 @@ class Offsets(Findings):
 
 
 class Comparison(Findings):
-    """What changed between two calibrations: the result of `compare`. Its data frame has a row for each joint."""
+    """Changes between two calibrations: the result of `compare`. Its data frame has a row for each joint."""
 
     __slots__ = ()
 
     @property
     def moved(self) -> bool | None:
-        """Whether the tip moved by more than the limit; None where there is no limit."""
+        """True if the tip moved by more than the limit; None without a limit."""
         return self._maybe(bool, "moved")
 
     @property
     def tip_rms_mm(self) -> float:
-        """How far the tip moved (RMS), millimetres."""
+        """Motion of the tip (RMS), millimetres."""
         return self._at(float, "tip", "rms_mm")
 
     @property
     def tip_max_mm(self) -> float:
-        """How far the tip moved at most, millimetres."""
+        """Largest motion of the tip, millimetres."""
         return self._at(float, "tip", "max_mm")
 
     @property
     def tip_rms_deg(self) -> float:
-        """How far the tip turned (RMS), degrees."""
+        """Turn of the tip (RMS), degrees."""
         return self._at(float, "tip", "rms_deg")
 
     @property
     def limit_mm(self) -> float | None:
-        """How far the tip may move (RMS), millimetres."""
+        """Largest permitted motion of the tip (RMS), millimetres."""
         return self._maybe(float, "tip", "limit_mm")
 
     @property
     def changed(self) -> bool | None:
-        """Whether more changed than noise makes; None without the uncertainty of both calibrations."""
+        """True if more changed than noise explains; None without the uncertainty of both calibrations."""
         return self._maybe(bool, "changed")
 
     @property
     def changed_joints(self) -> list[str]:
-        """Names of the joints that changed by more than noise makes."""
+        """Names of the joints that changed by more than noise explains."""
         return self._texts("changed_joints")
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -122,7 +122,7 @@ class Comparison(Findings):
 
 
 class ColumnGuess(Findings):
-    """Which columns of a foreign file are the joints and what was measured: the result of `guess_columns`.
+    """Guessed columns of joints and measured quantities in a foreign file: the result of `guess_columns`.
 
     `str` is the mapping file. Its data frame has a row for each field of the mapping.
     """
@@ -146,12 +146,12 @@ class ColumnGuess(Findings):
 
     @property
     def ignored(self) -> list[str]:
-        """Columns that nothing is read from."""
+        """Columns that are not read."""
         return self._texts("ignored")
 
     @property
     def missing(self) -> list[str]:
-        """What has no column, and nothing can be read without."""
+        """Fields without a column that are required for reading."""
         return self._texts("missing")
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -159,31 +159,31 @@ class ColumnGuess(Findings):
 
 
 class Validation(Findings):
-    """A calibration judged by measurements that it did not see: the result of `Calibration.validate`.
+    """A calibration judged by measurements that it did not use: the result of `Calibration.validate`.
 
-    Figures are those of the model that is delivered. Its data frame has a row for each model and quantity.
+    Figures are those of the delivered model. Its data frame has a row for each model and quantity.
     """
 
     __slots__ = ()
 
     @property
     def level(self) -> str | None:
-        """What the measurements confirm: "good", "inside_sampled_range" or "do_not_use"; None where the calibration has no bounds to test."""
+        """Level that the measurements confirm: "good", "inside_sampled_range" or "do_not_use"; None if the calibration has no bounds to test."""
         return self._maybe(str, "verdict", "level")
 
     @property
     def reasons(self) -> list[str]:
-        """Why the verdict is no better, a sentence each."""
+        """Reasons against a better verdict, a sentence each."""
         return self._texts("verdict", "reasons")
 
     @property
     def fitted(self) -> list[str]:
-        """Files of which the calibration itself was made: it fits them better than new ones."""
+        """Files from which the calibration itself was made: it fits them better than new ones."""
         return self._texts("fitted")
 
     @property
     def model(self) -> str:
-        """The model that is delivered: "corrected" where it has terms, else "calibrated"."""
+        """The delivered model: "corrected" if it has terms, else "calibrated"."""
         return self._at(str, "verdict", "model")
 
     @property
@@ -193,7 +193,7 @@ class Validation(Findings):
 
     @property
     def position_rms_mm(self) -> float | None:
-        """Error of position (RMS), millimetres; None where no position was measured."""
+        """Error of position (RMS), millimetres; None if no position was measured."""
         return self._maybe(float, "verdict", "position_mm", "rms")
 
     @property
@@ -208,7 +208,7 @@ class Validation(Findings):
 
     @property
     def rotation_rms_deg(self) -> float | None:
-        """Error of orientation (RMS), degrees; None where no orientation was measured."""
+        """Error of orientation (RMS), degrees; None if no orientation was measured."""
         return self._maybe(float, "verdict", "rotation_deg", "rms")
 
     @property
@@ -218,12 +218,12 @@ class Validation(Findings):
 
     @property
     def refitted(self) -> list[str]:
-        """What was fitted to these measurements: the device's frame, the tool."""
+        """Parts that were fitted to these measurements: the device's frame, the tool."""
         return self._texts("refitted")
 
     @property
     def accepted(self) -> bool | None:
-        """Whether the limits of `accept` are shown to be kept; None without limits."""
+        """True if the limits of `accept` are shown to be kept; None without limits."""
         decision = self._maybe(str, "acceptance", "decision")
         return None if decision is None else decision == "pass"
 
@@ -243,7 +243,7 @@ class Validation(Findings):
 
 
 class Visit(Findings):
-    """Whether a robot is as it was calibrated: the result of `track`. Its data frame has a row for each joint, and the shift that would be found."""
+    """Detection of a robot's change: the result of `track`. Its data frame has a row for each joint, with its detectable shift."""
 
     __slots__ = ()
 
@@ -254,32 +254,32 @@ class Visit(Findings):
 
     @property
     def changed(self) -> bool:
-        """Whether more changed than noise makes."""
+        """True if more changed than noise explains."""
         return self.state == "changed"
 
     @property
     def explanation(self) -> str | None:
-        """The simplest explanation that suffices, in words; None where nothing changed."""
+        """The simplest sufficient explanation, in words; None if nothing changed."""
         return self._maybe(str, "explanation", "words")
 
     @property
     def joint(self) -> str | None:
-        """The joint that explains the change; None where it is of none."""
+        """The joint that explains the change; None if the explanation concerns no joint."""
         return self._maybe(str, "explanation", "joint")
 
     @property
     def size_deg(self) -> float | None:
-        """By how much it turned, degrees."""
+        """Turn of that joint, degrees."""
         return self._maybe(float, "explanation", "size_deg")
 
     @property
     def size_mm(self) -> float | None:
-        """By how much it moved, millimetres."""
+        """Motion of that joint, millimetres."""
         return self._maybe(float, "explanation", "size_mm")
 
     @property
     def change_mm(self) -> float:
-        """Change of the measured places beside what is free (RMS), millimetres."""
+        """Change of the measured positions beside the free unknowns (RMS), millimetres."""
         return self._at(float, "change_mm")
 
     @property
@@ -294,7 +294,7 @@ class Visit(Findings):
 
     @property
     def unseen(self) -> list[str]:
-        """Names of the joints of whose zeros these rows show nothing."""
+        """Names of the joints whose zeros these rows do not determine."""
         return [joint["joint"] for joint in self["invisible"]]
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -304,7 +304,7 @@ class Visit(Findings):
 class VisitPlan(Findings):
     """Configurations for visits to a calibrated robot: the result of `plan` with `purpose="drift"`.
 
-    Its data frame is the table to fill in. To what the program prints with `--json` it adds `rows` and `table`.
+    Its data frame is the table to fill in. It adds `rows` and `table` to the program's output with `--json`.
     """
 
     __slots__ = ()
@@ -317,22 +317,22 @@ class VisitPlan(Findings):
 
     @property
     def smallest_deg(self) -> dict[str, float | None]:
-        """The smallest shift of the zero of each joint that turns which a visit would show (95 %), degrees; None where it shows none."""
+        """The smallest shift of each turning joint's zero that a visit would detect (95 %), degrees; None if it detects none."""
         return {joint["joint"]: joint["smallest"] for joint in self["joints"] if joint["unit"] == "deg"}
 
     @property
     def smallest_mm(self) -> dict[str, float | None]:
-        """The same of each joint that slides, millimetres."""
+        """The smallest shift of each sliding joint's zero that a visit would detect (95 %), millimetres; None if it detects none."""
         return {joint["joint"]: joint["smallest"] for joint in self["joints"] if joint["unit"] == "mm"}
 
     @property
     def unseen(self) -> list[str]:
-        """Names of the joints of whose zeros a visit would show nothing."""
+        """Names of the joints whose zeros a visit would not determine."""
         return [joint["joint"] for joint in self["invisible"]]
 
     @property
     def noise_mm(self) -> float:
-        """Standard deviation of a visit and coordinate for which this is, millimetres."""
+        """Standard deviation of a visit and coordinate for which this holds, millimetres."""
         return self._at(float, "noise_mm")
 
     def to_dataframe(self) -> _pandas.DataFrame:
@@ -341,7 +341,7 @@ class VisitPlan(Findings):
         Returns
         -------
         pandas.DataFrame
-            A row for each measurement: `id`, the readings in degrees and millimetres, and empty columns for what is measured.
+            A row for each measurement: `id`, the readings in degrees and millimetres, and empty columns for the measured quantities.
         """
         return table(self._at(str, "table"))
 
@@ -353,7 +353,7 @@ class VisitPlan(Findings):
         path
             The file (CSV).
         force
-            Whether to write over a file that exists.
+            True to overwrite a file that exists.
         """
         from ._poecal import _write_text
 

@@ -1,4 +1,4 @@
-"""Results about sessions, cameras, tools and programs, with the numbers that matter as attributes."""
+"""Results about sessions, cameras, tools and programs, with the important numbers as attributes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Identification(Findings):
-    """Which unknowns configurations determine, and the errors to expect: the result of `identify`. Its data frame has a row for each joint."""
+    """Unknowns that configurations determine, and the expected errors: the result of `identify`. Its data frame has a row for each joint."""
 
     __slots__ = ()
 
@@ -28,17 +28,17 @@ class Identification(Findings):
 
     @property
     def weak(self) -> list[str]:
-        """What is determined weakly, a sentence each."""
+        """Weakly determined directions, a sentence each."""
         return [found["description"] for found in self["identifiability"]["weak"]]
 
     @property
     def undetermined(self) -> list[str]:
-        """What is not determined, a sentence each."""
+        """Undetermined directions, a sentence each."""
         return [found["description"] for found in self["identifiability"]["unidentifiable"]]
 
     @property
     def expected_calibrated_mm(self) -> float | None:
-        """Expected error of the calibrated model (RMS), millimetres; None of kinds whose configurations cannot be chosen freely."""
+        """Expected error of the calibrated model (RMS), millimetres; None for kinds whose configurations cannot be chosen freely."""
         return self._maybe(float, "expected", "calibrated_mm")
 
     @property
@@ -62,17 +62,17 @@ class WatchedRow(Findings):
 
     @property
     def ok(self) -> bool | None:
-        """Whether the row is as expected; None while there are too few rows to judge by."""
+        """True if the row is as expected; None while there are too few rows."""
         return self._maybe(bool, "ok")
 
     @property
     def mistake(self) -> str | None:
-        """What is wrong with the row: "stale", "sign", "joint", "off", "repeats" or "moved"; None where nothing is."""
+        """Mistake of the row: "stale", "sign", "joint", "off", "repeats" or "moved"; None if there is none."""
         return self._maybe(str, "mistake")
 
     @property
     def noticed_mm(self) -> float | None:
-        """The error that would be noticed, millimetres."""
+        """The smallest detectable error, millimetres."""
         return self._maybe(float, "noticed_mm")
 
     @property
@@ -109,7 +109,7 @@ class Iso9283(Findings):
 
     @property
     def accepted(self) -> bool | None:
-        """Whether all limits are shown to be kept, with 95 % confidence; None without limits."""
+        """True if all limits are shown to be kept, with 95 % confidence; None without limits."""
         decision = self._maybe(str, "decision")
         return None if decision is None else decision == "pass"
 
@@ -127,34 +127,34 @@ class Judged(Findings):
 
     @property
     def level(self) -> str:
-        """What to think of the result: "good", or how far it may be used."""
+        """Judgement of the result: "good", or the level up to which it may be used."""
         return self._at(str, "verdict", "level")
 
     @property
     def reasons(self) -> list[str]:
-        """Why it is no better, a sentence each."""
+        """Reasons against a better level, a sentence each."""
         return self._texts("verdict", "reasons")
 
 
 class HandEye(Judged):
-    """Where a camera is: the result of `hand_eye`. Its data frame has a row for each of both frames."""
+    """Pose of a camera: the result of `hand_eye`. Its data frame has a row for each of both frames."""
 
     __slots__ = ()
 
     @property
     def camera_pose(self) -> NDArray[np.float64]:
-        """Pose of the camera in the flange, or in the base where it is beside the robot, shape (4, 4), metres."""
+        """Pose of the camera in the flange, or in the base if it is beside the robot, shape (4, 4), metres."""
         pose: NDArray[np.float64] = imported("numpy").array(self["camera_frame"]["matrix"], dtype=float)
         return pose
 
     @property
     def bound95_mm(self) -> float:
-        """The distance that the camera's place does not miss in 95 % of all cases, millimetres."""
+        """Bound of the camera's position error in 95 % of all cases, millimetres."""
         return self._at(float, "camera_frame", "bound95_mm")
 
     @property
     def bound95_deg(self) -> float:
-        """The same of its direction, degrees."""
+        """Bound of the camera's direction error in 95 % of all cases, degrees."""
         return self._at(float, "camera_frame", "bound95_deg")
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -162,19 +162,19 @@ class HandEye(Judged):
 
 
 class ToolTip(Judged):
-    """Where the tip of a tool is: the result of `tcp`. Its data frame has a row for each tip."""
+    """Position of a tool's tip: the result of `tcp`. Its data frame has a row for each tip."""
 
     __slots__ = ()
 
     @property
     def position_m(self) -> NDArray[np.float64]:
-        """Place of the tip in the flange, of several the first, shape (3,), metres."""
+        """Position of the tip in the flange, for several the first, shape (3,), metres."""
         place: NDArray[np.float64] = imported("numpy").array(self["tips"][0]["position_m"], dtype=float)
         return place
 
     @property
     def bound95_mm(self) -> float:
-        """The distance that it does not miss in 95 % of all cases, millimetres."""
+        """Bound of the tip's position error in 95 % of all cases, millimetres."""
         bound: float = self["tips"][0]["bound95_mm"]
         return bound
 
@@ -188,7 +188,7 @@ class ToolTip(Judged):
 
 
 class Compensation(Findings):
-    """What was corrected in a program or in joint readings: the summary of `Calibration.compensate` and `compensate_program`.
+    """Corrections in a program or in joint readings: the summary of `Calibration.compensate` and `compensate_program`.
 
     Its data frame has a row for each target that is corrected.
     """
@@ -202,17 +202,17 @@ class Compensation(Findings):
 
     @property
     def left_out(self) -> list[str]:
-        """Targets that stay as they are, with the line and the reason."""
+        """Unchanged targets, with the line and the reason."""
         return [f"line {it['line']}: {it['reason']}" for it in self["listed"]]
 
     @property
     def off_max_mm(self) -> float:
-        """How far off the tip would be at most without correction, millimetres."""
+        """Largest error of the tip without correction, millimetres."""
         return 1e3 * self._at(float, "moved_m", "value")
 
     @property
     def left_max_mm(self) -> float:
-        """How far off it is at most with the correction, by the calibrated model, millimetres."""
+        """Largest error of the tip with the correction, by the calibrated model, millimetres."""
         return 1e3 * self._at(float, "left_m", "value")
 
     def _rows(self) -> list[dict[str, Any]]:
@@ -226,7 +226,7 @@ class Reproduction(Findings):
 
     @property
     def holding(self) -> int | None:
-        """Number of the paper's claims that hold; None of "breakdown"."""
+        """Number of the paper's claims that hold; None for "breakdown"."""
         claims = self.get("claims")
         return None if claims is None else sum(claim["holds"] and claim["said_by_paper"] for claim in claims)
 

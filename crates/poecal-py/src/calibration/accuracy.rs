@@ -50,7 +50,7 @@ impl ModelAccuracy {
         self.__getattr__("position_mm")
     }
 
-    /// Angle from measured to predicted orientation, degrees; None where no orientation was measured.
+    /// Angle from measured to predicted orientation, degrees; None if no orientation was measured.
     #[getter]
     fn rotation_deg(&self) -> Option<Statistic> {
         self.0.rotation_deg().map(Into::into)
@@ -81,12 +81,12 @@ impl ModelAccuracy {
         words.collect::<Vec<_>>().join(", ")
     }
 
-    /// Root mean square of the quantity by which it is judged.
+    /// Root mean square of the quantity that judges it.
     fn leading(&self) -> String {
         number(self.0.lead().rms)
     }
 
-    /// Unit of that.
+    /// Unit of that quantity.
     fn unit(&self) -> &'static str {
         self.0.leading().map_or("mm", |(quantity, _)| quantity.unit().symbol())
     }
@@ -110,7 +110,7 @@ pub(crate) struct SetAccuracy {
     registered: ModelAccuracy,
     /// Screws fitted too.
     calibrated: ModelAccuracy,
-    /// Screws and terms of the joints fitted together; None if no terms were asked for.
+    /// Screws and terms of the joints fitted together; None if no terms were requested.
     corrected: Option<ModelAccuracy>,
 }
 
@@ -145,16 +145,16 @@ impl From<calibration::SetAccuracy> for SetAccuracy {
 #[pyclass(frozen, eq, module = "poecal", name = "Accuracy")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Accuracy {
-    /// On the rows that were fitted.
+    /// Errors on the rows that were fitted.
     #[pyo3(get)]
     training: SetAccuracy,
-    /// On the rows that were not; None if none was held out.
+    /// Errors on the rows that were not fitted; None if none was held out.
     #[pyo3(get)]
     held_out: Option<SetAccuracy>,
-    /// Number of configurations where all were fitted because too few would have been held out; None otherwise.
+    /// Number of configurations if all were fitted because too few would have been held out; None otherwise.
     #[pyo3(get)]
     few_configurations: Option<usize>,
-    /// The model that is delivered.
+    /// The delivered model.
     delivered: AcceptedModel,
 }
 
@@ -185,7 +185,7 @@ impl Accuracy {
     }
 }
 
-/// Verdict: how far a calibration may be used, and why no farther.
+/// Verdict: permitted use of a calibration, and the reasons against a wider one.
 #[pyclass(frozen, eq, module = "poecal", name = "Verdict")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Verdict(pub(crate) calibration::Verdict);
@@ -204,13 +204,13 @@ impl Verdict {
         self.0.reasons.clone()
     }
 
-    /// The model that is delivered: "corrected" where it has terms, else "calibrated".
+    /// The delivered model: "corrected" if it has terms, else "calibrated".
     #[getter]
     fn model(&self) -> Option<&'static str> {
         self.0.model.map(AcceptedModel::word)
     }
 
-    /// Expected error of that model in configurations like those that were measured, millimetres (RMS); None where no use is advised.
+    /// Expected error of that model in configurations like those that were measured, millimetres (RMS); None if no use is advised.
     #[getter]
     fn expected_error_mm(&self) -> Option<f64> {
         self.0.expected_error_mm
@@ -234,19 +234,19 @@ impl Verdict {
         self.0.nominal_error_mm
     }
 
-    /// Whether it predicts better than the nominal model there: "clear", "unclear" or "loss".
+    /// Comparison with the nominal model's predictions there: "clear", "unclear" or "loss".
     #[getter]
     fn gain(&self) -> Option<&'static str> {
         self.0.gain.map(calibration::Gain::word)
     }
 
-    /// That the axes of the nominal model are confirmed, a sentence with its figures; None where they are not.
+    /// Sentence with figures if the axes of the nominal model are confirmed; None if they are not.
     #[getter]
     fn confirmed(&self) -> Option<String> {
         self.0.confirmed.clone()
     }
 
-    /// Whether a calibration may be used as far as this.
+    /// True if a calibration may be used at least to this level.
     ///
     /// Parameters
     /// ----------
@@ -256,7 +256,7 @@ impl Verdict {
     /// Returns
     /// -------
     /// bool
-    ///     Whether the verdict's level is `level` or a better one.
+    ///     True if the verdict's level is `level` or a better one.
     fn is_at_least(&self, #[pyo3(from_py_with = arg::level)] level: &str) -> PyResult<bool> {
         let mut levels = Level::TABLE.map(|(level, word, _)| (word, level));
         levels.reverse();

@@ -1,4 +1,4 @@
-//! A calibration judged by other measurements, and what others would determine.
+//! A calibration judged by other measurements, and the determination of the unknowns by planned ones.
 
 use std::path::PathBuf;
 
@@ -19,27 +19,27 @@ use crate::measurements::Measurements;
 
 #[pymethods]
 impl Calibration {
-    /// Judges the calibration by measurements that it did not see; every row counts.
+    /// Judges the calibration by measurements that it did not use; every row counts.
     ///
     /// Parameters
     /// ----------
     /// measurements
     ///     The measurements.
     /// refit
-    ///     What is refitted to them: "device" (its frame), "tool" (the targets), or a list of both; "auto" refits the device's frame where the
-    ///     measurements show that the device stands elsewhere, which is stated otherwise.
+    ///     Parts that are refitted to them: "device" (its frame), "tool" (the targets), or a list of both. "auto" refits the device's frame if the
+    ///     measurements show that the device moved; otherwise such a move is only reported.
     /// accept
     ///     Limits that the errors must meet, like "0.2mm" or "0.2mm,max:0.5mm,0.05deg"; see `poecal.calibrate`.
     /// accept_model
-    ///     Which model must meet them: "corrected", if there is one, or "calibrated".
+    ///     Model that must meet them: "corrected", if there is one, or "calibrated".
     /// out
     ///     Folder for the results of the check: validation.json, errors.csv with each row beside its bound, and a report.
     /// force
-    ///     Whether to write over results of a check and a report that exist.
+    ///     True to overwrite existing results of a check and a report.
     /// report
-    ///     Whether to write a report among the results, or the path of another file for it.
+    ///     True to write a report among the results, or the path of another file for it.
     /// record
-    ///     What the report states of this session, by key; see `poecal.calibrate`.
+    ///     Statements of the report about this session, by key; see `poecal.calibrate`.
     /// history
     ///     File to which the check is appended as a line, like the history.jsonl that the program keeps beside a calibration.
     ///
@@ -75,7 +75,7 @@ impl Calibration {
         places.judge(py, (self, measurements), &judging, record.unwrap_or_default())
     }
 
-    /// Which unknowns measurements of the calibrated robot in given configurations would determine; see `poecal.identify`.
+    /// Unknowns that measurements of the calibrated robot in stated configurations would determine; see `poecal.identify`.
     ///
     /// Parameters
     /// ----------
@@ -88,12 +88,13 @@ impl Calibration {
     /// device_frame
     ///     The measuring device's frame: "unknown" or "base".
     /// robot_error_mm
-    ///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what this calibration left).
+    ///     Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections (default those of this
+    ///     calibration).
     ///
     /// Returns
     /// -------
     /// Identification
-    ///     What would be determined, and the expected error.
+    ///     The unknowns that would be determined, and the expected error.
     #[pyo3(signature = (joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, device_frame="unknown", robot_error_mm=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn identify(

@@ -15,7 +15,7 @@ use crate::warn;
 
 #[pymethods]
 impl Calibration {
-    /// Joint readings to command so that the robot as it is has its tip where a program for the nominal robot meant it.
+    /// Joint readings by which the actual robot's tip reaches the poses of a program for the nominal robot.
     ///
     /// Parameters
     /// ----------
@@ -24,24 +24,25 @@ impl Calibration {
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
-    ///     Whether to give the nearest configuration where a pose cannot be reached, instead of leaving the row as it is.
+    ///     True to return the nearest configuration if a pose cannot be reached, instead of leaving the row unchanged.
     /// max_turn_deg, max_slide_mm
-    ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A row that takes more, at a singularity, stays as it is.
+    ///     Largest change of a joint that turns, or slides, beyond its zero, default 2 degrees and 2 mm. A row that needs more, at a singularity, is
+    ///     unchanged.
     /// max_turn_rad, max_slide_m
-    ///     The same in radians and metres.
+    ///     The same limits in radians and metres.
     /// summary
-    ///     Whether to give the summary as well.
+    ///     True to return the summary as well.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     /// readings
-    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
     ///     these differ.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Readings to command, of the same shape. Rows that stay as they are are named by a PoecalWarning. With summary=True a tuple of these and a
-    ///     `Compensation`: `targets` has every row that is corrected, by its index (`line`), `listed` every other one and why.
+    ///     Readings to command, of the same shape. A PoecalWarning names the unchanged rows. With summary=True a tuple of these and a `Compensation`:
+    ///     `targets` has every corrected row by its index (`line`), `listed` every other one with the reason.
     #[pyo3(signature = (joints, *, factors=None, nearest=false, max_turn_deg=None, max_slide_mm=None, max_turn_rad=None, max_slide_m=None, summary=false, model="corrected", readings=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate<'py>(
@@ -74,12 +75,12 @@ impl Calibration {
         reach::compensate(py, (&taught.robot, &actual.model.robot), joints, &factors, &options, summary)
     }
 
-    /// The nominal robot with base and tool of the actual one: corrected programs take the actual robot to where this one would be.
+    /// The nominal robot with base and tool of the actual one: corrected programs move the actual robot to the poses of this one.
     ///
     /// Parameters
     /// ----------
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
@@ -92,16 +93,17 @@ impl Calibration {
         Ok(actual.with_robot(taught.robot))
     }
 
-    /// A robot program with its targets corrected in place, everything else as it was, byte for byte.
+    /// A robot program with its targets corrected in place; everything else is unchanged, byte for byte.
     ///
     /// Parameters
     /// ----------
     /// path
     ///     The program for the nominal robot: URScript (.script), RAPID (.mod, .prg, .sys), KRL (.src, .dat) or of FANUC (.ls).
     /// language
-    ///     Its language, default by the end of its name.
+    ///     Its language, by default from the extension of its name.
     /// tool_data
-    ///     Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers as the language writes poses.
+    ///     Tools in the controller's flange, each "NUMBERS", the tool of programs that set none, or "NAME=NUMBERS"; numbers in the language's
+    ///     notation of poses.
     /// work_objects
     ///     Frames of poses (work object, base, user frame) in the controller's base, as tools.
     /// controller_base
@@ -109,26 +111,29 @@ impl Calibration {
     /// controller_flange
     ///     The controller's flange in the model's tip, default the same.
     /// start
-    ///     Readings where the robot is before the first motion, "J1,J2,…" as the language writes joints: of programs that begin with a pose and state no configuration.
+    ///     Readings of the robot before the first motion, "J1,J2,…" in the language's notation of joints: for programs that begin with a pose and
+    ///     state no configuration.
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// nearest
-    ///     Whether to write the nearest configuration where the robot cannot reach a target, instead of leaving it as it is.
+    ///     True to write the nearest configuration if the robot cannot reach a target, instead of leaving it unchanged.
     /// max_turn_deg, max_slide_mm
-    ///     How far a joint that turns, or slides, may be moved beyond its zero, default 2 degrees and 2 mm. A target that takes more, at a singularity, stays as it is and is listed.
+    ///     Largest change of a joint that turns, or slides, beyond its zero, default 2 degrees and 2 mm. A target that needs more, at a singularity,
+    ///     is unchanged and listed.
     /// max_turn_rad, max_slide_m
-    ///     The same in radians and metres.
+    ///     The same limits in radians and metres.
     /// third_axis
-    ///     From where J3 of a program of FANUC counts: "level" or "arm"; default as the calibration's mapping says and its rows show.
+    ///     Zero of J3 in a program of FANUC: "level" or "arm"; by default from the calibration's mapping and its rows.
     /// check
-    ///     Whether to compute what is left once more, from the written text.
+    ///     True to compute the remaining error once more, from the written text.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
     /// tuple of bytes and Compensation
-    ///     The program, and the summary: how many targets are corrected, which are listed as they are and why, the largest corrections, and what is left.
+    ///     The program, and the summary: the number of corrected targets, the unchanged ones with the reason, the largest corrections, and the
+    ///     remaining error.
     #[pyo3(signature = (path, *, language=None, tool_data=None, work_objects=None, controller_base=None, controller_flange=None, start=None, factors=None, nearest=false, max_turn_deg=None, max_slide_mm=None, max_turn_rad=None, max_slide_m=None, third_axis=None, check=false, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
     fn compensate_program<'py>(
@@ -172,7 +177,7 @@ impl Calibration {
 }
 
 impl Calibration {
-    /// Warns where programs are not to be corrected with this calibration.
+    /// Warns if programs are not to be corrected with this calibration.
     fn warn_of_gain(&self, py: Python<'_>) -> PyResult<()> {
         warn(py, self.file().gain_doubt().as_slice())
     }

@@ -23,7 +23,7 @@ use crate::errors::{argument, raise};
 use crate::robot::{Robot, RobotState};
 use crate::words::one_of;
 
-/// A calibration: the calibrated robot, its errors on fitted and held-out rows, and how far to trust it.
+/// A calibration: the calibrated robot, its errors on fitted and held-out rows, and the verdict on its trustworthiness.
 ///
 /// `calibrate` makes one, `Calibration.read` reads one from a file. Its parts are those of `calibration.json`,
 /// converted on demand.
@@ -122,7 +122,7 @@ impl Calibration {
         }
     }
 
-    /// The file that it was read from; `None` of one that was made in a process.
+    /// The file from which it was read; `None` for one that was made in a process.
     pub(crate) fn source(&self) -> Option<&Path> {
         let path = self.nominal.model.path.as_path();
         let is_file = path.extension().is_some_and(|it| it.eq_ignore_ascii_case("json"));
@@ -159,7 +159,7 @@ impl Calibration {
         Ok(Calibration::written(Robot::of_state(nominal)?, robot, file, residuals, summary))
     }
 
-    /// The rows that it was made of: at hand, or read from the files that it names.
+    /// The rows from which it was made: at hand, or read from the files that it names.
     pub(crate) fn own_rows(&self) -> PyResult<Cow<'_, Dataset>> {
         let written = match &self.found {
             Found::Fit(fit) => return Ok(Cow::Borrowed(&fit.data.data)),
@@ -245,14 +245,14 @@ impl Calibration {
         }
     }
 
-    /// The model that is delivered: the corrected one where it has terms.
+    /// The delivered model: the corrected one if it has terms.
     pub(crate) fn delivered(&self) -> AcceptedModel {
         let verdict = match &self.found {
             Found::Fit(fit) => Some(&fit.calibration.verdict),
             Found::Written(written) => written.file.verdict.as_ref(),
         };
         verdict.and_then(|verdict| verdict.model).unwrap_or_else(|| {
-            // Files of earlier versions do not say it.
+            // Files of earlier versions do not state it.
             match self.file().corrected.as_ref().is_some_and(|it| it.has_terms()) {
                 true => AcceptedModel::Corrected,
                 false => AcceptedModel::Calibrated,
@@ -279,14 +279,14 @@ impl Calibration {
         Ok(self.calibrated.get_or_init(|| Robot::new(model)))
     }
 
-    /// The robot that a word names: "corrected", where there is one, or "calibrated".
+    /// The robot that a word names: "corrected", if there is one, or "calibrated".
     pub(crate) fn actual(&self, model: &str) -> PyResult<&Robot> {
         let is_corrected = one_of("model", model, words::MODEL)? == AcceptedModel::Corrected;
         let corrected = if is_corrected { self.corrected()? } else { None };
         corrected.map_or_else(|| self.calibrated(), Ok)
     }
 
-    /// The corrected robot as in the file; none without terms.
+    /// The corrected robot as in the file; `None` without terms.
     pub(crate) fn corrected(&self) -> PyResult<Option<&Robot>> {
         if let Some(robot) = self.corrected.get() {
             return Ok(robot.as_ref());

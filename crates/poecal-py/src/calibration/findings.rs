@@ -37,13 +37,13 @@ pub(crate) struct Findings {
     text: String,
     /// The answer in a sentence.
     answer: String,
-    /// What the program prints with `--json`.
+    /// Text that the program prints with `--json`.
     json: String,
     warnings: Vec<String>,
 }
 
 impl Findings {
-    /// Of a result's own JSON.
+    /// Findings of a result's own JSON.
     pub(crate) fn of_json(
         class: &'static str,
         text: String,
@@ -78,7 +78,7 @@ impl<'py> IntoPyObject<'py> for Findings {
     }
 }
 
-/// How a model and measurements are understood, and mistakes that they show.
+/// Interpretation of a model and measurements, and the mistakes that they show.
 ///
 /// Parameters
 /// ----------
@@ -87,12 +87,12 @@ impl<'py> IntoPyObject<'py> for Findings {
 /// measurements
 ///     Its measurements, or the path of their file, or several paths; None if there are none yet.
 /// device_frame
-///     The measuring device's frame; with "base", mistakes in it are looked for too.
+///     The measuring device's frame; with "base", mistakes in it are searched too.
 ///
 /// Returns
 /// -------
 /// Check
-///     What is understood, with mistakes under "diagnosis".
+///     The interpretation, with mistakes under "diagnosis".
 #[pyfunction]
 #[pyo3(signature = (robot, measurements=None, *, device_frame="unknown"))]
 pub(crate) fn check(
@@ -119,7 +119,7 @@ pub(crate) fn check(
     Ok(Findings::new("Check", check.text(), check.answer(), &check)?.warned(warnings))
 }
 
-/// Which unknowns measurements in given configurations would determine, before anything is measured.
+/// Unknowns that measurements in stated configurations would determine, before anything is measured.
 ///
 /// Parameters
 /// ----------
@@ -134,13 +134,13 @@ pub(crate) fn check(
 /// device_frame
 ///     The measuring device's frame: "unknown" or "base".
 /// robot_error_mm
-///     Error of the tip (RMS) that a calibration leaves however much is measured, or that and the one with corrections (default what a calibration left of this robot, else 0.3 mm for
-///     each metre of reach, which is a guess).
+///     Remaining error of the tip (RMS) after a calibration with any number of rows, or that and the one with corrections. By default those of a
+///     calibration of this robot, else 0.3 mm for each metre of reach, which is a guess.
 ///
 /// Returns
 /// -------
 /// Identification
-///     What would be determined, and the expected error.
+///     The unknowns that would be determined, and the expected error.
 #[pyfunction]
 #[pyo3(signature = (robot, joints, *, kind="pose", sigma_position_mm=None, sigma_rotation_deg=None, device_frame="unknown", robot_error_mm=None))]
 #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
@@ -198,7 +198,7 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
     }
 }
 
-/// The joint offsets with which the tip of a model comes nearest to that of a robot, and the remaining errors.
+/// The joint offsets of the best fit of a model's tip to that of a robot, and the remaining errors.
 ///
 /// Parameters
 /// ----------
@@ -207,7 +207,8 @@ impl<'a, 'py> Argument<'a, 'py> for RobotOrCalibration<'a> {
 /// actual
 ///     The robot, or a calibration of it.
 /// free, fix
-///     Which of the frames "base" and "tip" are found with the offsets, and which are the same in both; by default what a calibration fitted is free.
+///     Frames "base" and "tip" that are fitted with the offsets, and those that are equal in both; by default those that a calibration fitted are
+///     free.
 ///
 /// Returns
 /// -------
@@ -256,20 +257,20 @@ pub(crate) fn offsets(
     Ok(Findings::new("Offsets", found.text(), found.answer(), &found)?.warned(&warnings))
 }
 
-/// Two calibrations of one robot: what changed, and what is noise.
+/// Changes between two calibrations of one robot, and their comparison with noise.
 ///
 /// Parameters
 /// ----------
 /// first, second
 ///     The calibrations.
 /// limit_mm
-///     How far the tip may have moved (RMS), default the expected errors of both together.
+///     Largest permitted motion of the tip (RMS), default the expected errors of both together.
 ///
 /// Returns
 /// -------
 /// Comparison
-///     Whether the tip moved by more than the limit (`moved`), by how much (`tip`), whether more changed than noise makes (`changed`), and each joint's
-///     change with its test.
+///     Motion of the tip (`tip`), its comparison with the limit (`moved`), the test of all changes against noise (`changed`), and each joint's change
+///     with its test.
 #[pyfunction]
 #[pyo3(signature = (first, second, *, limit_mm=None))]
 pub(crate) fn compare(
@@ -285,7 +286,7 @@ pub(crate) fn compare(
     Findings::new("Comparison", told.text(Detail::Full), told.answer(), &told)
 }
 
-/// Whether a robot is as it was calibrated, by a few measurements, and which joint is not.
+/// Detection of a robot's change since its calibration by a few measurements, with the changed joint.
 ///
 /// Parameters
 /// ----------
@@ -294,25 +295,25 @@ pub(crate) fn compare(
 /// measurements
 ///     Measurements of the visit: best some configurations of the calibration again.
 /// earlier
-///     The rows that the calibration was made of, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all
-///     are judged by the model.
+///     The rows of the calibration, or those of an earlier visit: rows that repeat their configurations are compared with them. None: all are judged
+///     by the model.
 /// device
 ///     "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
 /// tool
 ///     "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
 /// repeatability_mm
-///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation takes away.
+///     Standard deviation of one visit and coordinate; None: estimated from repeats within a visit and from the changes that no explanation removes.
 /// report
 ///     File for the page of the visit: then and now, on one page of A4 to sign.
 /// record
-///     What the page states of this visit, as {"operator": "Mia"}.
+///     Statements of the page about this visit, as {"operator": "Mia"}.
 /// force
-///     Whether to write over a file that exists.
+///     True to overwrite a file that exists.
 ///
 /// Returns
 /// -------
 /// Visit
-///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the error now.
+///     The state, the explanation with its size, others that explain the changes nearly as well, joints that are not seen, and the present error.
 #[pyfunction]
 #[pyo3(signature = (calibration, measurements, earlier=None, *, device="refit", tool="same", repeatability_mm=None, report=None, record=None,
                     force=false))]
@@ -343,7 +344,7 @@ pub(crate) fn track(
     Ok(Findings::new("Visit", told.text(), told.answer(), &told)?.warned(&found.notes))
 }
 
-/// The place of the page of a visit, which is none of its inputs.
+/// The output place of a visit's page, which must not be one of its inputs.
 fn visit_place(
     py: Python<'_>,
     path: &Path,
@@ -355,7 +356,7 @@ fn visit_place(
     reserved_file(py, path, Existing::forced(force), &inputs)
 }
 
-/// What is known of a visit, by the words of `track` and `recalibrate`.
+/// Knowledge of a visit, by the words of `track` and `recalibrate`.
 pub(crate) fn visit_options(
     device: &str,
     tool: &str,

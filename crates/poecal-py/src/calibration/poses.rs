@@ -1,4 +1,4 @@
-//! Where the tip of the calibrated robot is, and configurations that have it at poses.
+//! Poses of the calibrated robot's tip, and configurations for poses.
 
 use poecal_cli::words;
 use poecal_results::predictions::predicted;
@@ -23,15 +23,15 @@ impl Calibration {
     /// joints
     ///     Configurations, shape (m, n), radians and metres, in the order of `robot.reading_names`; or one, shape (n,).
     /// with_uncertainty
-    ///     Whether to give the expected error of each pose too.
+    ///     True to return the expected error of each pose too.
     /// output_frame
     ///     Frame of the poses: "base" or "device".
     /// target
     ///     Name of a target, or "tip"; default the tip, with `with_uncertainty` the first target that was measured.
     /// model
-    ///     Which model predicts: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model that predicts: "corrected", if there is one, or "calibrated", geometry alone.
     /// readings
-    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
     ///     these differ.
     ///
     /// Returns
@@ -78,9 +78,9 @@ impl Calibration {
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     /// readings
-    ///     What the arrays are: "model", readings of the model, or "controller", what the controller counts, as the calibration's mapping said; needed where
+    ///     Meaning of the arrays: "model", readings of the model, or "controller", the controller's counts, by the calibration's mapping; required if
     ///     these differ.
     ///
     /// Returns
@@ -101,7 +101,7 @@ impl Calibration {
         reach::forward(py, robot, (joints, counting.as_ref()), &reach::factors(robot, factors)?)
     }
 
-    /// How the tip moves with each reading: the motion of its point, then its turn, in the axes of the base. What weights add is in it.
+    /// Motion of the tip with each reading: of its point, then its turn, in the axes of the base, deflection under weights included.
     ///
     /// Parameters
     /// ----------
@@ -110,7 +110,7 @@ impl Calibration {
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
@@ -128,9 +128,9 @@ impl Calibration {
         reach::jacobian(py, robot, joints, &reach::factors(robot, factors)?)
     }
 
-    /// What weights move the tip, from where it would be without what joints and links give under weights.
+    /// Deflection of the tip under weights: its motion from the pose without compliance of joints and links.
     ///
-    /// How far its point is shifted and how far it is turned, in the axes of the base. Zero where the model has no such terms.
+    /// Shift of its point and its turn, in the axes of the base. Zero if the model has no such terms.
     ///
     /// Parameters
     /// ----------
@@ -139,7 +139,7 @@ impl Calibration {
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
@@ -164,22 +164,23 @@ impl Calibration {
     /// poses
     ///     Poses of the tip in the base, shape (m, 4, 4), or one, (4, 4).
     /// near
-    ///     Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, of a robot with six turning joints.
+    ///     Configurations to which the found ones are nearest, shape (m, n), or one for all, (n,); default all branches, for a robot with six turning
+    ///     joints.
     /// held
-    ///     Of a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,); then all branches
-    ///     of the others are found.
+    ///     For a robot with seven turning joints: a mapping from the reading that is held to its value (rad), or to one for each pose, shape (m,).
+    ///     All branches of the other joints are then found.
     /// limits
-    ///     Whether to keep the joints' limits.
+    ///     True to keep the joints' limits.
     /// factors
     ///     Values of the corrected model's factors by their names, default their references.
     /// model
-    ///     Which model is the robot as it is: "corrected", where there is one, or "calibrated", geometry alone.
+    ///     Model of the actual robot: "corrected", if there is one, or "calibrated", geometry alone.
     ///
     /// Returns
     /// -------
     /// numpy.ndarray or list of numpy.ndarray
-    ///     With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN where there is none; without, the branches of each
-    ///     pose, a list of arrays of shape (k, n), or one array for one pose.
+    ///     With `near` the nearest configuration of each pose, shape (m, n), or (n,) for one pose, NaN if there is none. Without, the branches of
+    ///     each pose, a list of arrays of shape (k, n), or one array for one pose.
     #[pyo3(signature = (poses, *, near=None, held=None, limits=true, factors=None, model="corrected"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn ik<'py>(

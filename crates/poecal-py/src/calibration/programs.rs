@@ -1,4 +1,4 @@
-//! Robot programs that are corrected, and what is stated of them.
+//! Robot programs that are corrected, and statements about them.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::errors::{argument, raise};
 use crate::reach;
 use crate::words::one_of;
 
-/// What is stated of a program beside its text.
+/// Statements about a program beside its text.
 pub(super) struct Stated<'a> {
     pub(super) language: Option<String>,
     pub(super) tools: Option<Vec<String>>,
@@ -25,7 +25,7 @@ pub(super) struct Stated<'a> {
 }
 
 impl Stated<'_> {
-    /// Adds the frames that are stated to those of a program.
+    /// Adds the stated frames to those of a program.
     fn give(&self, given: &mut Given, language: Language) -> PyResult<()> {
         for words in self.tools.iter().flatten() {
             given.add_tool(words, language).map_err(raise)?;
@@ -46,7 +46,7 @@ impl Stated<'_> {
     }
 }
 
-/// Corrects a program for a calibration, whose model of a name is the robot as it is.
+/// Corrects a program for a calibration, whose model of this name is the actual robot.
 pub(super) fn compensate<'py>(
     py: Python<'py>,
     (calibration, model): (&Calibration, &str),

@@ -1,4 +1,4 @@
-//! `recalibrate`: one joint of a calibration anew.
+//! `recalibrate`: recalibration of one joint.
 
 use poecal_report as report;
 use poecal_results::calibration_file::{Inputs, RecalibrationSources, RepairedPart};
@@ -11,24 +11,24 @@ use crate::errors::raise;
 use crate::findings::visit_options;
 use crate::measurements::Measurements;
 
-/// Calibrates the zero or the axis of one joint anew, by the few measurements of a visit, and holds all else.
+/// Recalibrates the zero or the axis of one joint by the few measurements of a visit, with everything else held.
 ///
 /// Parameters
 /// ----------
 /// calibration
-///     The calibration before.
+///     The earlier calibration.
 /// measurements
 ///     Measurements of the visit, as of `track`.
 /// earlier
-///     The rows that the calibration was made of, or those of an earlier visit; None: the visit is judged by the model.
+///     The rows of the calibration, or those of an earlier visit; None: the visit is judged by the model.
 /// part
-///     What is calibrated anew: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
+///     Recalibrated part: the zero of a joint ("joint2" or "joint2.offset"), or its axis ("joint2.axis").
 /// device
 ///     "refit" if the device was set up anew, so that its frame is fitted; "known" if it stands where it stood.
 /// tool
 ///     "same" if the tool stayed on the flange; "refit" if it was mounted anew, so that its targets are fitted.
 /// repeatability_mm
-///     Standard deviation of one visit and coordinate; None: what repeats within a visit and what no explanation removes.
+///     Standard deviation of one visit and coordinate; None: estimated from repeats within a visit and from the changes that no explanation removes.
 ///
 /// Returns
 /// -------

@@ -1,4 +1,4 @@
-//! Where a report goes.
+//! Destination of a report.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::{Argument, unexpected};
 
-/// Place of a report: among the results, a file, or none.
+/// Destination of a report: among the results, a file, or none.
 pub(crate) enum ReportPlace {
     Among(bool),
     File(PathBuf),

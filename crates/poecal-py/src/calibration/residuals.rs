@@ -25,7 +25,7 @@ pub(crate) struct Residuals {
 }
 
 impl Residuals {
-    /// Those of a calibration; an error if it was read without them.
+    /// Residuals of a calibration; an error if it was read without them.
     pub(crate) fn from_calibration(calibration: &Bound<'_, Calibration>) -> PyResult<Self> {
         calibration.get().rows()?;
         Ok(Residuals { calibration: calibration.clone().unbind() })
@@ -46,7 +46,7 @@ impl Residuals {
         Ok(rows.rows().iter().map(|row| of(rows, row)).collect())
     }
 
-    /// A number of each row, NaN where there is none.
+    /// A number of each row, NaN if it has none.
     fn numbers<'py>(
         &self,
         py: Python<'py>,
@@ -100,7 +100,7 @@ fn framed<'py>(py: Python<'py>, package: &str, columns: &Bound<'py, PyDict>) -> 
     found.call_method1("DataFrame", (columns,))
 }
 
-/// A name, or none for an empty one.
+/// A name, or `None` for an empty one.
 fn named(name: &str) -> Option<String> {
     Some(name.to_owned()).filter(|name| !name.is_empty())
 }
@@ -111,25 +111,25 @@ impl Residuals {
         Ok(self.rows()?.rows().len())
     }
 
-    /// File of each row; None where it came from memory.
+    /// File of each row; None if it came from memory.
     #[getter]
     fn files(&self) -> PyResult<Vec<Option<String>>> {
         self.each(|rows, row| named(rows.file(row)))
     }
 
-    /// Line of each row in its file, from 1, shape (m,); 0 where it came from memory.
+    /// Line of each row in its file, from 1, shape (m,); 0 if it came from memory.
     #[getter]
     fn lines<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
         Ok(PyArray1::from_vec(py, self.each(|_, row| row.line)?))
     }
 
-    /// Id of each row; None where it has none.
+    /// Id of each row; None if it has none.
     #[getter]
     fn ids(&self) -> PyResult<Vec<Option<String>>> {
         self.each(|_, row| named(&row.id))
     }
 
-    /// Whether each row was held out, shape (m,).
+    /// Held-out rows, shape (m,): True if the row was held out.
     #[getter]
     fn held_out<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         Ok(PyArray1::from_vec(py, self.each(|_, row| row.held_out)?))
@@ -141,79 +141,79 @@ impl Residuals {
         self.each(|rows, row| rows.targets.get(row.target).and_then(|name| named(name)))
     }
 
-    /// Instrument of each row; None where there is only one.
+    /// Instrument of each row; None if there is only one.
     #[getter]
     fn instruments(&self) -> PyResult<Vec<Option<String>>> {
         self.each(|rows, row| rows.stations.get(row.station).and_then(|name| named(name)))
     }
 
-    /// Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN where no position was measured.
+    /// Residual of position of the delivered model by component, shape (m, 3), millimetres; NaN if no position was measured.
     #[getter]
     fn position_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.components_of(py, Quantity::Position)
     }
 
-    /// Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN where no orientation was measured.
+    /// Residual of rotation of the delivered model by component, shape (m, 3), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.components_of(py, Quantity::Rotation)
     }
 
-    /// Error of position of the nominal model, shape (m,), millimetres; NaN where no position was measured.
+    /// Error of position of the nominal model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_nominal_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Position, OfModel::Nominal)
     }
 
-    /// Error of position of the registered model, shape (m,), millimetres; NaN where no position was measured.
+    /// Error of position of the registered model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_registered_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Position, OfModel::Registered)
     }
 
-    /// Error of position of the calibrated model, shape (m,), millimetres; NaN where no position was measured.
+    /// Error of position of the calibrated model, shape (m,), millimetres; NaN if no position was measured.
     #[getter]
     fn position_calibrated_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Position, OfModel::Calibrated)
     }
 
-    /// Error of rotation of the nominal model, shape (m,), degrees; NaN where no orientation was measured.
+    /// Error of rotation of the nominal model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_nominal_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Rotation, OfModel::Nominal)
     }
 
-    /// Error of rotation of the registered model, shape (m,), degrees; NaN where no orientation was measured.
+    /// Error of rotation of the registered model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_registered_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Rotation, OfModel::Registered)
     }
 
-    /// Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or where no position was measured.
+    /// Error of position of the corrected model, shape (m,), millimetres; NaN without such a model, or if no position was measured.
     #[getter]
     fn position_corrected_mm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Position, OfModel::Corrected)
     }
 
-    /// Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or where no orientation was measured.
+    /// Error of rotation of the corrected model, shape (m,), degrees; NaN without such a model, or if no orientation was measured.
     #[getter]
     fn rotation_corrected_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Rotation, OfModel::Corrected)
     }
 
-    /// Error of rotation of the calibrated model, shape (m,), degrees; NaN where no orientation was measured.
+    /// Error of rotation of the calibrated model, shape (m,), degrees; NaN if no orientation was measured.
     #[getter]
     fn rotation_calibrated_deg<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.errors_of(py, Quantity::Rotation, OfModel::Calibrated)
     }
 
-    /// The model that is delivered: "corrected" where it has terms, else "calibrated".
+    /// The delivered model: "corrected" if it has terms, else "calibrated".
     #[getter]
     fn model(&self) -> &'static str {
         self.calibration.get().delivered().word()
     }
 
-    /// Quantities that some row measured, such as "position", with their units; first the one by which the calibration is judged.
+    /// Quantities that some row measured, such as "position", with their units; first the one that judges the calibration.
     #[getter]
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let rows = self.rows()?;
@@ -234,7 +234,7 @@ impl Residuals {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Shape (m, n), millimetres or degrees; NaN where it was not measured.
+    ///     Shape (m, n), millimetres or degrees; NaN if it was not measured.
     fn components<'py>(
         &self,
         py: Python<'py>,
@@ -255,7 +255,7 @@ impl Residuals {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Shape (m,), millimetres or degrees; NaN where it was not measured.
+    ///     Shape (m,), millimetres or degrees; NaN if it was not measured.
     #[pyo3(signature = (quantity, *, model="delivered"))]
     fn errors<'py>(
         &self,
@@ -266,7 +266,7 @@ impl Residuals {
         self.errors_of(py, quantity_word(quantity)?, self.model_of(model)?)
     }
 
-    /// Root mean square distance of the corners of each picture from where a model sees them.
+    /// Root mean square distance of the corners of each picture from a model's predicted positions.
     ///
     /// Parameters
     /// ----------
@@ -276,7 +276,7 @@ impl Residuals {
     /// Returns
     /// -------
     /// numpy.ndarray
-    ///     Shape (m,), pixels; NaN of rows that are no pictures.
+    ///     Shape (m,), pixels; NaN for rows that are no pictures.
     #[pyo3(signature = (*, model="delivered"))]
     fn corners_px<'py>(
         &self,
@@ -287,13 +287,13 @@ impl Residuals {
         self.numbers(py, |row| row.corners.map(|corners| model.select_error(corners.models_px, corners.corrected_px)))
     }
 
-    /// Weight of each row in the fit, shape (m,); of a held-out row the weight that it would have had.
+    /// Weight of each row in the fit, shape (m,); for a held-out row the weight that it would have had.
     #[getter]
     fn weight<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.judged(py, |judged| judged.weight)
     }
 
-    /// Leverage of each row, shape (m,): how much it decides its own prediction.
+    /// Leverage of each row, shape (m,): its influence on its own prediction.
     #[getter]
     fn leverage<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.judged(py, |judged| judged.leverage)
@@ -305,7 +305,7 @@ impl Residuals {
         self.judged(py, |judged| judged.studentized)
     }
 
-    /// Whether each row is suspected of a gross error, shape (m,).
+    /// Suspected rows, shape (m,): True if the row is suspected of a gross error.
     #[getter]
     fn suspected<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let suspected = self.each(|_, row| row.judged.as_ref().is_some_and(|judged| judged.suspected))?;

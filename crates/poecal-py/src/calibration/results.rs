@@ -30,9 +30,9 @@ impl Calibration {
     /// folder
     ///     The folder.
     /// force
-    ///     Whether to write over files that exist.
+    ///     True to overwrite files that exist.
     /// report
-    ///     Whether to write the report too, or the path of another file for it.
+    ///     True to write the report too, or the path of another file for it.
     ///
     /// Returns
     /// -------
@@ -44,7 +44,7 @@ impl Calibration {
     /// FileError
     ///     The folder exists, and `force` is not set.
     /// ExportError
-    ///     Written files did not reproduce what was fitted.
+    ///     Written files did not reproduce the fitted model.
     #[pyo3(signature = (folder, *, force=false, report=None), text_signature = "($self, folder, *, force=False, report=True)")]
     fn write(
         &self,
@@ -93,12 +93,12 @@ impl Calibration {
     /// hash
     ///     The controller's checksum, for "ur".
     /// motors
-    ///     The text of the calibration of motors that LeRobot has, for "lerobot".
+    ///     The text of LeRobot's existing calibration of motors, for "lerobot".
     ///
     /// Returns
     /// -------
     /// str
-    ///     The text. What the form cannot say is a warning.
+    ///     The text. A warning names the properties that the form cannot hold.
     ///
     /// Raises
     /// ------
@@ -142,9 +142,9 @@ impl Calibration {
     /// path
     ///     The file.
     /// record
-    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"}.
+    ///     Statements beside and in place of the calibration's record, as {"serial": "4711"}.
     /// force
-    ///     Whether to write over a file that is no report of poecal.
+    ///     True to overwrite a file that is no report of poecal.
     #[pyo3(signature = (path, *, record=None, force=false))]
     fn report(
         &self,
@@ -175,9 +175,9 @@ impl Calibration {
     /// logo
     ///     Picture for its head: PNG, JPEG or SVG.
     /// record
-    ///     What it states beside and in place of what the calibration's record states, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
+    ///     Statements beside and in place of the calibration's record, as {"serial": "4711"} or {"valid_until": "2027-11-28"}.
     /// force
-    ///     Whether to write over a file that is none of poecal.
+    ///     True to overwrite a file that is not poecal's.
     #[pyo3(signature = (path, *, logo=None, record=None, force=false))]
     fn certificate(
         &self,
@@ -192,7 +192,7 @@ impl Calibration {
         let logo = logo.as_deref().map(poecal_formats::logo::read).transpose().map_err(raise)?;
         let existing = if force { Existing::Replaced } else { Existing::Own };
         let place = reserved_file(py, &path, existing, &[])?;
-        // The checksum is that of calibration.json as it is written.
+        // The checksum is that of the written calibration.json.
         let sha256 = file.sha256().map_err(raise)?;
         let attest = report::Attest { sha256: Some(sha256), logo };
         py.detach(|| place.write(report::certificate_page(file, &stated, &attest))).map_err(raise)

@@ -1,4 +1,4 @@
-//! A check of a calibration: where its results go, and what they are.
+//! A check of a calibration: the output places of its results, and their contents.
 
 use std::path::{Path, PathBuf};
 
@@ -52,7 +52,7 @@ impl Places {
     ) -> PyResult<Findings> {
         let (file, data) = (calibration.file(), measurements.data());
         let model = &calibration.calibrated()?.model;
-        // One that was just fitted has no file.
+        // A calibration that was just fitted has no file.
         let path = calibration.source().unwrap_or(&model.path);
         let own = Inputs::checksums(calibration.source().filter(|path| path.is_file()).into_iter());
         let own = own.map_err(raise)?;

@@ -32,13 +32,13 @@ pub(crate) struct MeasurementSource {
     pub(crate) names: Vec<String>,
     /// SHA-256 of each file that was read.
     pub(crate) sha256: BTreeMap<String, String>,
-    /// What each file is and what was taken of it.
+    /// Kind of each file and its used rows.
     #[serde(default)]
     pub(crate) files: Vec<InputEntry>,
-    /// How files were joined.
+    /// Joins of the files.
     #[serde(default)]
     pub(crate) joins: Vec<JoinEntry>,
-    /// Whether `train_where` chose the rows to fit.
+    /// True if `train_where` selected the rows to fit.
     pub(crate) train_where: bool,
 }
 
@@ -66,7 +66,7 @@ impl Measurements {
         &self.file.data
     }
 
-    /// Refuses a robot whose readings are not those of the rows.
+    /// Refuses a robot whose readings differ from those of the rows.
     pub(crate) fn check_robot(&self, robot: &Robot) -> PyResult<()> {
         let expected = robot.model.robot.reading_names();
         if self.data().reading_names() == expected {

@@ -155,7 +155,7 @@ fn refuse_millimetres(robot: &Robot, seen: &[Measurement]) -> PyResult<()> {
     for k in 0..3 {
         let mut own: Vec<f64> = places.iter().map(|place| place[k]).collect();
         own.sort_by(f64::total_cmp);
-        // A few rows that are wrong are no wrong unit.
+        // A few wrong rows are not evidence of a wrong unit.
         let cut = own.len() / 10;
         if let (Some(low), Some(high)) = (own.get(cut), own.get((own.len() - cut).saturating_sub(1))) {
             spread_m = spread_m.max(high - low);

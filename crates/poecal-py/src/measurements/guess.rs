@@ -10,10 +10,10 @@ use crate::errors::raise;
 use crate::findings::Findings;
 use crate::paths;
 
-/// Guesses which columns of a foreign file are the joints and what was measured, as `poecal init --columns-from` does.
+/// Guesses the columns of joints and measured quantities in a foreign file, as `poecal init --columns-from` does.
 ///
-/// Look the mapping over, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by
-/// `Measurements.from_csv(path, robot, columns="columns.toml")`.
+/// Check the mapping, save it (`Path("columns.toml").write_text(guess.mapping)`), and read the file by `Measurements.from_csv(path, robot,
+/// columns="columns.toml")`.
 ///
 /// Parameters
 /// ----------
@@ -27,7 +27,7 @@ use crate::paths;
 /// Returns
 /// -------
 /// ColumnGuess
-///     The columns of the file, the fields of a mapping with what is chosen, columns that are left, and the mapping as a text (TOML).
+///     The columns of the file, the fields of a mapping with their choices, unused columns, and the mapping as a text (TOML).
 #[pyfunction]
 #[pyo3(signature = (path, robot, *, columns=None))]
 pub(crate) fn guess_columns(
@@ -43,7 +43,7 @@ pub(crate) fn guess_columns(
     Findings::new("ColumnGuess", found.mapping.clone(), answer(&found), &found)
 }
 
-/// How many fields have a column, and which lack one.
+/// Number of fields with a column, and those without one.
 fn answer(found: &ColumnGuess) -> String {
     let mapped = found.fields.iter().filter(|it| it.choices.is_empty() && !it.chosen.is_empty()).count();
     let missing = match found.missing.as_slice() {

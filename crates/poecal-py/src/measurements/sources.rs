@@ -1,4 +1,4 @@
-//! Measurements of files, arrays, tables in memory, and of other measurements.
+//! Measurements from files, arrays, tables in memory, and from other measurements.
 
 use std::path::PathBuf;
 
@@ -36,17 +36,17 @@ impl Measurements {
     /// train_where
     ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets
-    ///     Whether the files' column `set` means nothing, as for rows that judge a calibration.
+    ///     True to ignore the files' column `set`, as for rows that judge a calibration.
     /// strict
-    ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    ///     True to treat beam breaks (empty or zero positions) as an error instead of skipping them with a warning.
     /// device_frames
-    ///     Which rows share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or
-    ///     "per-file", those of a file.
+    ///     Rows that share a frame of the measuring device: "common", all (or those of one name in the column `instrument`), or "per-file", those of
+    ///     a file.
     /// join
-    ///     How joint readings and measurements in two files find each other: "name", "rows" or "time"; by default by name, else recordings at the
-    ///     times of their stands, and lists by their order, if the nominal robot agrees with no other one as well.
+    ///     Rule by which joint readings and measurements in two files are joined: "name", "rows" or "time". By default by name, else recordings at
+    ///     the times of their static intervals, and lists by their order, if the nominal robot agrees with no other one as well.
     /// lag
-    ///     Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is found.
+    ///     Lag of the clocks of two recordings, the measurements' time less that of the joint readings, "12s+-2s"; by default it is estimated.
     /// units
     ///     Units of columns that state none, "mm,deg"; a mapping file takes precedence.
     /// sheet
@@ -63,7 +63,7 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION if it has several), YAML of OpenCV, ROS, Kalibr or
     ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
@@ -78,7 +78,7 @@ impl Measurements {
     /// FileError
     ///     A file cannot be read.
     /// MeasurementError
-    ///     It holds no measurements of this robot; the error tells the line and the column.
+    ///     It holds no measurements of this robot; the error states the line and the column.
     #[staticmethod]
     #[pyo3(signature = (paths, robot, *, columns=None, train_where=None, ignore_sets=false, strict=false, device_frames="common", join=None, lag=None, units=None, sheet=None, body=None, topics=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
@@ -133,13 +133,13 @@ impl Measurements {
         Ok(Measurements::new(file, source))
     }
 
-    /// Reads files of instruments, controllers and recorders as they are: what `from_csv` reads, with all of its options, under the name of what it is for.
+    /// Reads files of instruments, controllers and recorders in their own forms: the same files and options as `from_csv`, under a clearer name.
     ///
     /// Parameters
     /// ----------
     /// paths
-    ///     A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or, which the
-    ///     program does not read, in SQLite (`.db3`); those of ROS 1 are written as MCAP with `rosbags-convert`.
+    ///     A file, or several; with joint readings in one and measurements in another they are joined. Bags of ROS 2 may be in MCAP or in SQLite
+    ///     (`.db3`), which the program does not read. Bags of ROS 1 are converted to MCAP with `rosbags-convert`.
     /// robot
     ///     The robot whose joints the columns name.
     ///
@@ -153,7 +153,7 @@ impl Measurements {
     /// FileError
     ///     A file cannot be read.
     /// MeasurementError
-    ///     It holds no measurements of this robot; the error tells the line and the column.
+    ///     It holds no measurements of this robot; the error states the line and the column.
     #[staticmethod]
     #[pyo3(signature = (paths, robot, **options))]
     fn from_files(
@@ -166,13 +166,13 @@ impl Measurements {
         Ok(found.unbind())
     }
 
-    /// Reads files whose contents are here, as from a database or an upload: what `from_files` reads, with all of its options.
+    /// Reads files from their contents, as from a database or an upload: the same files and options as `from_files`.
     ///
     /// Parameters
     /// ----------
     /// contents
-    ///     Names of the files, of which the endings count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite
-    ///     (`.db3`) is read as a file alone.
+    ///     Names of the files, whose extensions count, with their contents as text or bytes: ``{"points.csv": text}``. A bag in SQLite (`.db3`) is
+    ///     read as a file only.
     /// robot
     ///     The robot whose joints the columns name.
     ///
@@ -184,7 +184,7 @@ impl Measurements {
     /// Raises
     /// ------
     /// MeasurementError
-    ///     They hold no measurements of this robot; the error tells the line and the column.
+    ///     They hold no measurements of this robot; the error states the line and the column.
     #[staticmethod]
     #[pyo3(signature = (contents, robot, **options))]
     fn from_contents(
@@ -198,10 +198,10 @@ impl Measurements {
         })
     }
 
-    /// Measurements of arrays: positions, with orientations or without, or poses.
+    /// Measurements from arrays: positions, with orientations or without, or poses.
     ///
-    /// Arrays may be read-only and of any layout. Masked numbers count as NaN: they are a missing orientation, or standard deviation, where
-    /// the whole row is masked, and refused elsewhere.
+    /// Arrays may be read-only and of any layout. Masked numbers count as NaN. If the whole row is masked, they are a missing orientation or standard
+    /// deviation; otherwise they are refused.
     ///
     /// Parameters
     /// ----------
@@ -220,11 +220,11 @@ impl Measurements {
     /// instruments
     ///     m names of measuring devices, each with a frame of its own.
     /// sets
-    ///     "fit", "held_out" or None (which says nothing) for each row.
+    ///     "fit", "held_out" or None (unstated) for each row.
     /// ids
     ///     m names of the rows.
     /// sigma_position_mm, sigma_rotation_deg
-    ///     Standard deviations of each measured component, where rows state them: a number, or shape (m,), NaN where a row does not.
+    ///     Standard deviations of each measured component, if rows state them: a number, or shape (m,), NaN for a row without one.
     /// angle_unit, length_unit
     ///     "rad", "deg", …; "m", "mm", …
     ///
@@ -268,7 +268,7 @@ impl Measurements {
         Ok(Measurements::in_memory(dataset(&robot.model.robot, &columns)?, "arrays"))
     }
 
-    /// Measurements of a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
+    /// Measurements from a table in memory: a data frame of pandas or polars, a dict of columns, or a structured array of NumPy.
     ///
     /// Columns have the same names, units in brackets and meanings as those of a file, `x[mm]` or `target`. Missing and masked values are
     /// empty cells.
@@ -284,9 +284,9 @@ impl Measurements {
     /// train_where
     ///     "COLUMN=VALUE[,VALUE]": fit only rows whose column has one of these values, and hold out all others.
     /// ignore_sets
-    ///     Whether the column `set` means nothing, as for rows that judge a calibration.
+    ///     True to ignore the column `set`, as for rows that judge a calibration.
     /// strict
-    ///     Whether lost beams, empty or zero positions, are an error instead of being skipped with a warning.
+    ///     True to treat beam breaks (empty or zero positions) as an error instead of skipping them with a warning.
     /// units
     ///     Units of columns that state none, "mm,deg"; a mapping file takes precedence.
     /// socket_distance
@@ -297,7 +297,7 @@ impl Measurements {
     ///     Noise of instruments that grows with the distance, like "tracker:10um+5um/m": a standard deviation in all directions, and one
     ///     across the line of sight for each metre; of all instruments without a name. For rows that state none.
     /// cameras
-    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION where it has several), YAML of OpenCV, ROS, Kalibr or
+    ///     Files of the cameras that saw corners in pixels: CSV (FILE#VERSION if it has several), YAML of OpenCV, ROS, Kalibr or
     ///     industrial_calibration, XML of ViSP.
     /// markers
     ///     Boards or solids that they saw: CSV files of points, "chessboard:10x7:27mm", or files of Kalibr, industrial_calibration or OpenCV.
@@ -310,7 +310,7 @@ impl Measurements {
     /// Raises
     /// ------
     /// MeasurementError
-    ///     The table holds no measurements of this robot; the error tells the row.
+    ///     The table holds no measurements of this robot; the error states the row.
     #[staticmethod]
     #[pyo3(signature = (frame, robot, *, columns=None, train_where=None, ignore_sets=false, strict=false, units=None, socket_distance=None, contact="point", instrument_noise=None, cameras=None, markers=None))]
     #[expect(clippy::too_many_arguments, reason = "the options of a Python function")]
@@ -354,11 +354,10 @@ impl Measurements {
         Ok(Measurements::new(file, source))
     }
 
-    /// Rows of several measurements of one robot, one after the other; `a + b` is that of two.
+    /// Rows of several measurements of one robot, in sequence; `a + b` joins two.
     ///
-    /// Rows keep what is known of them: target, instrument, set, id, standard deviations, file and line. Targets of one name are one
-    /// target. Rows of instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments
-    /// if it was moved in between.
+    /// Rows keep their attributes: target, instrument, set, id, standard deviations, file and line. Targets of one name are one target. Rows of
+    /// instruments of one name, and all rows that name none, share a frame of the measuring device: name the instruments if it was moved in between.
     ///
     /// Parameters
     /// ----------

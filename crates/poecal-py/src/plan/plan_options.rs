@@ -1,4 +1,4 @@
-//! Arguments that `plan` and `Watch` share: what is believed of a session, configurations, boxes, the workspace.
+//! Arguments that `plan` and `Watch` share: prior assumptions on a session, configurations, boxes, the workspace.
 
 use nalgebra::Vector3;
 use poecal_calibrate::{Corrections, DeviceFrameKnowledge};
@@ -17,7 +17,7 @@ use crate::errors::{argument, raise};
 use crate::robot::Robot;
 use crate::words::{frame as frame_word, from_mm, sigmas};
 
-/// What is believed of a session before it is measured.
+/// Prior assumptions on a session before its measurement.
 pub(crate) struct Believe<'a> {
     pub(crate) sigma_position_mm: Option<f64>,
     pub(crate) sigma_rotation_deg: Option<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct Believe<'a> {
 }
 
 impl Believe<'_> {
-    /// The fit that will be made of so many configurations of a kind.
+    /// The planned fit of so many configurations of a kind.
     pub(crate) fn fit(self, model: &Model, kind: Kind, count: usize) -> PyResult<PlannedFit> {
         let [position_m, rotation_rad] = sigmas(self.sigma_position_mm, self.sigma_rotation_deg)?;
         let usual = PlannedSession::default();
@@ -69,7 +69,7 @@ impl Believe<'_> {
     }
 }
 
-/// A place in metres.
+/// A position in metres.
 pub(crate) fn place(of_mm: Option<[f64; 3]>) -> Option<Vector3<f64>> {
     of_mm.map(|it| Vector3::from(it.map(from_mm)))
 }
@@ -88,7 +88,7 @@ pub(crate) fn corners(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3
     Ok([[0, 1, 2].map(|k: usize| a[k].min(b[k])), [0, 1, 2].map(|k: usize| a[k].max(b[k]))])
 }
 
-/// The workspace where predictions shall be good: configurations, or those with the tip in a box.
+/// The workspace in which predictions shall be good: configurations, or those with the tip in a box.
 pub(crate) fn workspace(
     robot: &Robot,
     workspace: Option<&Bound<'_, PyAny>>,

@@ -16,7 +16,7 @@ use crate::arguments as arg;
 use crate::errors::raise;
 use crate::places::reserved_file;
 
-/// A planned list of configurations. `str` is the program's table, `to_dict` what the program prints with `--json`.
+/// A planned list of configurations. `str` is the program's table, `to_dict` the program's output with `--json`.
 #[pyclass(frozen, module = "poecal", name = "Plan")]
 pub(crate) struct Plan {
     pub(crate) model: Arc<Model>,
@@ -35,19 +35,19 @@ impl Plan {
         PyArray1::from_vec(py, all).reshape([self.found.rows.len(), width])
     }
 
-    /// What each row is for: "fit" or "held_out".
+    /// Purpose of each row: "fit" or "held_out".
     #[getter]
     fn sets(&self) -> Vec<&'static str> {
         self.found.rows.iter().map(|row| row.part.set()).collect()
     }
 
-    /// Whether each row is the first configuration again.
+    /// Returns, a bool for each row: True if it is the first configuration again.
     #[getter]
     fn returns(&self) -> Vec<bool> {
         self.found.rows.iter().map(|row| row.returns).collect()
     }
 
-    /// Index of each row among the candidates, where these were given.
+    /// Index of each row among the candidates, if these were stated.
     #[getter]
     fn candidates(&self) -> Vec<Option<usize>> {
         self.found.rows.iter().map(|row| row.candidate).collect()
@@ -71,7 +71,7 @@ impl Plan {
         self.found.enough
     }
 
-    /// The plan as dicts and lists: what the program prints with `--json`.
+    /// The plan as dicts and lists: the program's output with `--json`.
     ///
     /// Returns
     /// -------
@@ -101,14 +101,14 @@ impl Plan {
         py.import("poecal._findings")?.call_method1("table", (self.table()?,))
     }
 
-    /// Writes the list as a table that `poecal.Measurements` reads once it has what was measured.
+    /// Writes the list as a table that `poecal.Measurements` reads once the measured quantities are filled in.
     ///
     /// Parameters
     /// ----------
     /// path
     ///     The file (CSV).
     /// force
-    ///     Whether to write over a file that exists.
+    ///     True to overwrite a file that exists.
     #[pyo3(signature = (path, *, force=false))]
     fn write(
         &self,
@@ -126,7 +126,7 @@ impl Plan {
     /// path
     ///     The file: its name ends in .script (Universal Robots), .mod (ABB), .src (KUKA) or .ls (FANUC).
     /// force
-    ///     Whether to write over a file that exists.
+    ///     True to overwrite a file that exists.
     #[pyo3(signature = (path, *, force=false))]
     fn write_program(
         &self,
@@ -138,14 +138,14 @@ impl Plan {
         self.put(py, &path, force, vec![text.into()])
     }
 
-    /// Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, how each joint is sampled.
+    /// Writes a page of the plan: the targets of all configurations, some arms, the device, errors by number, the sampled part of each joint's range.
     ///
     /// Parameters
     /// ----------
     /// path
     ///     The file (HTML).
     /// force
-    ///     Whether to write over a file that exists.
+    ///     True to overwrite a file that exists.
     #[pyo3(signature = (path, *, force=false))]
     fn write_report(
         &self,

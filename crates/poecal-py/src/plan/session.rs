@@ -1,4 +1,4 @@
-//! A session that is to be planned: what was asked for, in the words and units of Python.
+//! A session that is to be planned: the request, in the words and units of Python.
 
 use std::sync::Arc;
 
@@ -21,12 +21,12 @@ use crate::robot::Robot;
 use crate::visit_plan::VisitOptions;
 use crate::words::{chosen, from_mm, kind as kind_word, one_of, sigma, size};
 
-/// Most configurations of a plan, and most rows to judge by, as by the program.
+/// Most configurations of a plan, and most rows for validation, as in the program.
 const MOST: usize = 1000;
-/// Most targets of a nest, as by the program.
+/// Most targets of a nest, as in the program.
 const MOST_TARGETS: usize = 8;
 
-/// Which rows are planned, and those that are there already.
+/// Rows that are planned, and existing ones.
 pub(super) struct Rows<'a, 'py> {
     pub(super) count: Option<usize>,
     pub(super) held_out_count: Option<usize>,
@@ -35,7 +35,7 @@ pub(super) struct Rows<'a, 'py> {
     pub(super) replace_rows: Option<Vec<usize>>,
 }
 
-/// What is measured, and where predictions shall be good.
+/// Measured quantities, and the workspace in which predictions shall be good.
 pub(super) struct Aim<'a, 'py> {
     pub(super) kind: &'a str,
     pub(super) criterion: &'a str,
@@ -45,7 +45,7 @@ pub(super) struct Aim<'a, 'py> {
     pub(super) target_offset_mm: Option<[f64; 3]>,
 }
 
-/// Where the robot may be.
+/// Permitted space of the robot.
 pub(super) struct Room<'a, 'py> {
     pub(super) margin_deg_mm: Option<(f64, f64)>,
     pub(super) keep_out_mm: Option<Vec<Bound<'py, PyAny>>>,
@@ -54,7 +54,7 @@ pub(super) struct Room<'a, 'py> {
     pub(super) self_collision: &'a str,
 }
 
-/// What the measuring device sees.
+/// Field of view of the measuring device.
 pub(super) struct View {
     pub(super) device_mm: Option<[f64; 3]>,
     pub(super) device_half_angle_deg: Option<f64>,
@@ -76,7 +76,7 @@ pub(super) struct Session<'a, 'py> {
 }
 
 impl Session<'_, '_> {
-    /// Plans a calibration, or visits to one that is calibrated.
+    /// Plans a calibration, or visits to a calibrated robot.
     pub(super) fn plan_for<'py>(
         self,
         purpose: &str,
@@ -92,7 +92,7 @@ impl Session<'_, '_> {
         self.plan(py, planned_robot(robot)?.get())?.into_bound_py_any(py)
     }
 
-    /// Refuses what is stated of a calibration where visits are planned. What a default says is no statement.
+    /// Refuses statements about a calibration if visits are planned. A default is no statement.
     fn refuse_for_visits(&self) -> PyResult<()> {
         let Session { rows, aim, believe, room, view, stop_s, seed } = self;
         let usual = *believe.tolerance_deg_mm == Believed::Given((0.5, 5.0));
@@ -134,7 +134,7 @@ impl Session<'_, '_> {
         Ok(())
     }
 
-    /// Plans it.
+    /// Plans the session.
     fn plan(self, py: Python<'_>, robot: &Robot) -> PyResult<Plan> {
         let Session { rows, aim, believe, room, view, stop_s, seed } = self;
         let count = rows.count.unwrap_or(30);
@@ -181,7 +181,7 @@ fn refuse_numbers(count: usize, judge: usize, targets: usize) -> PyResult<()> {
     Ok(())
 }
 
-/// What a configuration must fulfil.
+/// Conditions on a configuration.
 fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -> PyResult<Conditions> {
     let sight = [
         ("device_half_angle_deg", view.device_half_angle_deg.is_some()),
@@ -223,7 +223,7 @@ fn conditions(py: Python<'_>, model: &Model, room: &Room<'_, '_>, view: &View) -
     })
 }
 
-/// Rows that are there already: those of a plan, or configurations to fit.
+/// Existing rows: those of a plan, or configurations to fit.
 fn kept(keep_rows: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<PlannedRow>> {
     let Some(value) = keep_rows else { return Ok(Vec::new()) };
     if let Ok(plan) = value.cast::<Plan>() {
@@ -235,7 +235,7 @@ fn kept(keep_rows: Option<&Bound<'_, PyAny>>, robot: &Robot) -> PyResult<Vec<Pla
     Ok(PlannedRow::of_list(&readings, width, &parts))
 }
 
-/// The robot whose session is planned: one that is given, that of a path, or the calibrated one of a calibration.
+/// The robot whose session is planned: the stated one, that of a path, or the calibrated one of a calibration.
 fn planned_robot<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Robot>> {
     match value.cast::<Calibration>() {
         Ok(calibration) => Bound::new(value.py(), calibration.get().calibrated()?.clone()),

@@ -1,4 +1,4 @@
-//! `plan` of visits to a calibrated robot: which measured configurations to repeat.
+//! `plan` of visits to a calibrated robot: the measured configurations to repeat.
 
 use std::path::PathBuf;
 
@@ -20,11 +20,11 @@ use crate::measurements::Measurements;
 use crate::places::reserved_file;
 use crate::words::{from_mm, one_of, sigma};
 
-/// Most configurations of a visit, as by the program, and how many there are by default.
+/// Most configurations of a visit, as in the program, and their default number.
 const MOST: usize = 1000;
 const USUAL: usize = 8;
 
-/// What is known of the visits.
+/// Knowledge of the visits.
 pub(crate) struct VisitOptions<'a> {
     pub(crate) earlier: Option<&'a Measurements>,
     pub(crate) device: Option<&'a str>,
@@ -50,7 +50,7 @@ struct Row<'a> {
 }
 
 impl VisitOptions<'_> {
-    /// Refuses what is stated of visits where none are planned.
+    /// Refuses statements about visits if none are planned.
     pub(crate) fn refuse(&self) -> PyResult<()> {
         let stated = [
             ("earlier", self.earlier.is_some()),

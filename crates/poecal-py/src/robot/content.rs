@@ -1,4 +1,4 @@
-//! A robot and its file, their pickled state, and what reads and writes them.
+//! A robot and its file, their pickled state, and their reading and writing.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ type KeptInverse = (Vec<f64>, Arc<Inverse>);
 #[derive(Clone)]
 pub(crate) struct Robot {
     pub(crate) model: Arc<Model>,
-    /// SHA-256 of the file that it was read from, by its name.
+    /// SHA-256 of the file from which it was read, by its name.
     pub(crate) sha256: Arc<BTreeMap<String, String>>,
     /// Its inverse kinematics at the factors of the last call.
     inverse: Arc<Mutex<Option<KeptInverse>>>,
@@ -51,7 +51,7 @@ impl Robot {
         Ok(Robot { model: Arc::new(model), sha256: Arc::new(sha256), inverse: Arc::default() })
     }
 
-    /// Its inverse kinematics at these factors: made once as long as they stay the same, since that takes longer than many poses.
+    /// Its inverse kinematics at these factors: computed once while they stay the same, since that takes longer than many poses.
     pub(crate) fn inverse(&self, factors: &[f64]) -> poecal_numerics::error::Result<Arc<Inverse>> {
         let mut kept = self.inverse.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((of, inverse)) = &*kept

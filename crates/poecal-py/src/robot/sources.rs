@@ -1,4 +1,4 @@
-//! Robots of files, texts and arrays.
+//! Robots from files, texts and arrays.
 
 use std::path::PathBuf;
 
@@ -18,12 +18,12 @@ const TEXT: &str = "text";
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or calibration.json, of which it is the calibrated robot.
+    /// Reads a robot model of any form: URDF, MJCF, SDF, TOML, a driver's YAML, a controller's conf, or the calibrated robot of a calibration.json.
     ///
     /// Parameters
     /// ----------
     /// path
-    ///     The file; its extension gives the form, or else the beginning of its text.
+    ///     The file; its extension determines the form, or else the beginning of its text.
     /// base_link, tip_link
     ///     The chain of a URDF that has several.
     /// instruments, targets
@@ -63,7 +63,7 @@ impl Robot {
     /// path
     ///     The file.
     /// base_link, tip_link
-    ///     First and last link of the chain, where there are several.
+    ///     First and last link of the chain, if there are several.
     /// instruments, targets
     ///     Names of instruments on the robot and of targets, with their links in a URDF: the robot is the tree of the joints to these.
     ///
@@ -142,8 +142,8 @@ impl Robot {
     /// Parameters
     /// ----------
     /// screws
-    ///     Array of shape (n, 6), a unit twist a joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding
-    ///     joint has w = 0 and |v| = 1.
+    ///     Array of shape (n, 6), a unit twist for each joint: linear part v (metres), then angular part w, with |w| = 1 and v·w = 0; a sliding joint
+    ///     has w = 0 and |v| = 1.
     /// home
     ///     Pose of the tip in the base at zero joint values, shape (4, 4).
     /// names
@@ -151,7 +151,7 @@ impl Robot {
     /// limits
     ///     Array of shape (n, 2), radians or metres; rows of NaN, masked or infinite numbers are joints without limits.
     /// angular_first
-    ///     Whether the angular part comes first.
+    ///     True if the angular part comes first.
     /// name, base_link, tip_link
     ///     Names of the robot and of its first and last frame.
     ///

@@ -1,4 +1,4 @@
-//! Sentences that name options of the program: in plain words for who reads the page, and whole for who runs the program.
+//! Sentences that name options of the program: in plain words for readers of the page, and whole for users of the program.
 
 use std::borrow::Cow;
 
@@ -6,12 +6,12 @@ use maud::{Markup, Render, html};
 
 use super::html::quoted;
 
-/// A sentence from `calibration.json`; what it says of options is folded.
+/// A sentence from `calibration.json` with its statements about options folded.
 pub(crate) fn told(text: &str, key: impl Render) -> Markup {
     folded(text, &quoted(text, key))
 }
 
-/// The same of words that are put together from several of its sentences.
+/// The same for words that are composed of several of its sentences.
 pub(crate) fn told_words(text: &str) -> Markup {
     folded(text, &quoted_words(text))
 }
@@ -49,7 +49,7 @@ fn without_options(text: &str) -> Cow<'_, str> {
     if plain.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(plain.to_owned()) }
 }
 
-/// Where an option begins: two hyphens and a letter, behind what is no word.
+/// Start of an option: two hyphens and a letter, preceded by no word character.
 fn option_at(text: &str) -> Option<usize> {
     text.match_indices("--").map(|(at, _)| at).find(|&at| {
         let before = text[..at].chars().next_back();
@@ -59,7 +59,7 @@ fn option_at(text: &str) -> Option<usize> {
     })
 }
 
-/// A bracket with the blank before it, in which an option is named and no further bracket.
+/// A bracket with the blank before it that names an option and contains no further bracket.
 fn bracket_with_option(text: &str) -> Option<(usize, usize)> {
     let at = option_at(text)?;
     let places = text.match_indices("--").map(|(place, _)| place).filter(|&place| place >= at);

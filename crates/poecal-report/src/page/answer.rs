@@ -1,5 +1,5 @@
-//! The first screen: one answer in one colour, before, after and where it holds; the robot; what to look at. The same words as on the
-//! terminal.
+//! The first screen: one answer in one colour, errors before and after, and the domain in which it holds; the robot; points of attention. The words
+//! are those of the terminal.
 
 use maud::{Markup, html};
 
@@ -32,7 +32,7 @@ pub(crate) fn screen(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     }
 }
 
-/// How many joints of which kind, and from where to where.
+/// Number of joints of each kind, and the ends of the chain.
 fn kinds(file: &CalibrationFile) -> Markup {
     html! {
         (joints_words(file.joints.iter().map(|joint| joint.kind))) " joints, from " (quoted(&file.robot.base_link, "robot.base_link"))
@@ -55,7 +55,7 @@ fn answer(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// The one colour and its title: of the limits where some were set, unless the calibration is not to be used at all.
+/// The one colour and its title: of the limits if some were set, unless the calibration is not to be used at all.
 fn colour(file: &CalibrationFile) -> (&'static str, String) {
     let level = file.verdict.as_ref().map(|verdict| verdict.level);
     match (&file.acceptance, level) {
@@ -67,7 +67,7 @@ fn colour(file: &CalibrationFile) -> (&'static str, String) {
     }
 }
 
-/// The errors before and after on the same rows, and the error to expect, all RMS and in one unit.
+/// The errors before and after on the same rows, and the expected error, all RMS and in one unit.
 fn before_after(file: &CalibrationFile) -> Markup {
     let leading = Leading::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return Markup::default() };
@@ -107,7 +107,7 @@ fn before_after(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// Where it holds, in a sentence.
+/// The domain in which it holds, in a sentence.
 fn holds(file: &CalibrationFile) -> Markup {
     let first = reasons(file).into_iter().next();
     let why = html! { @if let Some(text) = &first { ": " (reason(file, text)) } };
@@ -131,7 +131,7 @@ fn holds(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// A reason of the verdict, with its key where it is one of the file's own sentences.
+/// A reason of the verdict, with its key if it is one of the file's own sentences.
 fn reason(file: &CalibrationFile, text: &str) -> Markup {
     let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
     match stated.iter().position(|own| own == text) {
@@ -140,7 +140,7 @@ fn reason(file: &CalibrationFile, text: &str) -> Markup {
     }
 }
 
-/// What was repaired, and what to look at.
+/// Repairs, and points of attention.
 fn look(file: &CalibrationFile) -> Markup {
     let points: Vec<Markup> = look_at(file).iter().filter_map(|point| point_words(file, point)).collect();
     html! {
@@ -153,7 +153,7 @@ fn look(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// What was repaired, in words, with what that gains.
+/// Repairs in words, with their gain.
 fn repaired(file: &CalibrationFile) -> Vec<Markup> {
     let one = |(k, found): (usize, &Event)| {
         let key = |name: &str| format!("repairs.{k}.{name}");
@@ -168,7 +168,7 @@ fn repaired(file: &CalibrationFile) -> Vec<Markup> {
     file.repairs.iter().enumerate().map(one).collect()
 }
 
-/// A point with the keys of what it quotes.
+/// A point of attention with the keys of its quotations.
 fn point_words(file: &CalibrationFile, point: &Point) -> Option<Markup> {
     match point.place {
         Place::Reason => Some(reason(file, &point.text)),

@@ -1,4 +1,4 @@
-//! What a user gains by correcting programs: a map of how far the tip misses without.
+//! The gain of corrected programs: a map of the tip's error without correction.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -66,7 +66,7 @@ pub(crate) fn gain(file: &CalibrationFile, found: &CompensationEntry) -> Markup 
     }
 }
 
-/// How far uncorrected programs miss.
+/// Errors of uncorrected programs.
 fn map(found: &CompensationEntry) -> Markup {
     let value = |it: &WorkspaceCellEntry| Some(it.displaced.position_mm.median);
     let axis = axis_words(found);
@@ -87,7 +87,7 @@ fn map(found: &CompensationEntry) -> Markup {
     )
 }
 
-/// What corrected programs are expected to miss by; none of a file that does not say it.
+/// Expected errors of corrected programs; `None` for a file that does not state them.
 fn expected_map(found: &CompensationEntry) -> Option<Markup> {
     let value = |it: &WorkspaceCellEntry| it.sigma_position_mm;
     let worst = found
@@ -115,7 +115,7 @@ fn axis_words(found: &CompensationEntry) -> &'static str {
     if found.about.is_some() { "the axis" } else { "the base's z axis" }
 }
 
-/// A map of the cells that have a value, millimetres, with title, description and what the value is.
+/// A map of the cells that have a value, millimetres, with title, description and the name of the value.
 fn heat_map(
     found: &CompensationEntry,
     is_small: bool,
@@ -165,13 +165,13 @@ fn told(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     )
 }
 
-/// The place of a cell in words.
+/// The position of a cell in words.
 fn place_words(found: &CompensationEntry, it: &WorkspaceCellEntry) -> String {
     let to = |from: f64| format!("{} to {} m", metres(found, from), metres(found, from + found.cell_m));
     format!("distance {}, height {}", to(it.radius_m), to(it.height_m))
 }
 
-/// A place at an edge of a cell.
+/// A coordinate at an edge of a cell.
 fn metres(found: &CompensationEntry, value: f64) -> String {
     decimal(value, (-found.cell_m.log10().floor()).clamp(0.0, 9.0) as usize)
 }
@@ -198,7 +198,7 @@ fn joints(found: &CompensationEntry) -> Markup {
     html! { (table) }
 }
 
-/// Configurations that are not corrected as all others are.
+/// Configurations that are not corrected like the others.
 fn exceptions(found: &CompensationEntry) -> Markup {
     let mut table = HtmlTable::new("Configurations that were compared", 1, &["configurations", "number"]);
     let mut row = |words: &str, value: usize, key: &str| {

@@ -10,7 +10,7 @@ use poecal_results::calibration_file::CalibrationFile;
 /// A statistic of corners: its column, its name in the file, and its value.
 type Statistic = (&'static str, &'static str, fn(&PixelAccuracy) -> f64);
 
-/// The statistics that a table has.
+/// The statistics of a table.
 const COLUMNS: [Statistic; 6] = [
     ("mean, px", "mean_px", |it| it.mean_px),
     ("median, px", "median_px", |it| it.median_px),
@@ -20,12 +20,12 @@ const COLUMNS: [Statistic; 6] = [
     ("RMS at the board, mm", "rms_mm", |it| it.rms_mm),
 ];
 
-/// Whether all rows of a set are pictures.
+/// True if all rows of a set are pictures.
 pub(crate) fn are_all(set: &SetAccuracy) -> bool {
     set.calibrated.of_pictures(set.count).is_some()
 }
 
-/// Errors of corners by each model; nothing without pictures.
+/// Errors of corners by each model; `None` without pictures.
 pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
     let caption = format!("Distance of corners {on} from where the model sees them");
     let heads: Vec<&str> = std::iter::once("").chain(COLUMNS.map(|(head, ..)| head)).collect();
@@ -41,7 +41,7 @@ pub(crate) fn table(rows: &[ModelRow<'_>], on: &str) -> Option<HtmlTable> {
     has_any.then_some(table)
 }
 
-/// Errors of the corners of pictures that were held out, or if there are none of those fitted.
+/// Errors of the corners of pictures that were held out, or else of those fitted.
 pub(crate) fn fact(file: &CalibrationFile) -> Option<Markup> {
     let leading = Leading::from_calibration(file);
     let [before, after] = leading.ends()?;

@@ -1,4 +1,4 @@
-//! What the joints do beyond geometry: the terms of the corrected model, and each joint's error over its range.
+//! Joint effects beyond geometry: the terms of the corrected model, and each joint's error over its range.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -62,7 +62,7 @@ fn effects(found: &CorrectedEntry) -> Markup {
     }
 }
 
-/// What a joint's terms say in the mean of its rows.
+/// Mean of a joint's terms over its rows.
 fn mean_of_terms(found: &JointErrorsEntry) -> f64 {
     let rows: usize = found.parts.iter().map(|part| part.rows).sum();
     let sum: f64 = found.parts.iter().map(|part| part.rows as f64 * part.terms).sum();

@@ -1,4 +1,4 @@
-//! What the script of the page works on, as JSON.
+//! Input of the page's script, as JSON.
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -18,7 +18,7 @@ use poecal_results::calibration_file::{CalibrationFile, ScrewEntry};
 use poecal_results::residuals::{ResidualRow, Residuals};
 use poecal_results::shapes::{Shapes, base64};
 
-/// Rows that charts draw at most, and small charts; which part of them is chosen for being suspected, and for being far off.
+/// Most rows in charts, and in small charts; and the shares of them that are selected as suspected, and for large errors.
 pub(crate) const MOST_ROWS: usize = 4000;
 const FEW_ROWS: usize = 600;
 const SUSPECTED: usize = 10;
@@ -27,7 +27,7 @@ const WORST: usize = 40;
 const DIGITS: i32 = 6;
 /// The largest power of ten that is exact.
 const EXACT: i32 = 22;
-/// Three bytes that stand for no number.
+/// Three bytes that encode a missing number.
 const NONE: u32 = 0xff_ffff;
 
 #[derive(Serialize)]
@@ -38,12 +38,12 @@ struct Data<'a> {
     instruments: Vec<FrameData<'a>>,
     draws_instruments: bool,
     readings: Vec<ReadingData<'a>>,
-    /// The error that is told of each row, in its unit.
+    /// The reported error of each row, in its unit.
     lead: LeadData,
     rows: RowData,
-    /// How many rows there are.
+    /// Number of rows.
     count: usize,
-    /// What the links look like; where it is not said, the picture makes its own.
+    /// Appearance of the links; if it is empty, the picture makes its own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     shapes: Vec<ShapeData<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -54,7 +54,7 @@ struct Data<'a> {
 struct JointData<'a> {
     name: Cow<'a, str>,
     kind: JointKind,
-    /// The joint on whose link it stands; none for the base.
+    /// The joint whose link carries it; `None` for the base.
     on: Option<usize>,
     screw: &'a ScrewEntry,
     nominal_screw: &'a ScrewEntry,
@@ -85,18 +85,18 @@ struct ReadingData<'a> {
 
 /// A row that charts draw.
 pub(crate) struct Drawn {
-    /// Its place among the drawn rows, and among all.
+    /// Its index among the drawn rows, and among all.
     pub(crate) at: usize,
     pub(crate) index: usize,
     pub(crate) held_out: bool,
     pub(crate) suspected: bool,
-    /// True of one of the evenly chosen, which stand for all.
+    /// True for one of the evenly chosen, which represent all.
     pub(crate) even: bool,
     /// True if it is drawn in small charts.
     pub(crate) few: bool,
 }
 
-/// Numbers of three bytes each, in steps from the least of them, in base64; the largest is none.
+/// Numbers of three bytes each, in steps from the least of them, in base64; the largest encodes a missing one.
 #[derive(Serialize)]
 struct Column {
     low: f64,
@@ -132,23 +132,23 @@ impl Column {
 /// The drawn rows, by column.
 #[derive(Serialize)]
 struct RowData {
-    /// Number in the order read, from 1; none if all are drawn.
+    /// Number in the order read, from 1; `None` if all are drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
     number: Option<Column>,
-    /// Words before the line of each file, and the lines; none of which file it is if there is only one.
+    /// Words before the line of each file, and the lines; without the index of the file if there is only one.
     files: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<Vec<usize>>,
     line: Column,
     /// A digit for each row: 1 if it was held out, 2 more if it is suspected, 4 more if it is drawn in small charts.
     sets: String,
-    /// None if there is only one.
+    /// Index of the target; `None` if there is only one.
     #[serde(skip_serializing_if = "Option::is_none")]
     target: Option<Vec<usize>>,
-    /// Likewise.
+    /// Index of the instrument; `None` if there is only one.
     #[serde(skip_serializing_if = "Option::is_none")]
     instrument: Option<Vec<usize>>,
-    /// The error that is told of each row, in the unit of `lead`: millimetres, unless no length was measured.
+    /// The reported error of each row, in the unit of `lead`: millimetres, unless no length was measured.
     error_mm: Column,
     /// Residuals of the quantities that any row measured, in the axes of the row's instrument.
     residuals: Vec<ResidualData>,
@@ -213,11 +213,11 @@ pub(crate) fn json(
     };
     let text = serde_json::to_string(&data)
         .map_err(|error| ErrorKind::Export.error(format!("the report's data cannot be written: {error}")))?;
-    // Within a script element, `</script` and `<!--` would be markup wherever they stand.
+    // Within a script element, `</script` and `<!--` would be markup at any position.
     Ok(text.replace('<', "\\u003c"))
 }
 
-/// Keeps so many items that come first, in any order.
+/// Keeps the first `most` items of the order, in any order.
 pub(crate) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut(&T, &T) -> Ordering) {
     if items.len() > most {
         items.select_nth_unstable_by(most, compare);
@@ -225,8 +225,8 @@ pub(crate) fn keep_first<T>(items: &mut Vec<T>, most: usize, compare: impl FnMut
     }
 }
 
-/// Rows that are drawn, and whether each is one of the evenly chosen: all, or a tenth for being suspected, a fortieth for being
-/// far off, and the others at equal distances.
+/// Rows that are drawn, each true if it is one of the evenly chosen. They are all, or a tenth as suspected, a fortieth for large errors, and the
+/// others at equal distances.
 fn thinned(residuals: &Residuals, rows: &[usize], most: usize) -> Vec<(usize, bool)> {
     let count = rows.len();
     if count <= most {
@@ -324,8 +324,8 @@ fn straight(terms: &BTreeMap<Term, f64>) -> Option<[f64; 2]> {
     (!terms.is_empty()).then(|| [at(1.0) - at(0.0), at(0.0)])
 }
 
-/// As many digits as a picture can show, which a page from files has too. A whole number of that many digits over a power of ten that is
-/// exact rounds as text does, in 25 ns instead of 450: 1,500 rows of 15 columns take 0.6 ms instead of 10, where all else of the page takes 1.
+/// As many digits as a picture can show, so that a page from files has the same. A whole number of that many digits over a power of ten that is exact
+/// rounds as text does, in 25 ns instead of 450. For 1,500 rows of 15 columns that is 0.6 ms instead of 10; the rest of the page takes 1.
 pub(crate) fn rounded(value: f64) -> f64 {
     let places = (DIGITS - 1).saturating_sub(value.abs().log10().floor() as i32);
     if !(0..=EXACT).contains(&places) {
@@ -335,12 +335,12 @@ pub(crate) fn rounded(value: f64) -> f64 {
     (value * scale).round_ties_even() / scale
 }
 
-/// What stands before the line of a row, or before its number if it is from no file.
+/// Words before the line of a row, or before its number if it is from no file.
 fn before_line(residuals: &Residuals, file: &str) -> String {
     if file.is_empty() { "row ".to_owned() } else { format!("{}:", short(&residuals.files, file)) }
 }
 
-/// The place of a row: its file and line, or its number.
+/// The origin of a row: its file and line, or its number.
 pub(crate) fn place(residuals: &Residuals, index: usize) -> String {
     let Some(row) = residuals.rows().get(index) else { return String::new() };
     let file = residuals.file(row);

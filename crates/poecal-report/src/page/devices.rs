@@ -1,4 +1,5 @@
-//! From where was measured: instruments with frames of their own, anchors, sockets, planes, spheres, directions, pairs of configurations.
+//! Devices and references of the measurements: instruments with frames of their own, anchors, sockets, planes, spheres, directions, pairs of
+//! configurations.
 
 use maud::{Markup, Render, html};
 
@@ -8,7 +9,7 @@ use poecal_arm::lie::Pose;
 use poecal_model::measurement::Device;
 use poecal_results::calibration_file::{CalibrationFile, StationEntry};
 
-/// What a station of a calibration is; an instrument if its file does not say.
+/// Kind of a calibration's station; an instrument if its file does not state it.
 pub(crate) fn device_of(station: &StationEntry) -> Device {
     let word = station.kind.as_deref().unwrap_or_default();
     Device::ALL.into_iter().find(|it| it.word() == word).unwrap_or(Device::Instrument)
@@ -23,7 +24,7 @@ pub(crate) fn devices(file: &CalibrationFile) -> Vec<Device> {
     }
 }
 
-/// How a device is drawn; nothing of a pair, which has no place of its own.
+/// Symbol of a device in the picture; `None` for a pair, which has no pose of its own.
 fn drawn_words(device: Device) -> Option<&'static str> {
     Some(match device {
         Device::Instrument => "instruments as their frames, x in red, y in green, z in blue",
@@ -38,7 +39,7 @@ fn drawn_words(device: Device) -> Option<&'static str> {
     })
 }
 
-/// To where a residual's arrow goes; nothing where a residual has no place in the picture.
+/// End point of a residual's arrow; `None` if a residual has no position in the picture.
 fn arrow_words(device: Device) -> Option<&'static str> {
     Some(match device {
         Device::Instrument => "to its measured place",
@@ -50,13 +51,13 @@ fn arrow_words(device: Device) -> Option<&'static str> {
     })
 }
 
-/// Whether nothing but cameras measured.
+/// True if only cameras measured.
 fn is_of_pictures(file: &CalibrationFile) -> bool {
     let count = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
     file.pictures.as_ref().is_some_and(|pictures| pictures.count == count)
 }
 
-/// What the picture shows, in sentences.
+/// Description of the picture, in sentences.
 pub(crate) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Markup {
     let all = devices(file);
     let arrows: Vec<&str> = all.iter().filter_map(|it| arrow_words(*it)).collect();
@@ -89,7 +90,7 @@ pub(crate) fn picture_words(file: &CalibrationFile, draws_places: bool) -> Marku
     }
 }
 
-/// Where instruments and places were found, by kind: the fact *Device frame* and the like, with its label.
+/// Estimated poses of instruments and references, by kind: the fact *Device frame* and the like, with its label.
 pub(crate) fn found_words(file: &CalibrationFile) -> (&'static str, Markup) {
     let all = devices(file);
     if all == [Device::Instrument] {
@@ -124,7 +125,7 @@ fn names(file: &CalibrationFile, place: Device) -> Markup {
     }
 }
 
-/// What else was found of a station: a plane's normal, a direction, a radius, zero and scale of distances.
+/// Further estimates of a station: a plane's normal, a direction, a radius, zero and scale of distances.
 pub(crate) fn further(file: &CalibrationFile, index: usize, pose: &Pose) -> Markup {
     let Some(station) = file.stations.get(index) else { return Markup::default() };
     let place = device_of(station);

@@ -1,4 +1,4 @@
-//! The errors before and after, on rows that were not fitted, and what was measured.
+//! The errors before and after, on rows that were not fitted, and the measured quantities.
 
 use maud::{Markup, Render, html};
 
@@ -26,7 +26,7 @@ pub(crate) fn error_words(quantity: Quantity, of: &str) -> String {
     capital(&format!("{} error{of}{unit}", quantity.name()))
 }
 
-/// Errors of the rows that were held out, or if there are none of those fitted, by each model, and what was measured.
+/// Errors by each model of the rows that were held out, or else of those fitted, and the measured quantities.
 pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let held_out = file.accuracy.held_out.as_ref();
     let (all, of, key) = match held_out {
@@ -77,7 +77,7 @@ pub(crate) fn section(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     titled("before-after", "Errors before and after", &content)
 }
 
-/// Errors before and after, of the rows held out or, if there are none, of those fitted; of the former also how many times smaller they are.
+/// Errors before and after, of the rows held out or else of those fitted; for the former also their ratio.
 fn lead_table(
     caption: &str,
     rows: &[ModelRow<'_>],
@@ -100,7 +100,7 @@ fn lead_table(
     table
 }
 
-/// How many times smaller the errors of a model are than the registered model's, with the interval.
+/// Ratio of the registered model's errors to a model's, with the interval.
 fn smaller(gain: &Improvements, key: &str, quantity: Quantity) -> Markup {
     let word = key.rsplit('.').next().unwrap_or_default();
     let of = match word {

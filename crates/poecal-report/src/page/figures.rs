@@ -14,11 +14,11 @@ use poecal_results::residuals::{ResidualRow, Residuals};
 /// Points of a distribution.
 const STEPS: usize = 20;
 
-/// Which share of the rows is off by how much, for the models.
+/// Distribution of the rows' errors for the models.
 pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let lead = Lead::from_residuals(residuals);
     let held_out = file.accuracy.held_out.is_some();
-    // Of an unknown tool the nominal model says nothing, and its errors would take most of the axis.
+    // With an unknown tool the nominal model predicts nothing, and its errors would occupy most of the axis.
     let line = |name: &str, style: usize, error: &dyn Fn(&ResidualRow) -> Option<f64>| {
         let rows = residuals.rows().iter().filter(|row| row.held_out == held_out);
         Line { name: name.to_owned(), style, points: distribution(rows.filter_map(error).collect()) }
@@ -42,7 +42,7 @@ pub(crate) fn distributions(file: &CalibrationFile, residuals: &Residuals) -> Ma
     PreEscaped(plot.svg())
 }
 
-/// Largest error over that below which 95 % lie, from which on a linear axis would leave all others in a corner.
+/// Ratio of the largest error to the 95 % quantile from which on a linear axis would compress all others into a corner.
 const FAR_OFF: f64 = 4.0;
 
 /// Errors of the delivered model on fitted rows and on those held out.
@@ -117,7 +117,7 @@ pub(crate) fn corrections(file: &CalibrationFile) -> Vec<Markup> {
     plots.into_iter().flatten().collect()
 }
 
-/// What was sampled of each joint's range: those that turn, and those that slide.
+/// Sampled part of each joint's range: joints that turn, and joints that slide.
 pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     let kinds = [
         (JointKind::Revolute, "Joints that turn", "degrees", 1f64.to_degrees()),
@@ -146,7 +146,7 @@ pub(crate) fn coverage(file: &CalibrationFile) -> Vec<Markup> {
     plots.collect()
 }
 
-/// How the mean square fell in each fit: weights differ from fit to fit, so that a step up is none of a fit.
+/// Decrease of the mean square in each fit: weights differ between fits, so that a step up is not within a fit.
 pub(crate) fn convergence(file: &CalibrationFile) -> Markup {
     let trace = &file.solver.trace;
     let mut step = 0;

@@ -84,7 +84,7 @@ fn outlying(line: &Line) -> Markup {
     if line.outliers.is_empty() {
         return Markup::default();
     }
-    // A robot has one row, with the figure that is farthest first.
+    // A robot has one row, with the figure of its largest deviation first.
     let mut robots: Vec<(&str, Vec<String>)> = Vec::new();
     for it in &line.outliers {
         let words = format!("{} {:.1}", it.series, it.spreads);
@@ -156,7 +156,7 @@ fn interval(of: Option<Interval>) -> String {
     of.map_or_else(String::new, |it| format!("{:.2} ({:.2} to {:.2})", it.value, it.low, it.high))
 }
 
-/// Figures of the robots in the order measured: errors, noise, offsets, and what joints do together.
+/// Figures of the robots in the order of measurement: errors, noise, offsets, and common effects of joints.
 fn pictures(line: &Line) -> Markup {
     let is_drawn = |it: &&Series| (it.joint.is_none() || it.name.ends_with(".offset")) && it.values.len() > 1;
     let all: Vec<Markup> = line.series.iter().filter(is_drawn).map(picture).collect();

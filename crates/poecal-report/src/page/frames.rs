@@ -17,24 +17,24 @@ use poecal_results::residuals::Residuals;
 /// A frame on a body.
 #[derive(Serialize)]
 pub(crate) struct FrameData<'a> {
-    /// Its name as it is shown.
+    /// Its displayed name.
     name: Cow<'a, str>,
-    /// The joint that moves its body; none for the base.
+    /// The joint that moves its body; `None` for the base.
     pub(crate) on: Option<usize>,
     /// Its pose in the base at zero joint values.
     pub(crate) pose: PoseEntry,
-    /// The same in the nominal model; none of a target in the tip frame.
+    /// Its pose in the nominal model; `None` for a target in the tip frame.
     nominal_pose: Option<PoseEntry>,
-    /// What an instrument is, if it has no frame of its own: anchor, socket, plane, sphere, direction, pair.
+    /// Kind of an instrument, if it has no frame of its own: anchor, socket, plane, sphere, direction, pair.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) kind: Option<&'static str>,
     /// Radius of a sphere, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     radius_m: Option<f64>,
-    /// Of a camera the directions to the corners of its image, in its frame, in order around it, with z = 1.
+    /// For a camera the directions to the corners of its image, in its frame, in order around it, with z = 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     camera: Option<[[f64; 3]; 4]>,
-    /// Of a board its points in its frame, metres.
+    /// For a board its points in its frame, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     board: Option<Vec<[f64; 3]>>,
 }
@@ -53,7 +53,7 @@ impl<'a> FrameData<'a> {
         }
     }
 
-    /// The same as what it is in pictures, by its name in the file.
+    /// The frame with its role in pictures, by its name in the file.
     fn seen_as(self, file: &CalibrationFile, name: &str) -> Self {
         let Some(pictures) = &file.pictures else { return self };
         let camera = pictures.cameras.iter().find(|it| it.name == name).map(corners_of);
@@ -64,7 +64,7 @@ impl<'a> FrameData<'a> {
         FrameData { camera, board, ..self }
     }
 
-    /// The same as what a station is.
+    /// The frame with the kind of a station.
     fn of_station(self, station: Option<&StationEntry>) -> Self {
         let place = station.map(device_of).filter(|it| *it != Device::Instrument);
         FrameData {
@@ -88,9 +88,9 @@ fn corners_of(camera: &CameraEntry) -> [[f64; 3]; 4] {
 /// All frames of a calibration.
 pub(crate) struct Frames<'a> {
     pub(crate) tip: FrameData<'a>,
-    /// Those of the rows in the order of the residuals, then those that no row names.
+    /// Targets of the rows in the order of the residuals, then those that no row names.
     pub(crate) targets: Vec<FrameData<'a>>,
-    /// Likewise.
+    /// Instruments in the same order.
     pub(crate) instruments: Vec<FrameData<'a>>,
 }
 
@@ -139,8 +139,8 @@ fn mount(robot: &Robot, mounts: &[Mount], name: &str) -> Option<(Body, Pose)> {
     Some((found.body, robot.base_from(found)))
 }
 
-/// Whether instruments are drawn: cameras and boards, but not a single other one with a frame beside a robot without branches, whose place says
-/// little, and no pairs.
+/// True if instruments are drawn: cameras and boards, but no pairs. A single other one beside a robot without branches is not drawn: its pose has
+/// little meaning.
 pub(crate) fn draws_instruments(file: &CalibrationFile) -> bool {
     let has_branches = file.joints.iter().any(|joint| joint.on.is_some()) || file.robot.tip_on.is_some();
     let has_mounts = !file.instruments.is_empty() || file.targets.values().any(|target| target.on.is_some());

@@ -1,15 +1,15 @@
-//! What the page is made of: figures, each with the key of `calibration.json` that it is, tables, pictures. maud escapes every text.
+//! Elements of the page: figures, each with its key of `calibration.json`, tables, pictures. maud escapes every text.
 
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::table::number;
 
-/// A figure as people read it, with the place in `calibration.json` that it comes from.
+/// A figure as people read it, with its source in `calibration.json`.
 pub(crate) fn figure(value: f64, key: impl Render) -> Markup {
     scaled(value, key, 1.0)
 }
 
-/// A figure that the file holds in another unit: what is shown is `factor` times what the file says.
+/// A figure that the file holds in another unit: the displayed value is `factor` times that of the file.
 pub(crate) fn scaled(value: f64, key: impl Render, factor: f64) -> Markup {
     let shown = value * factor;
     let sign = if shown < 0.0 { "−" } else { "" };
@@ -21,7 +21,7 @@ pub(crate) fn scaled(value: f64, key: impl Render, factor: f64) -> Markup {
     }
 }
 
-/// A figure, or these words where there is none.
+/// A figure, or these words in its absence.
 pub(crate) fn figure_or(value: Option<f64>, key: impl Render, words: &str) -> Markup {
     value.map_or_else(|| words.render(), |value| figure(value, key))
 }
@@ -31,7 +31,7 @@ pub(crate) fn count(value: usize, key: impl Render) -> Markup {
     html! { span data-key=(key) { (value) } }
 }
 
-/// Text from `calibration.json`, as it stands there; words between backticks are code.
+/// Text from `calibration.json`, unchanged; words between backticks are code.
 pub(crate) fn quoted(text: &str, key: impl Render) -> Markup {
     html! { span data-key=(key) { (coded(text)) } }
 }
@@ -58,7 +58,7 @@ pub(crate) fn capital(words: &str) -> String {
     format!("{}{rest}", first.to_uppercase())
 }
 
-/// A value with decimals and a true minus; what rounds to zero has none.
+/// A value with decimals and a true minus; a value that rounds to zero has none.
 pub(crate) fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     if text.trim_matches(['-', '0', '.']).is_empty() {
@@ -72,7 +72,7 @@ pub(crate) struct HtmlTable {
     caption: String,
     head: Vec<String>,
     rows: String,
-    /// How many columns, from the left, hold words; the others hold numbers.
+    /// Number of columns, from the left, that hold words; the others hold numbers.
     words: usize,
 }
 
@@ -131,12 +131,12 @@ pub(crate) fn section(id: &str, title: &str, content: &Markup) -> Markup {
     html! { section id=(id) aria-labelledby=(title_id) { h2 id=(title_id) { (title) } (content) } "\n" }
 }
 
-/// A list; nothing if it has no items.
+/// A list; empty if it has no items.
 pub(crate) fn list(items: &[Markup]) -> Markup {
     html! { @if !items.is_empty() { ul { @for item in items { li { (item) } } } } }
 }
 
-/// Names with what they are.
+/// Names with their descriptions.
 pub(crate) fn facts(facts: &[(&str, Markup)]) -> Markup {
     html! { dl.facts { @for (name, fact) in facts { div { dt { (name) } dd { (fact) } } } } }
 }

@@ -1,4 +1,4 @@
-//! How files of joint readings and of measurements were joined: in words, as a picture, and pair by pair.
+//! Joins of files of joint readings with files of measurements: in words, as a picture, and pair by pair.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -12,12 +12,12 @@ const LINKS: usize = 180;
 const NAMED: usize = 20;
 /// Most rows of the table of pairs.
 const LISTED: usize = 200;
-/// What the two lists of the picture are called.
+/// Names of the two lists of the picture.
 const NAMES: [&str; 2] = ["robot", "measured"];
-/// What is odd about a row, with its style in the picture.
+/// Irregularities of a row, with their style in the picture.
 const ODDITIES: [(usize, &str); 2] = [(3, "without partner"), (2, "measured more than once")];
 
-/// All joins; nothing if each file has what belongs together.
+/// All joins; empty if each file contains both readings and measurements.
 pub(crate) fn sections(joins: &[JoinEntry]) -> Markup {
     html! { @for (at, join) in joins.iter().enumerate() { (section(join, at)) } }
 }
@@ -152,7 +152,7 @@ fn plot(join: &JoinEntry) -> JoinPlot {
 /// Two lists, lines of speed, and the name of the axis.
 type Drawn = ([List; 2], Vec<Line>, &'static str);
 
-/// What is odd about a row, by its place among the oddities.
+/// Irregularity of a row, as an index of the irregularities.
 fn find_odd(join: &JoinEntry, measured: bool, number: usize) -> Option<usize> {
     let is_in = |rows: &[RowEntry], number: usize| rows.iter().any(|it| it.number == number);
     if measured {
@@ -205,7 +205,7 @@ fn link(join: &JoinEntry, lists: &[List; 2]) -> Vec<[f64; 2]> {
         let entry = lists[at].entries.get(number.checked_sub(1)?)?;
         Some(0.5 * (entry.from + entry.to))
     };
-    // Of many pairs some, and those at which the order jumps.
+    // For many pairs a selection, and those at which the order jumps.
     let step = join.pairs.len().div_ceil(LINKS).max(1);
     let jumps = |at: usize| {
         let of = |at: usize| join.pairs.get(at).map(|it| it[0] as f64 - it[1] as f64);
@@ -229,7 +229,7 @@ fn speed(motion: &MotionEntry, later: f64, name: &str, style: usize) -> Line {
     Line { name: name.to_owned(), style, points: points.map(point).collect() }
 }
 
-/// The times that a stream has rows in.
+/// The intervals in which a stream has rows.
 fn present(motion: &MotionEntry, later: f64) -> Vec<[f64; 2]> {
     let mut found = Vec::with_capacity(motion.gaps_s.len() + 1);
     let mut from = 0.0;
@@ -241,7 +241,7 @@ fn present(motion: &MotionEntry, later: f64) -> Vec<[f64; 2]> {
     found
 }
 
-/// What was taken of a file, which is the one with this number.
+/// Used part of a file, which is the one with this number.
 pub(crate) fn taken(entry: &InputEntry, at: usize) -> Markup {
     let counts: Vec<String> = entry.taken.iter().map(|(name, count)| format!("{count} {name}")).collect();
     let mut words = vec![if counts.is_empty() { "nothing".to_owned() } else { counts.join(", ") }];

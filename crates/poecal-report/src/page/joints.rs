@@ -1,4 +1,4 @@
-//! The robot in three dimensions, and what was corrected at each joint.
+//! The robot in three dimensions, and the corrections of each joint.
 
 use maud::{Markup, html};
 use nalgebra::Vector3;
@@ -13,7 +13,7 @@ use poecal_model::robot::{Body, JointKind};
 use poecal_results::calibration_file::{CalibrationFile, JointEntry, ScrewEntry, StationEntry};
 use poecal_results::shapes::Shapes;
 
-/// The robot in three dimensions, and where everything is.
+/// The robot in three dimensions, and the poses of all objects.
 pub(crate) fn view(file: &CalibrationFile, shapes: &Shapes) -> Markup {
     let head = ["joint", "kind", "model", "x", "y", "z", "through x, mm", "y, mm", "z, mm"];
     let mut table = HtmlTable::new(
@@ -61,7 +61,7 @@ fn axis(
     table.row(&[&name, &joint.kind.word(), &model, &x, &y, &z, &point[0], &point[1], &point[2]]);
 }
 
-/// Where the targets on the link of the tip are.
+/// Positions of the targets on the link of the tip.
 fn targets(file: &CalibrationFile) -> Option<HtmlTable> {
     let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
     let title = format!("Targets in the frame of {link}");
@@ -73,7 +73,7 @@ fn targets(file: &CalibrationFile) -> Option<HtmlTable> {
     file.targets.values().any(|target| target.on.is_none()).then_some(table)
 }
 
-/// On which body instruments, targets and the first joints of branches stand, where the picture has them.
+/// Bodies that carry instruments, targets and the first joints of branches, if the picture has them.
 fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
     let robot = file.robot().ok().filter(|_| draws_instruments(file))?;
     let mut table = HtmlTable::new(
@@ -81,7 +81,7 @@ fn stands(file: &CalibrationFile) -> Option<HtmlTable> {
         3,
         &["name", "kind", "stands on", "x, mm", "y, mm", "z, mm", "and"],
     );
-    // A direction has no place.
+    // A direction has no position.
     let mut row = |name: &str, kind: &str, body: Body, place: Option<Vector3<f64>>, further: &Markup| {
         let on = match body.joint().and_then(|joint| robot.joints.get(joint)) {
             Some(joint) => format!("link of {}", joint.name),

@@ -1,11 +1,11 @@
-//! The one error that is told of each row, and words for quantities.
+//! The one error that is reported of each row, and words for quantities.
 
 use poecal_model::measurement::{Measured, Quantity, measuring};
 use poecal_numerics::unit::Unit;
 use poecal_results::residuals::{ModelErrors, ResidualRow, Residuals};
 
-/// Which error is told of each row: that of the first quantity that it measured in one unit, of lengths if any row measured one. It is
-/// the position of poses and points.
+/// Reported error of each row: that of the first quantity that it measured in one unit, of lengths if any row measured one. It is the position error
+/// of poses and points.
 pub(crate) struct Lead {
     quantities: Vec<Quantity>,
     unit: Unit,
@@ -35,7 +35,7 @@ impl Lead {
         self.found(row).map(|(_, errors)| errors.models[1])
     }
 
-    /// What it is an error of: `position`.
+    /// Name of the quantity: `position`.
     pub(crate) fn name(&self) -> String {
         let names: Vec<&str> = self.quantities.iter().map(|quantity| quantity.name()).collect();
         if names.is_empty() { Quantity::Position.name().to_owned() } else { names.join(" or ") }
@@ -76,13 +76,13 @@ pub(crate) fn component_words(quantity: Quantity, component: usize) -> String {
     if quantity.components() == 1 { quantity.name().to_owned() } else { format!("{} {own}", quantity.name()) }
 }
 
-/// How many rows measured what: poses, points, distances and so on.
+/// Numbers of rows by their measured quantities: poses, points, distances and so on.
 pub(crate) fn kinds_words(residuals: &Residuals) -> String {
     let of = |(kind, count): &(Measured<()>, usize)| {
         (kind.iter().map(|(quantity, ())| quantity).collect(), *count)
     };
     let mut kinds: Vec<(Vec<Quantity>, usize)> = residuals.kinds().iter().map(of).collect();
-    // Poses before points, before others.
+    // Poses precede points, these precede others.
     kinds.sort_by_key(|(kind, _)| (!kind.iter().all(|it| it.is_of_pose()), std::cmp::Reverse(kind.len())));
     let words = kinds.iter().map(|(kind, count)| match measuring(kind) {
         Some(function) => format!("{count} {}", function.plural),

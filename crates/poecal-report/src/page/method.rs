@@ -1,4 +1,4 @@
-//! How the calibration was made, of which files, and how to make it again.
+//! Method and files of the calibration, and the command that repeats it.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use poecal_model::measurement::Quantity;
 use poecal_numerics::solve::Termination;
 use poecal_results::calibration_file::CalibrationFile;
 
-/// A number of the trace beyond which its table would only be long.
+/// Length of the trace above which its table is not listed.
 const LISTED: usize = 60;
 
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
@@ -30,7 +30,7 @@ pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     section("method", "Method and inputs", &content)
 }
 
-/// How the fit was made.
+/// Details of the fit.
 pub(crate) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
     html! {
         h3 { "Fit" }
@@ -40,7 +40,7 @@ pub(crate) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// What was held, terms of joint values, and where the device is.
+/// Held unknowns, terms of joint values, and the pose of the device.
 fn held_and_found(file: &CalibrationFile) -> Markup {
     let device = match file.measurement_frame.known {
         DeviceFrameKnowledge::Unknown => found_words(file),
@@ -83,7 +83,7 @@ fn solver(file: &CalibrationFile) -> Markup {
     facts(&[("Unknowns", unknowns), ("Steps", steps), ("Loss", loss), ("Version", version)])
 }
 
-/// Joint offsets, where the formulation has them.
+/// Joint offsets, if the formulation contains them.
 fn offsets(file: &CalibrationFile) -> Markup {
     let Some(offsets) = &file.solver.joint_offsets else { return Markup::default() };
     let mut table = HtmlTable::new(
@@ -103,7 +103,7 @@ fn offsets(file: &CalibrationFile) -> Markup {
     html! { (table) }
 }
 
-/// The usual method by its name.
+/// The default method by its name.
 fn method_words(method: &str) -> &str {
     match method {
         "levenberg-marquardt" => "damped least squares (Levenberg and Marquardt)",
@@ -126,7 +126,7 @@ fn convergence(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// A checksum with places where a line may break: after each eight digits.
+/// A checksum with positions for line breaks: after each eight digits.
 fn grouped(hash: &str) -> Markup {
     let is_hash = hash.len() == 64 && hash.bytes().all(|it| it.is_ascii_hexdigit());
     let parts: Vec<&str> =
@@ -134,7 +134,7 @@ fn grouped(hash: &str) -> Markup {
     html! { @for (k, part) in parts.iter().enumerate() { @if k > 0 { wbr; } (part) } }
 }
 
-/// Files with their checksums: one with its key and what it is, the measurements with what was taken of each, and mappings.
+/// Files with their checksums: one with its key and description, the measurements with the used part of each, and mappings.
 pub(crate) fn files(
     (first, key, what): (&String, &str, &str),
     measurements: &[String],

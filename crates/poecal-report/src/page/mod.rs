@@ -1,8 +1,8 @@
 //! The report of a calibration: one HTML page that holds its style, its script and its data, and loads nothing.
 //!
-//! A file is a part of the page. No HTML as strings: maud writes and escapes it, and `text::visible_markup` goes over the whole. No figures without
-//! their key of `calibration.json`, except sums over the rows of `residuals.csv`. Style and script are built from `web/src` into `assets/`: the script
-//! draws the page's data, with kinematics for that, and needs no network.
+//! Each file is a part of the page. No HTML as strings: maud writes and escapes it, and `text::visible_markup` is applied to the whole. Each figure
+//! has its key of `calibration.json`, except sums over the rows of `residuals.csv`. Style and script are built from `web/src` into `assets/`. The
+//! script draws the page's data, with kinematics for that, and needs no network.
 
 mod advice;
 mod answer;
@@ -53,14 +53,14 @@ use poecal_results::shapes::Shapes;
 /// Style and script, built from `web/` by `npm run build`.
 const STYLE: &str = include_str!("assets/report.css");
 const SCRIPT: &str = include_str!("assets/report.js");
-/// By which share sums of the same rows may differ: rounding.
+/// Relative difference that sums of the same rows may have: rounding.
 const SAME: f64 = 1e-9;
-/// What a browser may do with the page: nothing is loaded from anywhere.
+/// Permissions of a browser for the page: nothing is loaded from anywhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
-/// The report of a calibration as an HTML page that is complete in itself, without opening any file: of the shapes in a URDF it has boxes,
-/// cylinders and spheres. All of it can be read without its script, which adds the
-/// robot in three dimensions and says what the cursor is on in charts. In pieces, since most of it is the same for every calibration.
+/// The report of a calibration as a self-contained HTML page, made without opening any file: from the shapes in a URDF it has boxes, cylinders and
+/// spheres. All of it can be read without its script, which adds the robot in three dimensions and names the element under the cursor in charts. The
+/// page comes in pieces, since most of it is the same for every calibration.
 ///
 /// ```
 /// # mod poecal {
@@ -87,7 +87,7 @@ pub fn calibration_page(file: &CalibrationFile, residuals: &Residuals) -> Result
     calibration_page_with(file, residuals, &Shapes::from_calibration(file))
 }
 
-/// [`calibration_page`] with what the robot looks like: [`Shapes::read`] reads the meshes that its URDF names.
+/// [`calibration_page`] with the shapes of the robot: [`Shapes::read`] reads the meshes that its URDF names.
 ///
 /// # Errors
 /// As [`calibration_page`].
@@ -126,7 +126,7 @@ pub fn calibration_page_with(file: &CalibrationFile, residuals: &Residuals, shap
     ])
 }
 
-/// What only few readers need, folded.
+/// Details for few readers, folded.
 fn for_the_metrologist(file: &CalibrationFile, charts: &charts::Charts<'_>) -> Markup {
     html! {
         section aria-labelledby="metrologist-title" {
@@ -142,7 +142,7 @@ fn for_the_metrologist(file: &CalibrationFile, charts: &charts::Charts<'_>) -> M
     }
 }
 
-/// A page up to its body: title, policy, style, and what is printed beside it.
+/// A page up to its body: title, policy, style, and the margins of its print.
 fn head(title: &str, record: &Record, version: &str) -> Markup {
     html! {
         (DOCTYPE) "\n" (PreEscaped("<html lang=\"en\">")) "\n"
@@ -209,7 +209,7 @@ fn readings_of(residuals: &Residuals) -> impl Iterator<Item = (usize, &str, &'st
     all.filter_map(|(index, (name, kind))| Some((index, name.as_str(), unit(*kind)?)))
 }
 
-/// The unit of a joint's reading; none of a factor.
+/// The unit of a joint's reading; `None` for a factor.
 fn unit(kind: ReadingKind) -> Option<&'static str> {
     match kind {
         ReadingKind::Angle => Some("°"),

@@ -1,4 +1,4 @@
-//! Where in the image corners are off, and in which pictures.
+//! Errors of corners over the image, and by picture.
 
 use maud::{Markup, PreEscaped, html};
 

@@ -17,11 +17,11 @@ use poecal_results::record::Record;
 
 /// Points of the rim of a device's cone.
 const RIM: usize = 24;
-/// Arms that a picture draws at most; of all other configurations the target alone.
+/// Arms that a picture draws at most; for all other configurations the target alone.
 const ARMS: usize = 8;
 
-/// The page of a plan, complete in itself and without a script: the robot in some configurations and the targets of all, what the device sees, errors by number, and
-/// how each joint is sampled.
+/// The page of a plan, complete in itself and without a script. It shows the robot in some configurations and the targets of all, the device's field
+/// of view, errors by number, and the sampled part of each joint's range.
 #[must_use]
 pub fn plan_page(model: &Model, options: &PlanOptions, found: &Found, told: &Plan) -> Page {
     let robot = &model.robot;
@@ -66,7 +66,7 @@ fn arms(robot: &Robot, options: &PlanOptions, found: &Found) -> Markup {
 /// Lines of a robot in one configuration.
 type Skeleton = Vec<[Vector3<f64>; 2]>;
 
-/// A few configurations whose targets are far apart: each the one that is farthest from all before.
+/// A few configurations with distant targets: each has the largest distance from all before.
 fn apart(skeletons: &[(RowPart, Skeleton)]) -> Vec<usize> {
     let ends: Vec<(usize, Vector3<f64>)> =
         skeletons.iter().enumerate().filter_map(|(k, (_, lines))| Some((k, lines.last()?[1]))).collect();
@@ -76,7 +76,7 @@ fn apart(skeletons: &[(RowPart, Skeleton)]) -> Vec<usize> {
             chosen.iter().map(|(_, other)| (at - other).norm()).fold(f64::INFINITY, f64::min)
         };
         let next = ends.iter().max_by(|a, b| far(&a.1).total_cmp(&far(&b.1))).copied();
-        // Where all others are at the places of those before, no other is farther.
+        // If all others coincide with those before, no further one is distant.
         match next.filter(|(_, at)| far(at) > 0.0) {
             Some(next) => chosen.push(next),
             None => break,
@@ -125,7 +125,7 @@ fn drawn(
     arms
 }
 
-/// The device's cone: its rim half-way to where it looks, and lines to it.
+/// The device's cone: its rim half-way to its aim, and lines to it.
 fn cone(sight: &Sight, flat: &impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<[[f64; 2]; 2]> {
     let Some((at, half)) = sight.cone else { return Vec::new() };
     let axis = 0.5 * (at - sight.place);

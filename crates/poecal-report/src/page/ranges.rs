@@ -13,10 +13,10 @@ pub(crate) fn unit_of(file: &CalibrationFile, joint: &str) -> (f64, &'static str
     if slides { (1e3, " mm") } else { (1f64.to_degrees(), "°") }
 }
 
-/// Smallest over largest expected error from which on all parts of the ranges are alike.
+/// Ratio of the smallest to the largest expected error above which all parts of the ranges count as equal.
 const ALIKE: f64 = 0.7;
 
-/// Expected errors over the joint ranges: a map, or a sentence where they hardly differ.
+/// Expected errors over the joint ranges: a map, or a sentence if they hardly differ.
 pub(crate) fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
     let order = |a: &(usize, &RangeEntry), b: &(usize, &RangeEntry)| {
         a.1.sigma_position_mm.total_cmp(&b.1.sigma_position_mm)
@@ -37,7 +37,7 @@ pub(crate) fn parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str)
     }
 }
 
-/// The map of expected errors: a row a joint, a cell a part of its range.
+/// The map of expected errors: one row for each joint, one cell for each part of its range.
 fn map_of_parts(file: &CalibrationFile, found: &UncertaintyEntry, key: &str) -> Markup {
     let worst = found.parts.iter().map(|part| part.sigma_position_mm).fold(0.0, f64::max);
     let of = |joint: &str| {

@@ -1,4 +1,4 @@
-//! What happened during the session and was repaired: each with the errors of the rows before and after.
+//! Events of the session that were repaired: each with the errors of the rows before and after.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -7,7 +7,7 @@ use crate::plot::{Axis, Line, LinePlot, Mark, Scale};
 use poecal_calibrate::{Event, EventKind};
 use poecal_results::calibration_file::CalibrationFile;
 
-/// Nothing where nothing was repaired.
+/// Sections of the repairs; empty if there are none.
 pub(crate) fn sections(file: &CalibrationFile) -> Markup {
     if file.repairs.is_empty() {
         return Markup::default();

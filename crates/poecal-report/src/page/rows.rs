@@ -1,4 +1,4 @@
-//! What the rows leave: charts of them, tables with the same facts, suspected rows, and configurations that were measured several times.
+//! The residuals: charts of them, tables with the same facts, suspected rows, and configurations that were measured several times.
 
 use maud::{Markup, Render, html};
 
@@ -83,7 +83,7 @@ fn errors(file: &CalibrationFile, charts: &Charts<'_>) -> Result<Markup> {
     Ok(section("errors", "Errors of the rows", &content))
 }
 
-/// What only few readers need: whether the errors are noise, and which rows decide much of the result.
+/// Details for few readers: comparison of the errors with noise, and the rows with a large influence on the result.
 pub(crate) fn for_the_metrologist(charts: &Charts<'_>) -> Markup {
     let lead = charts.lead.name();
     html! {
@@ -109,7 +109,7 @@ pub(crate) fn for_the_metrologist(charts: &Charts<'_>) -> Markup {
     }
 }
 
-/// In which axes residuals are, if they have any.
+/// Axes of the residuals, if they have any.
 fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
     let has_axes = residuals.measured().iter().any(|it| it.is_of_pose());
     match (has_axes, devices(file) == [Device::Pair]) {
@@ -119,7 +119,7 @@ fn axes_words(file: &CalibrationFile, residuals: &Residuals) -> &'static str {
     }
 }
 
-/// What the components of each quantity are.
+/// Meaning of the components of each quantity.
 fn component_note(residuals: &Residuals) -> String {
     let all: Vec<&str> = residuals.measured().iter().map(|it| it.residual_words()).collect();
     format!(
@@ -180,7 +180,7 @@ fn component_table(residuals: &Residuals) -> HtmlTable {
     table
 }
 
-/// Errors by equal parts of what was sampled of each joint.
+/// Errors by equal parts of each joint's sampled range.
 fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
     let lead = Lead::from_residuals(residuals);
     let of = format!(
@@ -220,7 +220,7 @@ fn joint_table(file: &CalibrationFile, residuals: &Residuals) -> HtmlTable {
     table
 }
 
-/// The place of a row as the calibration file has it; rows that came from no file have none.
+/// The origin of a row as in the calibration file; rows that came from no file have none.
 fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Markup {
     match file {
         "" => html! { "–" },
@@ -229,7 +229,7 @@ fn named(residuals: &Residuals, file: &str, row: u32, key: impl Render) -> Marku
 }
 
 fn leverage_table(residuals: &Residuals) -> Option<HtmlTable> {
-    // A row that was held out decides nothing of the fit.
+    // A row that was held out has no influence on the fit.
     let fitted = residuals.rows().iter().enumerate().filter(|(_, row)| !row.held_out);
     let judged = fitted.filter_map(|(k, row)| Some((k, row.judged?)));
     let mut judged: Vec<_> = judged.filter(|(_, found)| found.leverage.is_finite()).collect();
@@ -281,7 +281,7 @@ fn suspects(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     section("suspects", "Suspected rows", &content)
 }
 
-/// Configurations whose targets are all off alike.
+/// Configurations in which all targets deviate by similar distances.
 fn off_alike(file: &CalibrationFile, residuals: &Residuals) -> Markup {
     let found = &file.suspected_configurations;
     if found.is_empty() {

@@ -12,7 +12,7 @@ use poecal_results::shapes::{Form, Mesh, Shape};
 #[derive(Serialize)]
 pub(crate) struct ShapeData<'a> {
     link: Cow<'a, str>,
-    /// The joint that moves its body; none for the base.
+    /// The joint that moves its body; `None` for the base.
     on: Option<usize>,
     /// Its pose in the base at zero joint values.
     pose: PoseEntry,
@@ -21,7 +21,7 @@ pub(crate) struct ShapeData<'a> {
     form: FormData,
 }
 
-/// What it is, metres.
+/// Form, metres.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum FormData {
@@ -49,7 +49,7 @@ impl<'a> ShapeData<'a> {
     }
 }
 
-/// A mesh as `io::shapes` has it.
+/// A mesh in the form of `io::shapes`.
 #[derive(Serialize)]
 pub(crate) struct MeshData<'a> {
     least: [f32; 3],

@@ -7,7 +7,7 @@ use crate::plot::{ArmPlot, Arms};
 use poecal_plan::plan::skeleton;
 use poecal_results::calibration_file::CalibrationFile;
 
-/// A picture from a side: which coordinate is across and which is up.
+/// A picture from one side: the horizontal and the vertical coordinate.
 pub(crate) struct View {
     title: &'static str,
     axes: [usize; 2],
@@ -15,7 +15,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// What is seen of a place.
+    /// Projection of a point.
     pub(crate) fn flat(&self, at: &Vector3<f64>) -> [f64; 2] {
         self.axes.map(|axis| at[axis])
     }
@@ -41,7 +41,7 @@ pub(crate) fn pictures(arms: impl Fn(&View) -> Vec<Arms>) -> Vec<Markup> {
     VIEWS.iter().map(one).collect()
 }
 
-/// The calibrated robot in the middle of what was sampled; nothing of a file without a valid robot.
+/// The calibrated robot in the middle of the sampled range; empty for a file without a valid robot.
 pub(crate) fn still(file: &CalibrationFile) -> Vec<Markup> {
     let Ok(robot) = file.robot() else { return Vec::new() };
     let middle = |name: &String| {

@@ -1,4 +1,4 @@
-//! How far the result can be trusted, and which unknowns the data determine.
+//! Trust in the result, and the unknowns that the data determine.
 
 use maud::{Markup, html};
 
@@ -177,7 +177,7 @@ fn coverage(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// How many unknowns are determined, and which are not, or weakly.
+/// Number of determined unknowns, and the undetermined or weakly determined ones.
 fn determined(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability;
     let groups = [
@@ -198,7 +198,7 @@ fn determined(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// Which unknowns no measurement of this kind shows, how well configurations show the others, and which are known only together.
+/// Unknowns that no measurement of this kind determines, the observability of the others, and those that are determined only together.
 pub(crate) fn for_the_metrologist(file: &CalibrationFile) -> Markup {
     let found = &file.identifiability;
     html! {
@@ -218,7 +218,7 @@ fn items(directions: &[Direction], key: &str) -> Vec<Markup> {
     directions.iter().enumerate().map(item).collect()
 }
 
-/// What is known of several joints only together.
+/// Combinations of several joints that are determined only together.
 fn common(file: &CalibrationFile) -> Markup {
     let items = file.common.iter().enumerate();
     let items = items.map(|(k, it)| quoted(&it.words, format_args!("common.{k}.words")));
@@ -235,7 +235,7 @@ fn common(file: &CalibrationFile) -> Markup {
     }
 }
 
-/// How much of what is known of each axis the measurements say, beside the tolerance.
+/// Share of the measurements in the information on each axis, beside the tolerance.
 fn shares(file: &CalibrationFile) -> Markup {
     let mut table = HtmlTable::new(
         "What limits the uncertainty of each axis: the measurements' share of its variance, from 0 to 1; the rest is the tolerance's. A small share \
@@ -262,7 +262,7 @@ fn direction_words(direction: &Direction, key: &str) -> Markup {
     }
 }
 
-/// Which blocks are known only together: a map, and the strongest pairs.
+/// Blocks that are determined only together: a map, and the strongest pairs.
 fn correlations(file: &CalibrationFile) -> Markup {
     let Some(found) = file.uncertainty.as_ref().and_then(|it| it.correlations.as_ref()) else {
         return Markup::default();

@@ -1,4 +1,4 @@
-//! The page of a check: whether a calibration holds for measurements that it did not see.
+//! The page of a check: validity of a calibration for measurements that it did not use.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -92,7 +92,7 @@ fn verdict(found: &Validation) -> Markup {
     }
 }
 
-/// The error of the delivered model beside what was expected of it.
+/// The error of the delivered model beside the expected one.
 fn one_figure(found: &Validation, quantity: Quantity, error: &VerdictError) -> Markup {
     let key = |name: &str| format!("verdict.{}.{name}", quantity.key());
     let unit = spaced(quantity.unit());
@@ -136,7 +136,7 @@ fn the_facts(found: &Validation) -> Vec<(&'static str, Markup)> {
     facts.into_iter().chain(gain.map(|gain| ("Gain", gain))).collect()
 }
 
-/// Which quantity the picture and the list are of: the first that was measured.
+/// Quantity of the picture and the list: the first that was measured.
 fn leading(rows: &JudgedRows<'_>) -> Option<Quantity> {
     rows.measured().into_iter().next()
 }

@@ -1,19 +1,19 @@
-//! The table in few lines: the verdict, the figures, where they hold, what to look at. All else is named and left out.
+//! The table in few lines: the verdict, the figures, their domain, points of attention. All else is named and left out.
 
 use super::look::{Place, look_at};
 use crate::table::{INDENT, WIDTH, lines};
 use poecal_calibrate::{Decision, Level};
 use poecal_results::calibration_file::CalibrationFile;
 
-/// Lines of the table, beside those that state what is left out, what to do next and where the results are.
+/// Lines of the table, beside those that state the omissions, the next step and the path of the results.
 const LINES: usize = 11;
-/// Lines of the table at least, however much was said before it.
+/// Lines of the table at least, however much was printed before it.
 const FEWEST: usize = 7;
 /// Lines under a label of verdict, errors and range.
 const PARAGRAPH: usize = 5;
 /// Parts that are left out and named; at least as many more are counted.
 const NAMED: usize = 3;
-/// Labels of what has no less room: a verdict with its remedy, repairs, figures, and limits that were asked for.
+/// Labels that keep all their lines: a verdict with its remedy, repairs, figures, and requested limits.
 const WHOLE: [&str; 4] = ["verdict", "repaired", "expected", "acceptance"];
 /// Importance of points and of labels; others, on verdict, errors and range, are always there.
 const FIRST_POINTS: usize = 1;
@@ -42,7 +42,7 @@ pub struct Short {
     pub next: Option<&'static str>,
 }
 
-/// The short table, where so many lines were said before.
+/// The short table, after `said` printed lines.
 pub(super) fn brief(file: &CalibrationFile, said: usize) -> Short {
     let mut blocks = blocks(file);
     choose(&mut blocks, LINES.saturating_sub(said).max(FEWEST));
@@ -125,7 +125,7 @@ fn parsed(table: &str) -> Vec<Block> {
     blocks
 }
 
-/// Decides what is shown, by importance, and shortens paragraphs.
+/// Decides which lines are shown, by importance, and shortens paragraphs.
 fn choose(blocks: &mut [Block], lines: usize) {
     for block in blocks.iter_mut().filter(|it| it.rank == 0 && it.label != "acceptance") {
         shorten(&mut block.text, PARAGRAPH);
@@ -152,7 +152,7 @@ fn choose(blocks: &mut [Block], lines: usize) {
     }
 }
 
-/// Gives the first points their lines: each has one before any has another.
+/// Assigns the first points their lines: each has one before any has a second.
 fn share_room(blocks: &mut [Block], room: &mut usize) {
     let mut points: Vec<&mut Block> = blocks.iter_mut().filter(|it| it.rank == FIRST_POINTS).collect();
     let mut given = vec![0; points.len()];
@@ -196,7 +196,7 @@ mod tests {
     use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
     use poecal_results::calibration_file::Inputs;
 
-    /// Of good and of spoilt sessions: few lines, each of them that of the whole table, and points that are left out are counted.
+    /// Summaries of good and of spoilt sessions have few lines, each of them from the whole table, and omitted points are counted.
     #[test]
     fn the_short_table_is_short_and_says_what_it_leaves_out() {
         for (count, kind, share) in

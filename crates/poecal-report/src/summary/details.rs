@@ -1,4 +1,4 @@
-//! What `--verbose` adds: the robot, the rows, all errors of the fit, what every figure comes from.
+//! Additions of `--verbose`: the robot, the rows, all errors of the fit, the sources of all figures.
 
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ fn rows_words(file: &CalibrationFile) -> String {
     format!("{} rows{targets}: {fitted} fitted, {held_out} held out", fitted + held_out)
 }
 
-/// What is known of the noise of pictures.
+/// Noise of pictures in words.
 fn pictures_words(pictures: &PicturesEntry) -> String {
     let CommonEntry { shift_mm, turn_deg, about, corners } = pictures.common;
     let about = match about {
@@ -113,7 +113,7 @@ fn solver_words(file: &CalibrationFile) -> String {
     format!("{} iterations, {end}{restarts}{tolerance}", solver.iterations)
 }
 
-/// How the problem was written, where not as usual, and what follows from that.
+/// Formulation of the problem, if it is not the default, and its consequences.
 fn formulation_words(file: &CalibrationFile) -> Option<String> {
     let solver = &file.solver;
     let poses = file.accuracy.training.calibrated.rotation_deg().is_some();
@@ -132,13 +132,13 @@ fn formulation_words(file: &CalibrationFile) -> Option<String> {
     Some(words)
 }
 
-/// What the offsets of the corrections are not for.
+/// Limits of use of the corrections' offsets.
 const NOT_ENTERED: &str = "not for entering into a controller: `poecal offsets` gives the offsets that are";
 
-/// Most effects that are told.
+/// Most effects that are listed.
 const SHOWN: usize = 6;
 
-/// What speaks for each group of terms, and what they do.
+/// Evidence for each group of terms, and their effects.
 fn corrected(out: &mut String, file: &CalibrationFile) {
     let Some(found) = &file.corrected else { return };
     let left_out = |sizes: &BTreeMap<String, f64>| {
@@ -147,7 +147,7 @@ fn corrected(out: &mut String, file: &CalibrationFile) {
     if let Some(chosen) = left_out(&found.sizes) {
         let without = found.sizes.iter().filter(|(_, size)| **size > 0.0).filter_map(|(group, _)| {
             let mut sizes = found.sizes.clone();
-            // Those of gravity are chosen together.
+            // The sizes of gravity are chosen together.
             let together = ["sag", "tilt"];
             for (other, size) in &mut sizes {
                 let is_same = together.contains(&group.as_str()) && together.contains(&other.as_str());
@@ -176,7 +176,7 @@ fn corrected(out: &mut String, file: &CalibrationFile) {
     lines(out, "not told", &found.indistinguishable);
 }
 
-/// Expected errors, cross-validation, and what each joint's correction is worth.
+/// Expected errors, cross-validation, and the effect of each joint's correction.
 fn trust(out: &mut String, file: &CalibrationFile) {
     if let Some((expected, _)) = uncertainty(file) {
         let words = format!(

@@ -1,4 +1,4 @@
-//! The errors that count: of rows that were not fitted, before and after.
+//! The decisive errors: of rows that were not fitted, before and after.
 
 use super::super::found::found_words;
 use super::super::table::{
@@ -23,15 +23,15 @@ pub(crate) type ModelRow<'a> = (String, &'a ModelAccuracy, String);
 pub(crate) struct Leading<'a> {
     pub(crate) set: &'a SetAccuracy,
     pub(crate) models: Vec<ModelRow<'a>>,
-    /// Behind the name of the rows: which of them are left out.
+    /// Words after the name of the rows: the rows that are left out.
     pub(crate) without: String,
-    /// Which other rows are shown beside them, and the errors of the same models on these.
+    /// Other rows that are shown beside them, and the errors of the same models on these.
     pub(crate) beside: Option<(String, Vec<ModelRow<'a>>)>,
 }
 
 impl<'a> Leading<'a> {
-    /// Of rows held out all, with those that are not suspected beside them; of fitted rows, where none was held out, those that are not suspected, as in
-    /// cross-validation, with all beside them.
+    /// For rows held out all of them, with those that are not suspected beside them. For fitted rows, if none was held out, those that are not
+    /// suspected, as in cross-validation, with all beside them.
     pub(crate) fn from_calibration(file: &'a CalibrationFile) -> Self {
         let (accuracy, robust) = (&file.accuracy, &file.robust);
         let training = (&accuracy.training, "accuracy.training");
@@ -71,7 +71,7 @@ impl<'a> Leading<'a> {
     }
 }
 
-/// The errors of the models that are shown, of a set by its key.
+/// The errors of the models that are shown, for a set by its key.
 fn models_of<'a>(file: &CalibrationFile, set: &'a SetAccuracy, key: &str) -> Vec<ModelRow<'a>> {
     let holds = |kind: &str| {
         let is_of = |name: &String| name == kind || name.starts_with(&format!("{kind}."));
@@ -96,7 +96,7 @@ fn models_of<'a>(file: &CalibrationFile, set: &'a SetAccuracy, key: &str) -> Vec
     models.into_iter().filter_map(row).collect()
 }
 
-/// Whether the corrected model has terms: otherwise it is the calibrated one.
+/// True if the corrected model has terms: otherwise it is the calibrated one.
 pub(crate) fn has_terms(file: &CalibrationFile) -> bool {
     file.corrected.as_ref().is_some_and(|it| it.has_terms())
 }
@@ -115,13 +115,13 @@ pub(crate) fn judged_on(file: &CalibrationFile) -> String {
 /// An error of the delivered model on rows that were left out of its fits.
 pub(crate) struct CrossValidated {
     pub(crate) quantity: Quantity,
-    /// Millimetres or degrees (RMS).
+    /// Error (RMS), millimetres or degrees.
     pub(crate) rms: f64,
     /// Its key in `calibration.json`.
     pub(crate) key: String,
 }
 
-/// What cross-validation says of the delivered model; of a corrected one, where parts of the range were left out.
+/// Cross-validation error of the delivered model; for a corrected one, with parts of the range left out.
 pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> {
     if let Some(found) = file.corrected.as_ref().filter(|_| has_terms(file)) {
         let (quantity, key) = (Quantity::Position, "corrected.left_out_position_mm".to_owned());
@@ -131,7 +131,7 @@ pub(crate) fn cross_validated(file: &CalibrationFile) -> Option<CrossValidated> 
     Some(CrossValidated { quantity, rms, key: format!("cross_validation.random.rms.{}", quantity.key()) })
 }
 
-/// Why the error to expect is larger than the one measured, where it is.
+/// Reason why the expected error is larger than the measured one, if it is.
 pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
     let leading = Leading::from_calibration(file);
     let [_, (_, after, _)] = leading.ends()?;
@@ -142,7 +142,7 @@ pub(crate) fn why_larger(file: &CalibrationFile) -> Option<&'static str> {
     )
 }
 
-/// Errors before and after on the same rows, the error to expect, and where that is valid.
+/// Errors before and after on the same rows, the expected error, and its domain.
 pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
     let leading = Leading::from_calibration(file);
     let (Some([before, after]), set) = (leading.ends(), leading.set) else { return };
@@ -197,7 +197,7 @@ pub(crate) fn figures(out: &mut String, file: &CalibrationFile) {
     }
 }
 
-/// That no row was held out; of few configurations why.
+/// Note that no row was held out; with few configurations also the reason.
 pub(crate) fn none_held_out(file: &CalibrationFile) -> String {
     file.accuracy.few_configurations.map_or_else(
         || "no row was held out".to_owned(),
@@ -207,7 +207,7 @@ pub(crate) fn none_held_out(file: &CalibrationFile) -> String {
     )
 }
 
-/// The error to expect, and where that is valid.
+/// The expected error, and its domain.
 fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectation) {
     let Expectation { error_mm, bound_mm, inside_mm, nominal_mm, anywhere } = expectation;
     let (error, bound) = (number(error_mm), number(bound_mm));
@@ -216,7 +216,7 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
             && limit.statistic == AcceptedStatistic::Rms
             && limit.to.is_some_and(|to| to < error_mm)
     };
-    // The bounds of a limit are of measured errors.
+    // The bounds of a limit are those of measured errors.
     let why = if file.acceptance.as_ref().is_some_and(|it| it.limits.iter().any(is_exceeded)) {
         "; above the upper bound of the measured error, since unexplained residuals count as robot error"
     } else {
@@ -244,7 +244,7 @@ fn say_expected(out: &mut String, file: &CalibrationFile, expectation: Expectati
     line(out, "valid", &valid);
 }
 
-/// Mean, RMS, 95 % and maximum of the errors of the rows held out, or if there are none, of those fitted.
+/// Mean, RMS, 95 % and maximum of the errors of the rows held out, or else of those fitted.
 pub(crate) fn table(out: &mut String, file: &CalibrationFile) {
     let leading = Leading::from_calibration(file);
     let (set, rows) = (leading.set, leading.rows());
@@ -272,7 +272,7 @@ mod tests {
     use poecal_model::simulate::{Gross, Kind, Simulation, elbow};
     use poecal_results::calibration_file::Inputs;
 
-    /// Of thirty poses all are fitted: what is said before and after is without the one of them that is far off.
+    /// All of thirty poses are fitted: the stated errors before and after exclude the one with a large deviation.
     #[test]
     fn suspected_rows_do_not_count_where_none_is_held_out() {
         let mut made = Simulation { count: 30, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();

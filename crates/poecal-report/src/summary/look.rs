@@ -1,4 +1,4 @@
-//! What of a calibration needs attention.
+//! Points of a calibration that need attention.
 
 use std::collections::BTreeSet;
 
@@ -10,15 +10,15 @@ use poecal_results::calibration_file::{CalibrationFile, IdentifiabilityEntry, Ou
 
 /// Suspected rows that are named.
 const WORST: usize = 3;
-/// Characters of a direction's description that are told as they stand.
+/// Characters of a direction's description that is printed unchanged.
 const SHORT: usize = 200;
-/// Words of the warning that is about suspected rows, which are given by their figures instead.
+/// Words of the warning about suspected rows, which are reported by their figures instead.
 const SUSPECTS: &str = "`outliers` in calibration.json";
 
-/// What the terminal says, but no page, of outliers that were fitted.
+/// Words on fitted outliers that the terminal prints, but no page.
 pub(crate) const SEE_ROBUST: &str = ", see --robust";
 
-/// Where in `calibration.json` a point comes from, with its index there.
+/// Source of a point in `calibration.json`, with its index there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     Suspicion(usize),
@@ -37,10 +37,10 @@ pub(crate) struct Point {
     pub(crate) place: Place,
 }
 
-/// What needs attention, the gravest first. The verdict's first reason stands beside the verdict.
+/// Points that need attention, the gravest first. The verdict's first reason is printed beside the verdict.
 pub(crate) fn look_at(file: &CalibrationFile) -> Vec<Point> {
     let stated = file.verdict.as_ref().map_or(&[][..], |verdict| &verdict.reasons);
-    // Rows that a repair left out are told with it.
+    // Rows that a repair left out are reported with it.
     let is_told = file.repairs.iter().any(|it| it.kind == EventKind::Rows);
     let suspects = file.robust.suspected.training + file.robust.suspected.held_out;
     let point = |place: Place, text: &str| Point { text: text.to_owned(), place };
@@ -74,7 +74,7 @@ pub(crate) fn look_at(file: &CalibrationFile) -> Vec<Point> {
 
 /// Unknowns that are not determined, or weakly, each counted in one sentence: those of the same joints for the same cause together.
 fn hardly_known(known: &IdentifiabilityEntry) -> Vec<Point> {
-    // The direction that is told, its words, and the unknowns of each degree.
+    // The direction that is reported, its words, and the unknowns of each degree.
     let mut groups: Vec<(&Direction, String, [usize; 2])> = Vec::new();
     let open = known.unidentifiable.iter().map(|it| (it, 0));
     for (direction, degree) in open.chain(known.weak.iter().map(|it| (it, 1))) {
@@ -108,7 +108,7 @@ pub(crate) fn unknowns_words(count: usize) -> String {
     format!("{count} unknown{}", if count == 1 { "" } else { "s" })
 }
 
-/// Why the verdict is no better, in the verdict's words; joints that moved by little are named together.
+/// Reasons against a better verdict, in the verdict's words; joints that moved by little are named together.
 pub(crate) fn reasons(file: &CalibrationFile) -> Vec<String> {
     let Some(verdict) = file.verdict.as_ref().filter(|verdict| verdict.level != Level::Good) else {
         return Vec::new();
@@ -136,7 +136,7 @@ pub(crate) fn reasons(file: &CalibrationFile) -> Vec<String> {
     told.collect()
 }
 
-/// How many rows are suspected, what that means for the fit, and the worst of them.
+/// Number of suspected rows, the consequence for the fit, and the worst of them.
 fn suspects_words(file: &CalibrationFile) -> String {
     let robust = &file.robust;
     let all = file.accuracy.training.count + file.accuracy.held_out.as_ref().map_or(0, |set| set.count);
@@ -159,7 +159,7 @@ fn suspects_words(file: &CalibrationFile) -> String {
     format!("{count} of {all} {rows} {are} ({sets}){worst}")
 }
 
-/// A row by file and line, the file only where it is another one than before.
+/// A row by file and line, the file only if it differs from the one before.
 fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
     let place = if *last == outlier.file {
         outlier.row.to_string()
@@ -173,7 +173,7 @@ fn named<'a>(outlier: &'a OutlierEntry, last: &mut &'a str) -> String {
     }
 }
 
-/// What of the robot is undetermined or weakly determined; in few words where there are many joints to name.
+/// The robot's undetermined or weakly determined direction; in few words if there are many joints to name.
 fn direction_words(degree: &str, direction: &Direction) -> String {
     let is_short = direction.description.chars().count() <= SHORT && direction.joints.len() <= super::MOST;
     if is_short || direction.joints.is_empty() {

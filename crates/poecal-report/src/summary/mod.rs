@@ -1,4 +1,4 @@
-//! The table of a calibration in 80 columns: the verdict, what to look at, the errors, the unknowns. All else on demand.
+//! The table of a calibration in 80 columns: the verdict, points of attention, the errors, the unknowns. All else on demand.
 
 mod brief;
 mod details;
@@ -22,16 +22,16 @@ use poecal_results::calibration_file::{
     CalibrationFile, ClockEntry, CorrectedEntry, IdentifiabilityEntry, UncertaintyEntry,
 };
 
-/// Angle of gravity from -z of the base below which it is not told, radians.
+/// Angle of gravity from -z of the base below which it is not reported, radians.
 const UPRIGHT: f64 = 1e-4;
 
-/// How much a table tells.
+/// Level of detail of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// The answer in eleven lines: more only where limits are accepted.
+    /// The answer in eleven lines: more only if limits are accepted.
     #[default]
     Short,
-    /// Everything, and lists as long as they are.
+    /// Everything, with lists of full length.
     Full,
 }
 
@@ -69,13 +69,13 @@ pub fn summary(file: &CalibrationFile, detail: Detail) -> String {
     out
 }
 
-/// The short table with what belongs to it, where so many lines were said before.
+/// The short table with its next step, after `said` printed lines.
 #[must_use]
 pub fn short(file: &CalibrationFile, said: usize) -> Short {
     brief::brief(file, said)
 }
 
-/// The verdict, the errors, where they hold, limits.
+/// The verdict, the errors, their domain, limits.
 fn top(out: &mut String, file: &CalibrationFile) {
     verdict(out, file);
     errors::figures(out, file);
@@ -90,21 +90,21 @@ fn rest(out: &mut String, file: &CalibrationFile) {
     file.clocks.iter().for_each(|clock| line(out, "clock", &clock_words(clock)));
 }
 
-/// What to expect of the model that is delivered.
+/// Expected error of the delivered model.
 pub(crate) struct Expectation {
-    /// Millimetres (RMS), in configurations like those that were measured.
+    /// Error in configurations like those that were measured, millimetres (RMS).
     pub(crate) error_mm: f64,
     /// The distance that 95 % of the errors do not exceed.
     pub(crate) bound_mm: f64,
-    /// The same error anywhere inside the sampled range.
+    /// Error anywhere inside the sampled range.
     pub(crate) inside_mm: Option<f64>,
     /// Distance of the nominal model's predictions from the delivered one's there.
     pub(crate) nominal_mm: Option<f64>,
-    /// The same error anywhere within the limits, with its key, where the verdict is good.
+    /// Error anywhere within the limits, with its key, if the verdict is good.
     pub(crate) anywhere: Option<(f64, String)>,
 }
 
-/// What the verdict lets expect; nothing where no use is advised or nothing is known.
+/// Expected error according to the verdict; `None` if no use is advised or no error is known.
 pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
     let verdict = file.verdict.as_ref().filter(|it| it.level != Level::DoNotUse)?;
     let (own, key) = uncertainty(file)?;
@@ -118,12 +118,12 @@ pub(crate) fn expected(file: &CalibrationFile) -> Option<Expectation> {
     })
 }
 
-/// The model that is delivered.
+/// The delivered model.
 pub(crate) fn delivered(file: &CalibrationFile) -> &'static str {
     if has_terms(file) { "corrected" } else { "calibrated" }
 }
 
-/// Uncertainty of the model that is delivered, and its key.
+/// Uncertainty of the delivered model, and its key.
 pub(crate) fn uncertainty(file: &CalibrationFile) -> Option<(&UncertaintyEntry, &'static str)> {
     let corrected = file.corrected.as_deref().filter(|it| it.has_terms());
     match corrected.and_then(|it| it.uncertainty.as_ref()) {
@@ -150,7 +150,7 @@ fn verdict(out: &mut String, file: &CalibrationFile) {
     lines(out, "repaired", file.repairs.iter().map(repaired_words));
 }
 
-/// What a repair is, and what it gains.
+/// A repair and its gain.
 pub(crate) fn repaired_words(found: &Event) -> String {
     let gain = found.error_before_mm.zip(found.error_after_mm);
     let gain = gain.map(|(before, after)| {
@@ -175,7 +175,7 @@ fn clock_words(clock: &ClockEntry) -> String {
     )
 }
 
-/// How many unknowns are determined, and how many of them weakly.
+/// Number of determined unknowns, and of weakly determined ones.
 pub(crate) fn determined_words(found: &IdentifiabilityEntry) -> String {
     let weak = match found.weakly() {
         0 => String::new(),
@@ -184,7 +184,7 @@ pub(crate) fn determined_words(found: &IdentifiabilityEntry) -> String {
     format!("{} of {}{weak}", found.rank, unknowns_words(found.parameters))
 }
 
-/// Which unknowns the rows determine, and which they do not.
+/// Unknowns that the rows determine, and those that they do not.
 fn known(out: &mut String, file: &CalibrationFile) {
     let found = &file.identifiability;
     let fitted = file.accuracy.training.count;
@@ -232,7 +232,7 @@ fn known(out: &mut String, file: &CalibrationFile) {
     }
 }
 
-/// Where each target is on the link of the tip, the first few of many.
+/// Position of each target on the link of the tip, the first few of many.
 fn targets(file: &CalibrationFile) -> Vec<String> {
     let link = if file.robot.tip_link.is_empty() { "the tip" } else { &file.robot.tip_link };
     let on_tip = file.targets.iter().filter(|(_, target)| target.on.is_none());
@@ -249,7 +249,7 @@ fn targets(file: &CalibrationFile) -> Vec<String> {
     told
 }
 
-/// Which groups of terms the corrected model has, and what speaks for them.
+/// Groups of terms of the corrected model, and the evidence for them.
 fn corrected_words(found: &CorrectedEntry) -> String {
     let used = TermGroup::ALL.into_iter().filter_map(|group| {
         let size = *found.sizes.get(group.name())?;
@@ -269,7 +269,7 @@ fn corrected_words(found: &CorrectedEntry) -> String {
     }
 }
 
-/// The terms of joint values with their coefficients, as they are read.
+/// The terms of joint values with their coefficients, as text.
 pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, String)> {
     file.joints.iter().flat_map(|joint| {
         joint.terms.iter().map(|(term, &coefficient)| {
@@ -277,7 +277,7 @@ pub(crate) fn terms(file: &CalibrationFile) -> impl Iterator<Item = (String, Str
             let sign = if coefficient < 0.0 { "-" } else { "" };
             let name = format!("{}.{term}", joint.name);
             let value = format!("{sign}{}", number(unit.shown(coefficient.abs())));
-            // The prior alone tells as much as half its own width.
+            // The prior alone determines as much as half its own width.
             let (spread, open) = match file.sigma(&name) {
                 Some(sigma) if sigma > 0.5 * joint.kind.deviation_of(*term) => {
                     (String::new(), " (not determined)")

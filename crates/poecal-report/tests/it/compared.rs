@@ -1,4 +1,4 @@
-//! Corrections in parts, and two calibrations compared: the same robot is told as such, a joint that moved is named.
+//! Corrections in parts, and two calibrations compared: the same robot is recognised, a joint that moved is named.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use poecal_calibrate::{CalibrationOptions, calibrate};
@@ -47,7 +47,7 @@ fn joint3_moved(robot: &Robot, deg: f64) -> Robot {
 }
 
 /// Distance (RMS, m) between the tips of two robots in random configurations, with base and tool fitted to first order: by linear least squares,
-/// apart from the library's own.
+/// independent of the library's own.
 fn apart(a: &Robot, b: &Robot) -> f64 {
     let mut generator = ChaCha8Rng::seed_from_u64(77);
     let (mut rows, mut differences) = (Vec::new(), Vec::new());
@@ -139,7 +139,7 @@ fn a_joint_that_moved_is_named() {
     // Noise of both sessions adds to the distance; rotations count in the fit of the tool.
     assert!(off < 0.3, "{off}");
     assert_eq!(named, count);
-    // Others by the 1 % of the test at most.
+    // Other joints by the 1 % of the test at most.
     assert!(alone as f64 >= (0.9 - trials.more_of_a_share(0.1)) * count as f64, "{alone} of {count}");
     // Five standard deviations of an offset in these sessions.
     assert!(worst < 0.05, "{worst}");
@@ -179,7 +179,7 @@ fn corrections_say_which_offset_was_put_in() {
         assert!(change.words.contains("offset"), "{}", change.words);
     }
     println!("offsets are off by {worst:.2} of their standard deviations at most");
-    // Of four numbers: beyond 4 with a probability of 3e-4, in a session that is always the same.
+    // The largest of four numbers: beyond 4 with a probability of 3e-4, in a session that is always the same.
     assert!(worst < 4.0, "{worst}");
     let undetermined: Vec<&str> = file
         .corrections
@@ -242,7 +242,7 @@ fn standard_deviations_of_the_parts_are_those_of_sessions() {
     let mean = squares.iter().sum::<f64>() / squares.len() as f64;
     println!("variances over stated ones: {least:.2} to {most:.2}, mean {mean:.2}");
     assert!(squares.len() >= 16);
-    // The tolerance keeps estimates nearer to nominal than the stated spread, which covers what it hides; and 60 sessions scatter by 18 %.
+    // The tolerance keeps estimates nearer to nominal than the stated spread, which includes the part that it hides; and 60 sessions scatter by 18 %.
     assert!(most < 1.8 + trials.more(std::f64::consts::SQRT_2), "{most}");
     assert!(mean > 0.2, "{mean}");
 }

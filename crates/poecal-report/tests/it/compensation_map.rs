@@ -1,5 +1,5 @@
-//! What compensation mends, over the workspace: the figures of `calibration.json` against the two robots of the file, compared by their own
-//! forward kinematics in the same configurations.
+//! Effect of compensation over the workspace: the figures of `calibration.json` against the two robots of the file, compared by their own forward
+//! kinematics in the same configurations.
 
 use std::time::Instant;
 
@@ -13,7 +13,7 @@ use poecal_results::residuals::Residuals;
 
 const PRIMES: [f64; 7] = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0];
 
-/// Configurations that the file says it compared: fractional parts of multiples of the roots of primes, over the sampled ranges.
+/// Configurations that the file claims to have compared: fractional parts of multiples of the roots of primes, over the sampled ranges.
 fn configurations(file: &CalibrationFile, count: usize) -> Vec<Vec<f64>> {
     let value = |index: usize, joint: usize| {
         let range = &file.coverage[joint];
@@ -23,7 +23,7 @@ fn configurations(file: &CalibrationFile, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|index| (0..file.coverage.len()).map(|joint| value(index, joint)).collect()).collect()
 }
 
-/// The tool that takes the nominal tips to the actual ones: of the relative poses, the one about which their logarithms sum to nothing.
+/// The tool that takes the nominal tips to the actual ones: of the relative poses, the one about which their logarithms sum to zero.
 fn taught(relative: &[Pose]) -> Pose {
     let mut tool = relative[0];
     for _ in 0..20 {
@@ -64,7 +64,7 @@ fn displacements_are_those_of_the_two_robots() {
         let nominal: Vec<Pose> = sample.iter().map(|q| nominal.forward_kinematics(q)).collect();
         let actual: Vec<Pose> = sample.iter().map(|q| actual.forward_kinematics(q)).collect();
         let relative: Vec<Pose> = nominal.iter().zip(&actual).map(|(n, a)| n.inverse() * *a).collect();
-        // The file says that it is fitted over every third.
+        // The file states that it is fitted over every third.
         let fitted: Vec<Pose> = relative.iter().step_by(3).copied().collect();
         let tool = taught(&fitted);
         let meant: Vec<Pose> = nominal.iter().map(|it| *it * tool).collect();
@@ -126,7 +126,7 @@ fn corrections_are_told_where_an_arm_can_be_corrected() {
         let (median, largest) = (joint.change.median, joint.change.max);
         assert!(0.0 < median && median < largest && largest < 0.6_f64.to_degrees() && joint.unit == "deg");
     }
-    // An arm of fewer joints cannot mend every displacement, and nothing is said of corrections.
+    // An arm of fewer joints cannot correct every displacement, and no corrections are stated.
     let (file, _) = file_of(&scara(), Kind::POSE, &options);
     assert!(file.compensation.unwrap().joints.is_empty());
     let (file, _) = file_of(&gantry(), Kind::POSE, &options);

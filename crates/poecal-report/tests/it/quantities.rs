@@ -15,7 +15,7 @@ const FILE: &str = include_str!("../../../poecal-testing/data/calibration.json")
 /// The rows of it.
 const ROWS: &str = include_str!("../../../poecal-testing/data/calibration_rows.csv");
 
-/// The file without what it says of positions, as if orientations alone had been measured; expected errors of predictions stay.
+/// The file without its statements about positions, as if orientations alone had been measured; expected errors of predictions stay.
 fn without_positions(value: &Value) -> Value {
     let position = ["position_mm", "sigma_position_mm"];
     match value {
@@ -90,7 +90,7 @@ fn rows_without_a_position_are_read_and_reported_by_what_they_have() {
     let leading: Vec<_> = residuals.rows().iter().map(|row| row.errors.leading().unwrap().0).collect();
     assert_eq!(leading.iter().filter(|it| **it == Quantity::Position).count(), points);
 
-    // A row of nothing is none.
+    // A row without a quantity is no row.
     let mut nothing = rows.clone();
     nothing[1][first..first + 12].iter_mut().for_each(String::clear);
     let error = Residuals::parse(&text(&nothing), "residuals.csv").unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The charts of the rows: a dot for each row where its value is, few for long sessions, and nothing of a joint that moves no target.
+//! The charts of the rows: a dot for each row at its value, few for long sessions, and none for a joint that moves no target.
 
 use crate::report_page::{Session, data_of, numbers_of};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
@@ -15,7 +15,7 @@ fn attribute<'a>(markup: &'a str, name: &str) -> &'a str {
     markup.split_once(&format!(" {name}=\"")).unwrap().1.split_once('"').unwrap().0
 }
 
-/// The dots of a class as the page's script reads them, none of rows without one.
+/// The dots of a class as the page's script reads them, `None` for rows without one.
 fn dots(chart: &str, class: &str) -> Vec<Option<[f64; 2]>> {
     let Some((_, rest)) = chart.split_once(&format!("<path class=\"dots {class}\"")) else {
         return Vec::new();
@@ -33,7 +33,7 @@ fn dots(chart: &str, class: &str) -> Vec<Option<[f64; 2]>> {
     attribute(rest, "d").split('m').skip(1).map(dot).collect()
 }
 
-/// Where a value lies along an axis, by the labels of its first and its last tick; `share` is the attribute with their places.
+/// Position of a value along an axis, by the labels of its first and its last tick; `share` is the attribute with their positions.
 fn along(chart: &str, axis: &str, share: &str, value: f64) -> f64 {
     let group = chart.split_once(&format!("<g class=\"{axis}\"")).unwrap().1.split_once("</g>").unwrap().0;
     let ticks: Vec<(f64, f64)> = group
@@ -119,7 +119,7 @@ fn long_sessions_have_few_dots_and_every_chart() {
     }
 }
 
-/// Of a robot with two arms: a joint of one arm moves no target of the other, and what it shares moves both alike, with the cameras on it.
+/// On a robot with two arms, a joint of one arm moves no target of the other; a shared joint moves both alike, together with the cameras on it.
 #[test]
 fn a_joint_of_the_other_arm_has_no_residual_along_its_motion() {
     let pairs = |pairs: [(&str, &str); 2]| pairs.map(|(name, link)| (name.to_owned(), link.to_owned()));
@@ -134,7 +134,7 @@ fn a_joint_of_the_other_arm_has_no_residual_along_its_motion() {
     let data = data_of(&page);
     let targets = data["rows"]["target"].as_array().unwrap();
     let joints = chart(&page, "joints");
-    // How many rows of each target have a dot over a joint, and how many rows there are of it that are believed.
+    // Number of rows of each target with a dot over a joint, and number of its rows that are not suspected.
     let counted = |joint: &str| {
         let cell = joints
             .split("class=\"cell\"")

@@ -46,7 +46,7 @@ impl Session {
     }
 }
 
-/// Rows of several configurations that were come back to.
+/// Rows with several configurations that were repeated.
 fn repeated() -> Dataset {
     let mut made = Simulation { count: 50, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap();
     for row in (0..5).cycle().take(20) {
@@ -70,7 +70,7 @@ fn figures(page: &str) -> Vec<(String, f64, String)> {
     found.collect()
 }
 
-/// What the page's script works on.
+/// Input of the page's script.
 pub(crate) fn data_of(page: &str) -> Value {
     let data = page.split_once("id=\"report-data\">").unwrap().1.split_once("</script>").unwrap().0;
     serde_json::from_str(data).unwrap()
@@ -94,7 +94,7 @@ fn value_of<'a>(file: &'a Value, key: &str) -> &'a Value {
     })
 }
 
-/// Whether a text is this value to the digits that it shows.
+/// True if a text shows this value to its digits.
 fn shows(text: &str, value: f64) -> bool {
     let Ok(shown) = text.replace('−', "-").parse::<f64>() else { return false };
     let mantissa = text.split('e').next().unwrap();
@@ -147,7 +147,7 @@ fn every_figure_is_that_of_the_calibration_file() {
     assert!(session.page().contains("since none was held out"));
 }
 
-/// Charts and tables are of one model: the one that is delivered.
+/// Charts and tables are of one model: the delivered one.
 #[test]
 fn the_page_shows_the_delivered_model() {
     let data = Simulation { count: 60, ..Simulation::default() }.run(&elbow(), Kind::POINT).unwrap().data;
@@ -214,7 +214,7 @@ fn robots_with_branches_are_drawn_with_their_instruments() {
         }
     }
     assert_eq!(data["rows"]["instrument"].as_array().unwrap().len(), 200);
-    // Of a single instrument beside a robot without branches nothing is drawn.
+    // A single instrument beside a robot without branches is not drawn.
     let data = data_of(&Session::new(&elbow(), Kind::POSE, 60).page());
     assert_eq!((&data["draws_instruments"], &data["rows"]["instrument"]), (&false.into(), &Value::Null));
 }
@@ -229,8 +229,7 @@ fn repeated_configurations_are_stated_with_accuracy_and_repeatability() {
     assert!(session.page().contains("ISO 9283"));
 }
 
-/// The same page from the files that were written.
-/// Three targets in each of 60 configurations. In two of them joint 2 stood elsewhere than it says; in a third one target alone is off.
+/// Three targets in each of 60 configurations. In two of them joint 2 was not at its stated value; in a third one target alone deviates.
 #[test]
 fn configurations_whose_targets_are_all_off_alike_are_named() {
     let robot = elbow();
@@ -344,7 +343,7 @@ fn residuals_of_another_calibration_are_refused() {
 fn residuals_that_were_changed_are_told_with_their_place() {
     let session = Session::new(&elbow(), Kind::POINT, 60);
     let text = session.residuals().text();
-    // A message, and what stands at its place: columns count characters.
+    // A message, and the character at its position: columns count characters.
     let refused = |text: &str| {
         let error = Residuals::parse(text, "residuals.csv").unwrap_err();
         let place = error.place().unwrap();

@@ -1,11 +1,11 @@
-//! What the report draws of anchors, sockets, planes, spheres, directions and pairs, and of a robot with two arms.
+//! Report drawings of anchors, sockets, planes, spheres, directions and pairs, and of a robot with two arms.
 
 use crate::report_page::{Session, check_figures, data_of};
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_model::simulate::{Kind, elbow};
 use serde_json::Value;
 
-/// Each kind, what its places are, how many, and words of the page.
+/// Each kind, the kind of its references, their number, and words of the page.
 const KINDS: [(Kind, &str, usize, &str); 9] = [
     (Kind::DISTANCE, "anchor", 3, "along the line to the anchor"),
     (Kind::CHANGE, "anchor", 3, "150 distances"),
@@ -22,7 +22,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect()
 }
 
-/// Of each kind: places with what they are and where they were found, and figures that are those of the file.
+/// References of each kind with their kinds and estimated poses, and figures that are those of the file.
 #[test]
 fn every_kind_is_drawn_as_what_it_is() {
     for (kind, word, count, words) in KINDS {
@@ -42,7 +42,7 @@ fn every_kind_is_drawn_as_what_it_is() {
             // Read back and normalised again: rounding.
             assert!(turn.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-15), "{turn:?} {known:?}");
         }
-        // A device frame is not spoken of where there is none.
+        // The page mentions a device frame only if there is one.
         assert!(!page.contains("in the axes of the measuring device"), "{}", kind.word());
         assert!(!page.contains("contact_x") && !page.contains("tilt_x"), "{}", kind.word());
     }
@@ -55,7 +55,7 @@ fn spheres_have_their_radius() {
     let radius = session.file.stations[0].radius_mm.unwrap();
     let drawn = data_of(&session.page())["instruments"][0]["radius_m"].as_f64().unwrap();
     println!("radius of a sphere of 50 mm: {radius:.4} mm");
-    // Its size goes with that of the robot, which the model's 2 mm of a metre or so tells: 1 mm of 50.
+    // Its size scales with that of the robot, which the model's 2 mm of about a metre determines: 1 mm of 50.
     assert!((radius - 50.0).abs() < 1.0 && (drawn - 1e-3 * radius).abs() < 1e-15);
 }
 

@@ -1,4 +1,4 @@
-//! Configurations whose targets are all off alike.
+//! Configurations in which all targets deviate by similar distances.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 use poecal_calibrate::Calibration;
 use poecal_model::measurement::{Dataset, Quantity};
 
-/// Largest over smallest residual of targets that count as off alike.
+/// Largest ratio of two targets' residuals that count as similar.
 const ALIKE: f64 = 3.0;
-/// Fewest targets that tell an arm from a target.
+/// Fewest targets that distinguish an error of the arm from one of a target.
 const TARGETS: usize = 2;
 /// Most configurations in a file.
 const LISTED: usize = 100;
 
-/// A configuration in which every measured position is suspected, of two targets or more, and off by like distances: there the arm or its
+/// A configuration in which every measured position is suspected, of two targets or more, with residuals of similar length. There the arm or its
 /// readings are wrong, not a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SuspectedConfigurationEntry {
@@ -33,13 +33,13 @@ pub struct SuspectedConfigurationEntry {
     pub largest_mm: f64,
 }
 
-/// Readings as they are compared: rows of one configuration have the same.
+/// Readings as a key of comparison: rows of one configuration have equal keys.
 fn key(data: &Dataset, row: u32) -> Vec<u64> {
     data.readings(row as usize).iter().map(|it| it.to_bits()).collect()
 }
 
 impl SuspectedConfigurationEntry {
-    /// Of a calibration, the worst first, at most 100; the others are suspected row by row.
+    /// Entries of a calibration, the worst first, at most 100; the others are suspected row by row.
     pub(crate) fn all_from_calibration(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let suspects: Vec<u32> = calibration.robustness.suspects().collect();
         if data.targets.len() < TARGETS || suspects.len() < TARGETS {

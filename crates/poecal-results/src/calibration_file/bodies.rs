@@ -1,4 +1,4 @@
-//! The robot of a calibration file: its joints, and on which bodies joints, targets and instruments stand.
+//! The robot of a calibration file: its joints, and the bodies that carry joints, targets and instruments.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub enum BodyEntry {
     LinkOf(String),
 }
 
-/// The name of a term, as a key.
+/// Serialisation of a term's name as a key.
 pub(crate) struct TermName;
 
 impl JsonSchema for TermName {
@@ -43,7 +43,7 @@ impl JsonSchema for TermName {
 /// An instrument on the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InstrumentEntry {
-    /// Body on which it stands. Its pose is in the frame of the joint that moves the body, or in the base.
+    /// Body that carries it. Its pose is in the frame of the joint that moves the body, or in the base.
     pub on: BodyEntry,
     /// Position, metres.
     pub position_m: [f64; 3],
@@ -51,7 +51,7 @@ pub struct InstrumentEntry {
     pub quaternion_xyzw: [f64; 4],
 }
 
-/// What was measured of a target.
+/// Measured quantities of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasuredEntry {
@@ -64,7 +64,7 @@ pub enum MeasuredEntry {
 }
 
 impl TargetEntry {
-    /// What was measured of it.
+    /// The quantities that were measured of it.
     #[must_use]
     pub fn measured(&self) -> MeasuredEntry {
         let by_quaternion =
@@ -94,7 +94,7 @@ impl CalibrationFile {
         if robot.mounted.is_empty() && robot.instruments.is_empty() {
             return Ok(robot);
         }
-        // Targets and instruments stand in the frames of nominal joints: those of the file are of the calibrated ones.
+        // Targets and instruments are in the frames of nominal joints here; those of the file are in the frames of the calibrated ones.
         let calibrated = self.robot()?;
         let screws: Vec<_> = robot.joints.iter().map(|joint| joint.screw).collect();
         let joints = calibrated.with_screws(&screws).joints;
@@ -168,7 +168,7 @@ pub struct MassEntry {
     pub on: BodyEntry,
     /// Its centre at zero joint values, base frame, metres.
     pub place_m: [f64; 3],
-    /// How heavy it is, kg.
+    /// Mass, kg.
     pub mass_kg: f64,
 }
 
@@ -192,12 +192,12 @@ impl MassEntry {
 }
 
 impl CalibrationFile {
-    /// Whether a joint has this name.
+    /// True if a joint has this name.
     pub fn has_joint(&self, name: &str) -> bool {
         self.joints.iter().any(|joint| joint.name == name)
     }
 
-    /// Refuses terms of weights that the robot does not carry, and gives that do not stand on their joint.
+    /// Refuses terms of weights that the robot does not carry, and compliant joints that do not stand on their joint.
     fn check_terms(&self, robot: &Robot) -> Result<()> {
         for JointTerm { joint, term, .. } in &robot.terms {
             if let Some(needed) = robot.lacks(*term) {
@@ -220,7 +220,7 @@ impl CalibrationFile {
         Ok(())
     }
 
-    /// Index of the joint of which another is a give.
+    /// Index of the joint whose compliance another joint is.
     fn joint_that_gives(&self, name: &str, give: usize) -> Result<usize> {
         let found = self.joints.iter().position(|entry| entry.name == name);
         let own = &self.joints[give].name;

@@ -1,4 +1,4 @@
-//! How joints differ from another model's, in `calibration.json`.
+//! Differences of joints from another model's, in `calibration.json`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,15 +8,15 @@ use poecal_fit::uncertainty::Correlations;
 use poecal_model::offsets::JointChange;
 use poecal_model::robot::JointKind;
 
-/// How a joint differs from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not
-/// explain. Directions are those of the base frame with all joints at zero.
+/// Difference of a joint from the nominal one, in parts: a joint offset, and the tilt and shift of the axis that offsets and base do not explain.
+/// Directions are those of the base frame with all joints at zero.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointChangeEntry {
     /// In words, with standard deviations.
     pub words: String,
-    /// What is to be added to the value of a joint that turns, degrees; null where base or tool can take its place.
+    /// Addition to the value of a joint that turns, degrees; null where base or tool can take its place.
     pub offset_deg: Option<f64>,
-    /// The same of a joint that slides, millimetres.
+    /// Addition to the value of a joint that slides, millimetres.
     pub offset_mm: Option<f64>,
     /// Standard deviation of the offset in its unit; null where it is not determined.
     pub sigma_offset: Option<f64>,
@@ -52,10 +52,10 @@ impl From<&JointChange> for JointChangeEntry {
     }
 }
 
-/// A direction in which corrections of several joints are known only together.
+/// A direction in which the measurements determine corrections of several joints only together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CommonDirectionEntry {
-    /// In words: one standard deviation of it, and what it does to predictions.
+    /// In words: one standard deviation of it, and its effect on predictions.
     pub words: String,
     /// The joints.
     pub joints: Vec<String>,
@@ -66,7 +66,7 @@ pub struct CommonDirectionEntry {
 }
 
 impl CommonDirectionEntry {
-    /// Those of a calibration.
+    /// Entries of a calibration.
     pub(crate) fn all_from_calibration(calibration: &Calibration) -> Vec<Self> {
         let name = |joint: &usize| calibration.robot.joints.get(*joint).map(|joint| joint.name.clone());
         let entry = |found: &CommonDirection| CommonDirectionEntry {
@@ -95,14 +95,14 @@ pub struct CorrelationsEntry {
     pub blocks: Vec<String>,
     /// For each block and each up to it the largest size of a correlation between unknowns of the two, 0 to 1.
     pub largest: Vec<Vec<f64>>,
-    /// Number of pairs with a correlation of 0.95 and more, either way.
+    /// Number of pairs with a correlation of 0.95 or more, of either sign.
     pub strong: usize,
     /// The strongest of these, at most 20.
     pub pairs: Vec<CorrelatedEntry>,
 }
 
 impl CorrelationsEntry {
-    /// Of a covariance (row-major) of named unknowns, whose blocks are their names up to the last dot.
+    /// Entry of a covariance (row-major) of named unknowns, whose blocks are their names up to the last dot.
     pub(crate) fn from_covariance(covariance: &[f64], unknowns: &[String]) -> Self {
         let mut blocks: Vec<String> = Vec::new();
         let block = |name: &String| {

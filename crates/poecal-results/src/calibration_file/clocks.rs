@@ -9,7 +9,7 @@ use poecal_fit::state::ClockTerm;
 use poecal_fit::uncertainty::Uncertainty;
 use poecal_model::measurement::Dataset;
 
-/// The clock of an instrument whose rows were measured in motion, beside that of the joint readings: a measurement at its time t belongs to the
+/// The clock of an instrument whose rows were measured in motion, relative to that of the joint readings. A measurement at its time t belongs to the
 /// readings at `t - lag - drift (t - middle)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClockEntry {
@@ -23,7 +23,7 @@ pub struct ClockEntry {
     pub sigma_lag_ms: Option<f64>,
     /// Growth of the lag, parts per million.
     pub drift_ppm: f64,
-    /// Its standard deviation; absent likewise.
+    /// Its standard deviation; absent as for the lag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_drift_ppm: Option<f64>,
     /// The middle of the recording by the clock of the instrument, seconds.
@@ -31,7 +31,7 @@ pub struct ClockEntry {
 }
 
 impl ClockEntry {
-    /// Of a calibration; none if nothing was measured in motion.
+    /// Entries of a calibration; empty if nothing was measured in motion.
     pub(crate) fn all_from_calibration(calibration: &Calibration, data: &Dataset) -> Vec<Self> {
         let found = calibration.trust.uncertainty.as_ref();
         let entry = |clock: &poecal_model::measurement::Clock| {

@@ -1,4 +1,4 @@
-//! What compensation mends, over the workspace, in `calibration.json`.
+//! Effect of compensation over the workspace, in `calibration.json`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,28 +7,27 @@ use poecal_calibrate::{Calibration, Displacements, Spread, Workspace, workspace}
 use poecal_model::robot::JointKind;
 use poecal_numerics::unit::Unit;
 
-/// How far the actual robot's tip is from where the nominal one has it, over the sampled workspace; and the corrections of the joints that mend
-/// it. Tool and base of the nominal robot are fitted to the actual one (the base only if the device's frame was unknown), over every third
-/// configuration, as if both had been taught on it: what is displaced is displaced by the joints. The actual robot is the corrected model,
-/// if there is one.
+/// Distance of the actual robot's tip from the nominal one over the sampled workspace, and the joint corrections that remove it. Tool and base of the
+/// nominal robot are fitted to the actual one over every third configuration, as if both had been taught on it. The base is fitted only if the
+/// device's frame was unknown. The remaining displacement is that of the joints. The actual robot is the corrected model, if there is one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompensationEntry {
     /// Displacements in all configurations of the sample, which is spread evenly over the sampled range of each joint.
     #[serde(flatten)]
     pub all: DisplacementEntry,
-    /// Configurations whose tip is displaced by no more than is expected of the calibration itself: there is nothing to mend.
+    /// Number of configurations whose tip is displaced by no more than the expected error of the calibration: they need no correction.
     pub within_expected_error: usize,
-    /// Configurations whose corrected readings are beyond a joint's limits.
+    /// Number of configurations whose corrected readings are beyond a joint's limits.
     pub beyond_limits: usize,
-    /// Configurations from which no small correction leads to the pose, since a singularity is near: another branch is, or none.
+    /// Number of configurations from which no small correction leads to the pose, near a singularity: only another branch reaches it, or none.
     pub not_correctable: usize,
-    /// Corrections of each reading that moves the tip; none of an arm with fewer than six, which cannot mend every displacement.
+    /// Corrections of each reading that moves the tip; empty for an arm with fewer than six, which cannot correct every displacement.
     pub joints: Vec<ReadingChangeEntry>,
     /// Joint whose axis the map is about; null if that is the base's z axis.
     pub about: Option<String>,
     /// Side of the map's cells, metres.
     pub cell_m: f64,
-    /// Parts of the workspace where the sample has configurations, by height and then by distance from the axis.
+    /// Parts of the workspace that contain configurations of the sample, by height and then by distance from the axis.
     pub cells: Vec<WorkspaceCellEntry>,
 }
 
@@ -55,20 +54,20 @@ pub struct SpreadEntry {
 /// A part of the workspace: a ring about the axis, as wide and as high as a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WorkspaceCellEntry {
-    /// Distance of the nominal tip from the axis, from, metres.
+    /// Distance of the nominal tip from the axis, lower end, metres.
     pub radius_m: f64,
-    /// Its height along the axis above the base's origin, from, metres.
+    /// Its height along the axis above the base's origin, lower end, metres.
     pub height_m: f64,
     /// The displacements.
     #[serde(flatten)]
     pub displaced: DisplacementEntry,
-    /// Expected error of predicted positions in these configurations (root mean square, millimetres): what a corrected program is expected to
-    /// miss by. Missing without an uncertainty, and in files of earlier versions.
+    /// Expected error of a corrected program in these configurations: of predicted positions, root mean square, millimetres. Missing without an
+    /// uncertainty, and in files of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_position_mm: Option<f64>,
 }
 
-/// By how much a reading is corrected.
+/// Correction of a reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingChangeEntry {
     /// The reading.
@@ -108,7 +107,7 @@ impl ReadingChangeEntry {
 }
 
 impl CompensationEntry {
-    /// Of a calibration; none of one that is not to be used, and of a robot whose tip not every joint moves.
+    /// Entry of a calibration; `None` if it is not to be used, or if some joint does not move the robot's tip.
     pub(crate) fn from_calibration(calibration: &Calibration) -> Option<Self> {
         let found: Workspace = workspace(calibration)?;
         let cells = found.cells.iter().map(|it| WorkspaceCellEntry {

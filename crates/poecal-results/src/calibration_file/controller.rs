@@ -1,25 +1,25 @@
-//! What the controller of a calibrated robot counts.
+//! Counts of the controller of a calibrated robot.
 
 use super::CalibrationFile;
 use poecal_calibrate::Level;
 use poecal_model::robot::{Controller, Robot, ThirdAxis, level};
 use poecal_numerics::error::Result;
 
-/// How far (rad) the second joint must have moved for the rows to show from where the third counts: taken wrongly, a tenth of a forearm is in
+/// Motion of the second joint (rad) from which on the rows determine the zero of the third axis' count. With a wrong zero, a tenth of a forearm is in
 /// the residuals.
 const SHOWS: f64 = 0.17;
 
-/// What the controller of a calibrated robot counts, as far as it is known.
+/// Counts of the controller of a calibrated robot, as far as they are known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counted {
-    /// How the model's readings are made of those that are counted; `None` where they are the same.
+    /// Mapping from the controller's counts to the model's readings; `None` if they are equal.
     pub controller: Option<Controller>,
-    /// Whether neither the mapping nor the rows show from where the third axis counts.
+    /// True if neither the mapping nor the rows determine from where the third axis counts.
     pub is_third_axis_open: bool,
 }
 
 impl CalibrationFile {
-    /// What the controller counts for the joints of `robot`, a robot of this file: what the mapping said, or what is stated now.
+    /// Counts of the controller for the joints of `robot`, a robot of this file: by its mapping, or by the one stated now.
     ///
     /// # Errors
     /// As [`Controller::with_third_axis`].

@@ -24,31 +24,31 @@ use poecal_numerics::error::{ErrorKind, Result};
 pub struct CorrectedEntry {
     /// Prior standard deviation of the terms of each group, radians, of shift and runout metres; 0 where cross-validation left a group out.
     pub sizes: BTreeMap<String, f64>,
-    /// Why these sizes.
+    /// Reason for these sizes.
     pub reason: SizesReason,
-    /// Sizes that cross-validation tried; none if they were given.
+    /// Sizes that cross-validation tried; empty if the sizes were stated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tried: Vec<TriedEntry>,
-    /// Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that terms leave; absent if sizes were
-    /// given.
+    /// Error of positions in cross-validation, millimetres (RMS): that of geometry alone times the share that remains with terms. Absent if the sizes
+    /// were stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out_position_mm: Option<f64>,
-    /// What each group of terms does at each joint, the one that moves the target most first.
+    /// Effect of each group of terms at each joint, the joint that moves the target most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<EffectEntry>,
-    /// Effects that the measurements do not tell apart, a sentence each.
+    /// Effects that the measurements cannot distinguish, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub indistinguishable: Vec<String>,
     /// Error of each joint over its sampled range, before and after.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint_errors: Vec<JointErrorsEntry>,
-    /// Standard deviation of each component of the noise, millimetres or degrees, as the fit of screws and terms shows it.
+    /// Standard deviation of each component of the noise, millimetres or degrees, as estimated by the fit of screws and terms.
     pub noise: Measured<f64>,
     /// Expected errors of predictions; null without more residuals than the measurements determine unknowns.
     pub uncertainty: Option<UncertaintyEntry>,
     /// The corrected robot's frames, and the weights that it carries.
     pub robot: RobotEntry,
-    /// The joints from base to tip: those of the robot, and behind each its gives.
+    /// The joints from base to tip: those of the robot, each followed by its compliant joints.
     pub joints: Vec<JointEntry>,
     /// Frame of the measuring device.
     pub measurement_frame: FrameEntry,
@@ -64,7 +64,7 @@ pub struct CorrectedEntry {
     pub instruments: BTreeMap<String, InstrumentEntry>,
 }
 
-/// What one group of terms does at one joint.
+/// Effect of one group of terms at one joint.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffectEntry {
     /// The joint.
@@ -77,11 +77,11 @@ pub struct EffectEntry {
     pub amplitude: f64,
     /// Its standard deviation.
     pub sigma: f64,
-    /// Share of its prior variance that the measurements took away, 0 to 1.
+    /// Share of its prior variance that the measurements removed, 0 to 1.
     pub determined_share: f64,
     /// Distance by which it moves the target in the fitted rows, but for the mean of all (root mean square), millimetres.
     pub effect_mm: f64,
-    /// Whether it is more than chance and the prior make.
+    /// True if it is larger than chance and the prior explain.
     pub found: bool,
 }
 
@@ -90,22 +90,22 @@ pub struct EffectEntry {
 pub struct JointErrorsEntry {
     /// The joint.
     pub joint: String,
-    /// Parts of its range with rows enough.
+    /// Parts of its range with enough rows.
     pub parts: Vec<JointErrorEntry>,
 }
 
 /// A part of a joint's range. Errors in milliradians, of a joint that slides in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointErrorEntry {
-    /// From, radians or metres.
+    /// Lower end, radians or metres.
     pub from: f64,
-    /// To.
+    /// Upper end.
     pub to: f64,
     /// Number of rows.
     pub rows: usize,
-    /// By the calibrated model.
+    /// Error of the calibrated model.
     pub calibrated: f64,
-    /// By the corrected model.
+    /// Error of the corrected model.
     pub corrected: f64,
     /// Mean deviation by the joint's own terms.
     pub terms: f64,
@@ -124,21 +124,21 @@ pub struct TriedEntry {
     pub score: f64,
 }
 
-/// Weights that a robot carries. How heavy they are is in the coefficients.
+/// Weights that a robot carries. Their masses are contained in the coefficients.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GravityEntry {
-    /// Where weights are pulled, base frame.
+    /// Direction of gravity, base frame.
     pub direction: [f64; 3],
     /// The weights; the term `sag1` is of the first.
     pub weights: Vec<WeightEntry>,
-    /// Origin of each joint of the nominal model at zero joint values, about which moments are counted, base frame.
+    /// Origin of each joint of the nominal model at zero joint values, the reference of its moments, base frame.
     pub joint_origins_m: Vec<[f64; 3]>,
-    /// Longest lever of each joint, by which moments about it are divided: the path from joint to joint to the farthest weight. It follows
-    /// from the other entries; 0 of a joint that carries nothing.
+    /// Longest lever arm of each joint, the divisor of moments about it: the path from joint to joint to the farthest weight. It follows from the
+    /// other entries; 0 for a joint that carries nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint_levers_m: Vec<f64>,
-    /// Of each joint, the masses that it carries times their longest levers, by which the moment of all masses is divided; of a joint that
-    /// slides the masses alone. It follows from the other entries; 0 of a joint that carries nothing.
+    /// Sum over the masses that a joint carries, each times its longest lever arm; for a joint that slides, the masses alone. It divides the moment
+    /// of all masses. It follows from the other entries; 0 for a joint that carries nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joint_mass_levers_kg_m: Vec<f64>,
 }
@@ -146,11 +146,11 @@ pub struct GravityEntry {
 /// A weight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WeightEntry {
-    /// What it is at: the name of a joint, or of the tip.
+    /// Name of the joint that carries it, or of the tip.
     pub at: String,
     /// Its body.
     pub on: BodyEntry,
-    /// Its place at zero joint values, base frame.
+    /// Its position at zero joint values, base frame.
     pub place_m: [f64; 3],
 }
 
@@ -159,13 +159,13 @@ fn of_sizes(sizes: &Sizes) -> BTreeMap<String, f64> {
 }
 
 impl CorrectedEntry {
-    /// Whether there are terms: cross-validation may have left out every group.
+    /// True if there are terms: cross-validation may have left out every group.
     #[must_use]
     pub fn has_terms(&self) -> bool {
         self.sizes.values().any(|size| *size > 0.0)
     }
 
-    /// Of a corrected model.
+    /// Entry of a corrected model.
     pub(crate) fn from_correction(found: &Correction, data: &Dataset) -> Self {
         let (robot, model) = (&found.robot, &found.model);
         let geometry = found.tried.iter().find(|it| it.sizes == Sizes::NONE).map_or(0.0, |it| it.left_out);
@@ -219,15 +219,15 @@ impl CorrectedEntry {
     }
 }
 
-/// A figure of a choice, without the digits that rounding determines: fits of a part of the rows are solved once, by their normal equations,
-/// whose condition number leaves some nine digits (1.5e-9 between vector instructions was seen); sizes differ by hundredths.
+/// A figure of a choice, rounded to six decimals. The fits of parts of the rows are solved once by their normal equations, whose condition number
+/// leaves about nine digits: vector instructions differed by 1.5e-9. Sizes differ by hundredths.
 fn with_six_decimals(figure: f64) -> f64 {
     (figure * 1e6).round() / 1e6
 }
 
 impl CalibrationFile {
-    /// The file as if its corrected model were the calibrated one; none if it has no corrected model, or one without terms, which is the
-    /// calibrated one.
+    /// The file as if its corrected model were the calibrated one. `None` without a corrected model, or if it has no terms and equals the calibrated
+    /// one.
     #[must_use]
     pub fn corrected(&self) -> Option<CalibrationFile> {
         let found = self.corrected.as_deref().filter(|it| it.has_terms())?.clone();

@@ -1,4 +1,4 @@
-//! Uncertainty of a fitted model, as `calibration.json` has it.
+//! Uncertainty of a fitted model, as stored in `calibration.json`.
 
 use nalgebra::Matrix3;
 
@@ -13,7 +13,7 @@ use poecal_fit::uncertainty::{Bootstrap, Discrepancy, Uncertainty};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_model::robot::Robot;
 
-/// A model with what it predicts of its own errors.
+/// A model with the prediction of its own errors.
 #[derive(Clone, Copy)]
 struct Predicting<'a> {
     uncertainty: &'a Uncertainty,
@@ -21,7 +21,7 @@ struct Predicting<'a> {
     held_out: Option<&'a CoverageCheck>,
     bootstrap: Option<&'a Bootstrap>,
     robot: &'a Robot,
-    /// The robot with its tip and its mounted targets, as it was found.
+    /// The robot with its tip and its mounted targets, as fitted.
     placed: &'a Robot,
     targets: &'a [CalibratedTarget],
     /// Errors of the fitted rows.
@@ -30,7 +30,7 @@ struct Predicting<'a> {
 }
 
 impl Predicting<'_> {
-    /// Places of points are along axes that the file does not have: of the fit, and not of the tip. Their unknowns, each with the turn.
+    /// Turns into the axes of the file, each with its unknowns. The fit has positions of points along axes of its own, which the file does not store.
     fn turns(&self) -> Vec<(Vec<usize>, Matrix3<f64>)> {
         let found = self.uncertainty;
         let turns = found.layout.parameters().filter_map(|(parameter, places)| {
@@ -46,9 +46,9 @@ impl Predicting<'_> {
     }
 }
 
-/// The unknowns of a fit that a file has.
+/// The unknowns of a fit that the file stores.
 struct Kept {
-    /// Their places in the layout.
+    /// Their indices in the layout.
     places: Vec<usize>,
     names: Vec<String>,
     /// Point of the device frame about which its unknowns turn.
@@ -56,7 +56,7 @@ struct Kept {
 }
 
 impl Kept {
-    /// Predictions are in the frame of the first station, so that those of others do not matter.
+    /// Selection of the unknowns. Predictions are in the frame of the first station, so that other stations do not matter.
     fn from_uncertainty(found: &Uncertainty, robot: &Robot, data: &Dataset) -> Self {
         let names = names(robot, data);
         let (mut kept, mut about) = (Vec::new(), None);
@@ -81,7 +81,7 @@ impl Kept {
 }
 
 impl UncertaintyEntry {
-    /// Of the calibrated model.
+    /// Uncertainty of the calibrated model.
     pub(crate) fn from_calibration(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let trust = &calibration.trust;
         Self::of_model(
@@ -100,7 +100,7 @@ impl UncertaintyEntry {
         )
     }
 
-    /// Of the corrected model.
+    /// Uncertainty of the corrected model.
     pub(crate) fn of_correction(correction: &Correction, data: &Dataset) -> Option<Self> {
         Self::of_model(
             &Predicting {

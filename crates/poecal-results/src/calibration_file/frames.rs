@@ -23,7 +23,7 @@ pub struct RobotEntry {
     pub tip_link: String,
     /// Pose of the tip in the base with all joint values zero.
     pub base_from_tip_at_zero: PoseEntry,
-    /// The same of the nominal model.
+    /// Pose of the tip in the base with all joint values zero, by the nominal model.
     pub nominal_base_from_tip_at_zero: PoseEntry,
     /// Body of the tip, if it is not the last joint's link.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,7 +34,7 @@ pub struct RobotEntry {
     /// Masses of the model's links; the term `masses` is of all of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub masses: Vec<MassEntry>,
-    /// What else is read in each configuration and terms depend on; the term `factor1` is of the first.
+    /// Other values that are read in each configuration and that terms depend on; the term `factor1` is of the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<FactorReading>,
 }
@@ -56,17 +56,17 @@ pub struct JointEntry {
     pub limits: Option<[f64; 2]>,
     /// The joint's value as a function of a reading.
     pub reading: Reading,
-    /// Body on which the joint stands, if that is not the link of the joint before.
+    /// Body that carries the joint, if that is not the link of the joint before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<BodyEntry>,
-    /// The joint whose compliance this is: it turns by its terms alone, whose functions are of that joint.
+    /// The joint whose compliance this joint is. It turns by its terms alone, whose functions are of that joint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compliance_of: Option<String>,
     /// Coefficients of terms of the joint's value, in radians, metres, or by value: the value is the reading's, plus these terms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(with = "BTreeMap<TermName, f64>")]
     pub terms: BTreeMap<Term, f64>,
-    /// The same of the nominal model.
+    /// Coefficients of the nominal model's terms.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     #[schemars(with = "BTreeMap<TermName, f64>")]
     pub nominal_terms: BTreeMap<Term, f64>,
@@ -84,7 +84,7 @@ pub struct ScrewEntry {
 /// Frame of the measuring device.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrameEntry {
-    /// Whether the frame was unknown or the base.
+    /// Knowledge of the frame: unknown, or equal to the base.
     pub known: DeviceFrameKnowledge,
     /// Pose of the device in the base.
     pub base_from_device: PoseEntry,
@@ -100,16 +100,17 @@ pub struct StationEntry {
     /// Standard deviation of each component of its measurements that state none, if it differs from that of the first instrument.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma: Option<Measured<f64>>,
-    /// What it is, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it), pair (of configurations: its pose means nothing).
+    /// Kind, if it is no instrument with a frame of its own: anchor, socket, plane (z is its normal), sphere, direction (z is along it), pair (of
+    /// configurations, without a meaningful pose).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
     /// Radius of a sphere, with that of the probe, known or found, millimetres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius_mm: Option<f64>,
-    /// Reading of its distances at its own place, millimetres, if it is not 0; of a sphere that is touched, minus its radius.
+    /// Reading of its distances at its own position, millimetres, if it is not 0; for a sphere that is touched, minus its radius.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_mm: Option<f64>,
-    /// Growth of its readings with the distance, less 1, if it is not 0.
+    /// Scale error of its distance readings (scale less 1), if it is not 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
 }
@@ -150,7 +151,7 @@ pub struct TargetEntry {
     /// Body of a target that is not in the tip frame: its pose is in the frame of the joint that moves the body, or in the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub on: Option<BodyEntry>,
-    /// What was measured of such a target; the rest of its pose is the model's.
+    /// The measured quantities of such a target; the rest of its pose is the model's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<MeasuredEntry>,
 }
@@ -173,7 +174,7 @@ impl RobotEntry {
 }
 
 impl StationEntry {
-    /// Stations of a calibration; empty for a single one without a name.
+    /// Entries of a calibration's stations; empty for a single one without a name.
     pub(crate) fn all_from_stations(stations: &[CalibratedStation], noise: Noise, errors: &ModelAccuracy) -> Vec<Self> {
         let is_plain = stations.len() == 1 && stations.iter().all(|it| it.name.is_none());
         let entry = |it: &CalibratedStation| StationEntry {

@@ -1,18 +1,18 @@
-//! Whether programs are to be corrected with a calibration.
+//! Decision whether programs are to be corrected with a calibration.
 
 use poecal_calibrate::{Gain, Level};
 
 use super::CalibrationFile;
 
 impl CalibrationFile {
-    /// Whether correction is a clear gain; not of files of earlier versions, which do not say.
+    /// True if correction is a clear gain; false for files of earlier versions, which do not state it.
     #[must_use]
     pub fn has_clear_gain(&self) -> bool {
         self.verdict.as_ref().is_some_and(|it| it.gain == Some(Gain::Clear)) && self.gain_doubt().is_none()
     }
 
-    /// That programs are not to be corrected with this calibration, and why; `None` where correction is a clear gain, and of files of earlier
-    /// versions, which do not say.
+    /// Sentence with the reason why programs are not to be corrected with this calibration. `None` if correction is a clear gain, or if the file is
+    /// of an earlier version, which does not state it.
     #[must_use]
     pub fn gain_doubt(&self) -> Option<String> {
         let why = self.no_gain()?;

@@ -20,7 +20,7 @@ impl CalibrationFile {
         Ok(hashes::sha256_of(&self.to_text()?))
     }
 
-    /// The position errors that the calibration left, of rows that were held out, else in cross-validation, else of those fitted.
+    /// Position errors that remained after the calibration: of held-out rows, else in cross-validation, else of the fitted rows.
     #[must_use]
     pub fn left_error(&self) -> Option<RobotError> {
         let set = self.accuracy.held_out.as_ref().unwrap_or(&self.accuracy.training);
@@ -67,7 +67,7 @@ impl CalibrationFile {
         self.own_error(model).0
     }
 
-    /// The same with which rows these are, in the words of files.
+    /// The same error with the name of its rows, in the words of files.
     #[must_use]
     pub fn own_error(&self, model: AcceptedModel) -> (f64, &'static str) {
         let (accuracy, robust) = (&self.accuracy, &self.robust);

@@ -1,4 +1,4 @@
-//! Uncertainty of predictions, from what `calibration.json` says.
+//! Uncertainty of predictions from the statements of `calibration.json`.
 
 use super::link::LinkPoints;
 use super::{CalibrationFile, PoseEntry, UncertaintyEntry};
@@ -15,7 +15,7 @@ use poecal_model::robot::{Body, JointKind, Robot, Term};
 use poecal_numerics::error::{Error, ErrorKind, Result};
 
 impl UncertaintyEntry {
-    /// Model error and noise. A quantity of which nothing is told has those of another of its unit.
+    /// Model error and noise. A quantity without a statement has those of another quantity of its unit.
     fn model_error(&self) -> Discrepancy {
         let teller = |quantity: Quantity| {
             let is_told = |other: &Quantity| self.discrepancy.get(*other).is_some();
@@ -53,8 +53,8 @@ impl CalibrationFile {
         self.uncertainty_from(targets, &self.robot()?, Body::Base)
     }
 
-    /// Whether a term of a joint, as `joint2.offset`, is not determined, since something else that is free has the same effect: what is written of it is
-    /// the value nearest to the model.
+    /// True if a term of a joint, as `joint2.offset`, is not determined, since another free unknown has the same effect. Its written value is then
+    /// the one nearest to the model.
     #[must_use]
     pub fn is_open(&self, term: &str) -> bool {
         let found = &self.identifiability;
@@ -99,7 +99,7 @@ impl CalibrationFile {
         Ok(unknowns)
     }
 
-    /// The same of predictions from a body of the robot.
+    /// Uncertainty of predictions from a body of the robot, and the index in it of each of some targets.
     pub(crate) fn uncertainty_from(
         &self,
         targets: &[Option<&str>],
@@ -205,7 +205,7 @@ impl UncertaintyEntry {
         Some(Freedom::from_motions((0..NAMES.len()).filter(|&motion| has(motion)))).filter(|it| it.count() > 0)
     }
 
-    /// The names by which unknowns are called.
+    /// Naming of the unknowns.
     fn names(&self, robot: &Robot, first_station: Option<&str>) -> Names {
         let target = |(name, _): &(String, bool)| Some(name.clone()).filter(|name| !name.is_empty());
         Names {
@@ -216,7 +216,7 @@ impl UncertaintyEntry {
     }
 }
 
-/// What is said of a file without uncertainty.
+/// Message for a file without uncertainty.
 const NONE: &str = "found a calibration without uncertainty, expected more measurements than unknowns to estimate it from: calibrate with \
                     more configurations, or hold out fewer";
 
@@ -227,12 +227,12 @@ fn bad(what: &str) -> Error {
     ))
 }
 
-/// The place of a row's diagonal in an upper triangle by rows.
+/// Index of a row's diagonal element in an upper triangle by rows.
 fn diagonal(row: usize, n: usize) -> usize {
     row * n - row * row.saturating_sub(1) / 2
 }
 
-/// Refuses what is no covariance of `n` unknowns, an upper triangle by rows.
+/// Refuses numbers that are no covariance of `n` unknowns, an upper triangle by rows.
 fn check(upper: &[f64], n: usize) -> Result<()> {
     if upper.len() != n * (n + 1) / 2 {
         return Err(bad("a covariance of another size than the unknowns make"));

@@ -1,4 +1,4 @@
-//! Uncertainty of points on a link that were not measured themselves, as a tip: they move with the axis of the joint that moves the link.
+//! Uncertainty of points on a link that were not measured themselves, such as a tip: they move with the axis of the joint that moves the link.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
@@ -8,7 +8,7 @@ use poecal_fit::parameters::{Parameter, TargetFrame};
 use poecal_fit::problem::Layout;
 use poecal_fit::state::Estimate;
 
-/// A covariance of `n` unknowns, row by row, of which three are along axes that are turned: `x' = R x`.
+/// Turns the axes of three of the `n` unknowns of a covariance, row by row: `x' = R x`.
 pub(crate) fn turn(covariance: &mut [f64], n: usize, places: &[usize], rotation: &Matrix3<f64>) {
     let &[x, y, z] = places else { return };
     let mut turn = |at: [usize; 3]| {
@@ -19,16 +19,16 @@ pub(crate) fn turn(covariance: &mut [f64], n: usize, places: &[usize], rotation:
     (0..n).for_each(|k| turn([x, y, z].map(|column| k * n + column)));
 }
 
-/// A layout that has the motions of some targets among its unknowns, and these as functions of the unknowns of another layout: theory.md §9,
-/// below (40).
+/// A layout with the motions of some targets among its unknowns, and these as functions of the unknowns of another layout: theory.md §9, below (40).
 pub(crate) struct LinkPoints {
     pub(crate) layout: Layout,
-    /// The unknowns of this layout by those of the other, in metres.
+    /// The unknowns of this layout as a linear function of those of the other, in metres.
     by_known: DMatrix<f64>,
 }
 
 impl LinkPoints {
-    /// Of targets that were not measured, each with the joint that moves its link. `None` without any, or where no axis of theirs is unknown.
+    /// Layout for targets that were not measured, each with the joint that moves its link. `None` without any, or if their axes are not among the
+    /// unknowns.
     pub(crate) fn new(estimate: &Estimate, known: &Layout, points: &[(usize, usize)]) -> Option<Self> {
         let axis_of = |joint: usize| {
             let is_own = |parameter: &Parameter| parameter.screw_axis().is_some_and(|it| it.joint == joint);

@@ -142,7 +142,7 @@ impl CalibrationFile {
         Self::parse_at(text, path.as_ref())
     }
 
-    /// Compiled once, and not for each kind of path.
+    /// The part of reading that does not depend on the kind of path, compiled once.
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         match serde_json::from_str::<Self>(text) {
             Ok(file) if file.schema == SCHEMA => Ok(file),
@@ -190,7 +190,7 @@ fn refuse<T>(message: String) -> Result<T> {
     ErrorKind::Model.refuse(message)
 }
 
-/// Cuts examples in Rust off a description.
+/// Removes examples in Rust from a description.
 fn without_example(schema: &mut Schema) {
     if let Some(Value::String(words)) = schema.get_mut("description")
         && let Some(end) = words.find("```")
@@ -229,7 +229,7 @@ impl SolverEntry {
 }
 
 impl BlocksEntry {
-    /// Of a fit of other blocks than the usual.
+    /// Entry of a fit with other blocks than the default ones.
     fn from_calibration(calibration: &Calibration, data: &Dataset) -> Option<Self> {
         let unknowns = &calibration.unknowns;
         if unknowns.are_usual() {
@@ -266,7 +266,7 @@ fn measured(errors: &ModelAccuracy, noise: Noise) -> Measured<f64> {
 }
 
 impl OffsetEntry {
-    /// Joint offsets of a formulation that has them.
+    /// Joint offsets of a formulation that contains them.
     fn all_from_calibration(calibration: &Calibration) -> Option<Vec<Self>> {
         let offsets = calibration.solver.joint_offsets.as_ref()?;
         let entry = |(joint, &offset): (&Joint, &f64)| OffsetEntry {
@@ -309,7 +309,7 @@ impl JointEntry {
             .collect()
     }
 
-    /// The joint with one of its screws; on which body it stands, and of which joint it is a give, is left open.
+    /// The joint with one of its screws. Its body, and the joint whose compliance it is, are left unset.
     fn joint(&self, screw: &ScrewEntry) -> Result<Joint> {
         let (kind, screw) = (self.kind, screw.screw(self)?);
         if let Some([lower, upper]) = self.limits

@@ -12,8 +12,8 @@ use poecal_formats::urdf::{ChainSelection, UrdfDocument};
 use poecal_numerics::error::Result;
 use poecal_storage::hashes::sha256_of;
 
-/// The URDF that was calibrated, with what of it was: every form of the result that is a URDF is this text with other numbers, so that meshes,
-/// comments and links outside the chain stay.
+/// The URDF that was calibrated, with the selection of its chain. Every URDF form of the result is this text with other numbers, so that meshes,
+/// comments and links outside the chain remain.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct OriginalUrdf {
     /// SHA-256 of the text.
@@ -35,7 +35,7 @@ pub struct OriginalUrdf {
 }
 
 impl OriginalUrdf {
-    /// Of a document.
+    /// Copy of a document.
     fn from_document(document: &UrdfDocument) -> Self {
         let ChainSelection { base_link, tip_link, instruments, targets } = document.selection();
         OriginalUrdf {
@@ -48,7 +48,7 @@ impl OriginalUrdf {
         }
     }
 
-    /// What of the text was calibrated.
+    /// The calibrated part of the text.
     #[must_use]
     pub fn selection(&self) -> ChainSelection {
         ChainSelection {
@@ -74,10 +74,11 @@ impl Inputs {
 }
 
 impl CalibrationFile {
-    /// The URDF that was calibrated; none if the model was no URDF, or the file is of an earlier version.
+    /// The URDF that was calibrated. `None` if the model was no URDF, or if the file is of an earlier version.
     ///
     /// # Errors
-    /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) or [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if the text in the file is no such URDF.
+    /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) or
+    /// [`ErrorKind::Syntax`](poecal_numerics::error::ErrorKind::Syntax) if the text in the file is no such URDF.
     pub fn original_urdf(&self, path: &Path) -> Result<Option<UrdfDocument>> {
         let read = |kept: &OriginalUrdf| UrdfDocument::parse(&kept.text, path, &kept.selection());
         self.inputs.urdf.as_ref().map(read).transpose()

@@ -21,16 +21,16 @@ pub struct RobustEntry {
     pub loss: Option<Loss>,
     /// Numbers of suspected rows.
     pub suspected: BySet<usize>,
-    /// `accuracy` without suspected rows; null of a set that has none.
+    /// `accuracy` without suspected rows; null for a set that has none.
     pub without_suspected: BySet<Option<SetAccuracy>>,
 }
 
-/// Of the training rows and of those held out.
+/// A value for the training rows and one for the held-out rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct BySet<T> {
-    /// Of the training rows.
+    /// Value of the training rows.
     pub training: T,
-    /// Of the held-out rows.
+    /// Value of the held-out rows.
     pub held_out: T,
 }
 
@@ -43,12 +43,12 @@ pub struct OutlierEntry {
     pub row: u32,
     /// Its set.
     pub set: OutlierSet,
-    /// Distance from the position that the calibrated model predicts, angle from the orientation, and so on of each measured quantity,
-    /// millimetres or degrees.
+    /// Residual of each measured quantity against the calibrated model's prediction, millimetres or degrees: distance of positions, angle of
+    /// orientations, and so on.
     pub residual: Measured<f64>,
     /// Studentised residual: length over its own standard deviation.
     pub studentized: f64,
-    /// Weight in the fit, 0 to 1; of a held-out row the weight that it would have had.
+    /// Weight in the fit, 0 to 1; for a held-out row the weight that it would have had.
     pub weight: f64,
 }
 
@@ -82,7 +82,7 @@ impl RobustEntry {
 }
 
 impl CalibrationFile {
-    /// The rows that are not suspected, of data that the calibration was made of: files are told apart by their names without folders.
+    /// The rows that are not suspected, of data from which the calibration was made. Files are identified by their names without folders.
     pub(crate) fn kept_rows(&self, data: &Dataset) -> Vec<u32> {
         let place = |file: &Path, line: u32| Some((file.file_name()?.to_owned(), line));
         let suspected: BTreeSet<_> =

@@ -1,4 +1,4 @@
-//! The files that a calibration was made of, where they still are.
+//! The files from which a calibration was made, if they still exist.
 
 use std::path::{Path, PathBuf};
 
@@ -6,8 +6,8 @@ use super::CalibrationFile;
 use poecal_storage::hashes::sha256;
 
 impl CalibrationFile {
-    /// The measurement files of the calibration with the bytes that it was made of: as its inputs name them, or by these names from the folder
-    /// of the file `at`, or of the one above it. `None` unless all are found.
+    /// The measurement files of the calibration with their original bytes. They are searched as its inputs name them, then by these names in the
+    /// folder of the file `at`, and in the one above it. `None` unless all are found.
     #[must_use]
     pub fn own_measurements(&self, at: &Path) -> Option<Vec<PathBuf>> {
         let found = self.inputs.measurements.iter().map(|name| {
@@ -19,18 +19,18 @@ impl CalibrationFile {
         found.filter(|all| !all.is_empty())
     }
 
-    /// Whether the model's file is there, and has other bytes than those that were calibrated.
+    /// True if the model's file exists, and its bytes differ from those that were calibrated.
     #[must_use]
     pub fn has_another_model(&self, at: &Path) -> bool {
         let Some(expected) = self.inputs.sha256.get(&self.inputs.model) else { return false };
         let all = places(&self.inputs.model, at);
-        // Not by its name alone: another robot's may lie there.
+        // Not by its name alone: a file of another robot may have this name.
         let mut found = all[..3].iter().filter_map(|path| sha256(path).ok().flatten()).peekable();
         found.peek().is_some() && found.all(|it| it != *expected)
     }
 }
 
-/// Where a file that a calibration names may be: as it is named, or by its name from the folder of the calibration or the one above.
+/// Possible paths of a file that a calibration names: as it is named, or by its name from the folder of the calibration or the one above.
 fn places(name: &str, at: &Path) -> [PathBuf; 5] {
     let folder = at.parent().unwrap_or(Path::new(""));
     let above = folder.parent().unwrap_or(Path::new(".."));

@@ -9,26 +9,26 @@ use poecal_model::camera::{BoardEntry, CameraEntry, Centre, CommonError, Picture
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::Result;
 
-/// The pictures of the session: their noise, and the lenses that they were read with.
+/// The pictures of the session: their noise, and the lenses by which they were read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PicturesEntry {
     /// Number of pictures.
     pub count: usize,
     /// Number of corners in them.
     pub corners: usize,
-    /// Those that lost their weight, since they do not fit the others of their picture.
+    /// Corners that lost their weight, since they do not fit the others of their picture.
     pub without_weight: usize,
     /// Standard deviation of each coordinate of a corner that states none, pixels.
     pub sigma_px: f64,
-    /// What the corners of a picture share: the error of the configuration.
+    /// Error that all corners of a picture share: the error of the configuration.
     pub common: CommonEntry,
     /// The cameras.
     pub cameras: Vec<CameraEntry>,
     /// The boards.
     #[serde(default)]
     pub boards: Vec<BoardEntry>,
-    /// Numbers of cameras and boards that were found with the robot (`--free lens`, `board`, `markers`), with what is above; absent if all were
-    /// given.
+    /// Numbers of cameras and boards that were fitted together with the robot (`--free lens`, `board`, `markers`) and replace those above; absent if
+    /// all were held.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub found: Vec<PictureNumber>,
     /// Errors of corners over the image of each camera whose picture has a known size.
@@ -43,10 +43,9 @@ pub struct CommonEntry {
     pub shift_mm: f64,
     /// Turn, degrees.
     pub turn_deg: f64,
-    /// What it turns about.
+    /// Point about which it turns.
     pub about: Centre,
-    /// By how many times more than by their own noise the corners move the pose of the board, as in the picture of another lens or board; 1 where it
-    /// is absent.
+    /// Ratio by which the corners move the pose of the board more than their own noise does, for a picture of another lens or board; 1 if absent.
     #[serde(default = "once", skip_serializing_if = "is_once")]
     pub corners: f64,
 }
@@ -55,14 +54,14 @@ fn once() -> f64 {
     1.0
 }
 
-// Where a pointer has 32 bits, the lint has nothing to say.
+// On a target with pointers of 32 bits this lint does not fire.
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is_once(times: &f64) -> bool {
     *times <= 1.0
 }
 
 impl PicturesEntry {
-    /// Of a session; `None` without pictures.
+    /// Entry of a session; `None` without pictures.
     pub fn from_dataset(data: &Dataset, images: &[ImageMap]) -> Option<Self> {
         let pictures = &data.pictures;
         if pictures.is_empty() {
@@ -89,10 +88,10 @@ impl PicturesEntry {
 }
 
 impl PicturesEntry {
-    /// Cameras and boards of the calibration for pictures that are read with none.
+    /// Adds the calibration's cameras and boards to options that have none.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if a camera is none.
+    /// [`ErrorKind::Measurement`](poecal_numerics::error::ErrorKind::Measurement) if a camera is invalid.
     pub fn complete(&self, options: &mut ReadOptions) -> Result<()> {
         if options.cameras.is_empty() {
             options.cameras = self.cameras.iter().map(CameraEntry::camera).collect::<Result<_>>()?;
@@ -103,14 +102,14 @@ impl PicturesEntry {
         Ok(())
     }
 
-    /// What the corners of a picture share.
+    /// Error that all corners of a picture share.
     #[must_use]
     pub fn common_error(&self) -> CommonError {
         let CommonEntry { shift_mm, turn_deg, about, corners } = self.common;
         CommonError { shift_m: 1e-3 * shift_mm, turn_rad: turn_deg.to_radians(), about, corners }
     }
 
-    /// What to say where pictures were read with another lens or board than those that the calibration found.
+    /// Sentence for pictures that were read with another lens or board than those that the calibration fitted.
     #[must_use]
     pub fn read_otherwise(&self, data: &Dataset) -> Option<String> {
         let has = |kind: &str| self.found.iter().any(|it| it.name.starts_with(kind));

@@ -1,4 +1,4 @@
-//! A calibration of which one joint was calibrated anew, by a few measurements.
+//! A calibration with one joint recalibrated by a few measurements.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use poecal_model::offsets::into_screws;
 use poecal_model::robot::{Joint, JointKind, Robot};
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// What of a joint was calibrated anew.
+/// The part of a joint that was recalibrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RepairedPart {
@@ -42,50 +42,50 @@ impl RepairedPart {
     }
 }
 
-/// A joint that was calibrated anew; all else is as the calibration before had it.
+/// A joint that was recalibrated; everything else is as in the earlier calibration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecalibratedEntry {
     /// The joint.
     pub joint: String,
-    /// What of it.
+    /// Its recalibrated part.
     pub part: RepairedPart,
-    /// What was added to its zero, degrees; of a joint that slides millimetres. Of an axis its turn, degrees.
+    /// Change of its zero, degrees; for a joint that slides, millimetres. For an axis its turn, degrees.
     pub size: f64,
     /// Standard deviation of that.
     pub sigma: f64,
-    /// By what motion of the base's axes the axis moved, and of a zero what follows the joint: metres and radians, linear part first.
+    /// Motion of the axis in the base's axes, and for a zero of all that follows the joint: metres and radians, linear part first.
     pub motion: [f64; 6],
-    /// Number of measurements, and how many of them repeat configurations of earlier ones.
+    /// Number of measurements.
     pub rows: usize,
-    /// The latter.
+    /// Number of measurements that repeat configurations of earlier ones.
     pub repeated: usize,
     /// The measurement files.
     pub measurements: Vec<String>,
-    /// The calibration before.
+    /// The earlier calibration.
     pub calibration: String,
     /// SHA-256 of each, by name.
     pub sha256: BTreeMap<String, String>,
 }
 
-/// What a joint is calibrated anew by: fields of [`RecalibratedEntry`].
+/// Sources of a joint's recalibration: fields of [`RecalibratedEntry`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecalibrationSources {
     /// The measurement files.
     pub measurements: Vec<String>,
-    /// The calibration before.
+    /// The earlier calibration.
     pub calibration: String,
     /// SHA-256 of each, by name.
     pub sha256: BTreeMap<String, String>,
 }
 
-/// A change of one joint: by base twists, whose coefficients have a covariance.
+/// A change of one joint: coefficients of base twists, with their covariance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointRepair {
     /// The joint's name.
     pub joint: String,
-    /// What of it changes.
+    /// The part of it that changes.
     pub part: RepairedPart,
-    /// Of a zero its shift, radians or metres; of an axis the coefficients.
+    /// For a zero its shift, radians or metres; for an axis the coefficients.
     pub step: Vec<f64>,
     /// Base twists of an axis, each moved by one coefficient.
     pub twists: Vec<Twist>,
@@ -94,8 +94,8 @@ pub struct JointRepair {
 }
 
 impl CalibrationFile {
-    /// The same calibration with one joint changed: its zero, which moves all that follows it, or its axis alone. What it knows of all else
-    /// stays, with its covariance; what is known of the change is added to that.
+    /// The same calibration with one joint changed: its zero, which moves all that follows it, or its axis alone. All other estimates keep their
+    /// covariance, to which the uncertainty of the change is added.
     ///
     /// # Errors
     /// [`ErrorKind::Option`] if there is no such joint; [`ErrorKind::Model`] if the file holds no valid calibration.
@@ -112,12 +112,12 @@ impl CalibrationFile {
             provenance.rows
         ));
         file.recalibrated.push(provenance);
-        // Its changes of readings are of the robot before.
+        // Its changes of readings are those of the earlier robot.
         file.compensation = None;
         Ok(file)
     }
 
-    /// The calibration as its own measurements were made: before joints were calibrated anew.
+    /// The calibration from its own measurements: before joints were recalibrated.
     ///
     /// # Errors
     /// As [`CalibrationFile::repaired`].
@@ -213,7 +213,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// How the axis of a joint moved because of a zero before it.
+/// Motion of a joint's axis caused by a changed zero before it.
 fn before_joint(robot: &Robot, moved: &Robot, joint: usize, changed: usize) -> Pose {
     if joint == changed {
         return Pose::identity();
@@ -221,7 +221,7 @@ fn before_joint(robot: &Robot, moved: &Robot, joint: usize, changed: usize) -> P
     (moved.joints[joint].frame * robot.joints[joint].frame.inverse()).orthonormalized()
 }
 
-/// The robot with an axis moved by base twists, and how each axis moved; gives of the joint move with it.
+/// The robot with an axis moved by base twists, and the motion of each axis; compliant joints of the joint move with it.
 fn with_axis(robot: &Robot, at: usize, repair: &JointRepair) -> (Robot, Vec<Pose>) {
     let sum = repair
         .twists
@@ -245,7 +245,7 @@ fn with_axis(robot: &Robot, at: usize, repair: &JointRepair) -> (Robot, Vec<Pose
     (robot.with_screws(&screws), bodies)
 }
 
-/// What each coefficient of a repair is of the unknowns of the calibration.
+/// Effect of each coefficient of a repair on the unknowns of the calibration.
 fn columns(file: &CalibrationFile, robot: &Robot, at: usize, repair: &JointRepair) -> Result<DMatrix<f64>> {
     if file.uncertainty.is_none() {
         return Ok(DMatrix::zeros(0, repair.step.len()));
@@ -299,7 +299,7 @@ fn columns(file: &CalibrationFile, robot: &Robot, at: usize, repair: &JointRepai
     Ok(all)
 }
 
-/// Whether a joint stands on the link of another, directly or through others.
+/// True if a joint stands on the link of another, directly or through others.
 fn is_after(robot: &Robot, joint: usize, of: usize) -> bool {
     let mut at = robot.body_before(joint).joint();
     while let Some(before) = at {
@@ -311,7 +311,7 @@ fn is_after(robot: &Robot, joint: usize, of: usize) -> bool {
     false
 }
 
-/// Adds what is not known of a repair to the covariances of an entry.
+/// Adds the uncertainty of a repair to the covariances of an entry.
 fn add(entry: &mut UncertaintyEntry, columns: &DMatrix<f64>, covariance: &[f64]) {
     let (n, k) = columns.shape();
     let added = columns * DMatrix::from_row_slice(k, k, covariance) * columns.transpose();

@@ -62,7 +62,7 @@ struct Sources {
 }
 
 impl Sources {
-    /// The command that makes the calibration again from the inputs that the file lists.
+    /// The command that repeats the calibration from the inputs that the file lists.
     fn again(self) -> Option<String> {
         let Sources { command, model, measurements } = self;
         command.or_else(|| {
@@ -72,7 +72,7 @@ impl Sources {
     }
 }
 
-/// The key `schema` of a text of JSON; nothing else of it is held.
+/// The key `schema` of a JSON text; nothing else of the text is stored.
 pub(crate) fn schema_of(text: &[u8]) -> Option<String> {
     #[derive(Deserialize)]
     struct Head {

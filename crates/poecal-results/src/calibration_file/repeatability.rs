@@ -10,7 +10,7 @@ use poecal_model::measurement::{Dataset, Measured, Quantity};
 /// Most poses in a file.
 const LISTED: usize = 100;
 
-/// Pose accuracy and repeatability of positions, after ISO 9283; of poses that were measured by other quantities theirs.
+/// Pose accuracy and repeatability of positions, after ISO 9283; for poses that were measured by other quantities those of the latter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RepeatabilityEntry {
     /// Number of targets in configurations with three rows or more.
@@ -52,16 +52,16 @@ pub struct PoseRepeatability {
 /// Accuracy of each model in a pose, millimetres or degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PoseAccuracy {
-    /// Of the nominal model.
+    /// Accuracy of the nominal model.
     pub nominal: Measured<f64>,
-    /// Of the registered model.
+    /// Accuracy of the registered model.
     pub registered: Measured<f64>,
-    /// Of the calibrated model.
+    /// Accuracy of the calibrated model.
     pub calibrated: Measured<f64>,
 }
 
 impl PoseRepeatability {
-    /// Those of a quantity with their keys.
+    /// Figures of a quantity with their keys.
     #[must_use]
     pub fn by_key(&self, quantity: Quantity) -> [(String, Option<f64>); 4] {
         let PoseAccuracy { nominal, registered, calibrated } = self.accuracy;

@@ -1,4 +1,4 @@
-//! The keys of `calibration.json`. Lengths in metres and angles in radians unless a key says otherwise.
+//! The keys of `calibration.json`. Lengths are in metres and angles in radians unless a key states another unit.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -43,24 +43,24 @@ pub struct CalibrationFile {
     pub poecal_version: String,
     /// Inputs.
     pub inputs: Inputs,
-    /// What is stated of the session; absent if nothing is.
+    /// Statements about the session; absent if there are none.
     #[serde(default, skip_serializing_if = "Record::is_empty")]
     pub record: Record,
     /// Errors of the nominal, registered and calibrated model on training and held-out rows.
     pub accuracy: Accuracy,
-    /// What was fitted and what held, where that is not the usual: all axes, targets and frames.
+    /// Fitted and held blocks, if they differ from the default: all axes, targets and frames.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blocks: Option<BlocksEntry>,
     /// The minimisation: steps, end, convergence.
     pub solver: SolverEntry,
-    /// Which unknowns the measurements determine.
+    /// Determination of the unknowns by the measurements.
     pub identifiability: IdentifiabilityEntry,
     /// Noise by which residuals were weighted.
     pub noise: NoiseEntry,
-    /// Whether the limits that were asked for are kept; absent if none were.
+    /// Result of the requested acceptance limits; absent if none were requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceptance: Option<Acceptance>,
-    /// Verdict: whether the result is good to use, and where.
+    /// Verdict: fitness of the result for use, and its domain.
     #[serde(default)]
     pub verdict: Option<Verdict>,
     /// Sampled part of each joint's range.
@@ -72,7 +72,7 @@ pub struct CalibrationFile {
     /// Each joint's correction.
     #[serde(default)]
     pub corrections: Vec<CorrectionEntry>,
-    /// Directions in which corrections of several joints are known only together; absent where there is none.
+    /// Directions in which the measurements determine corrections of several joints only together; absent if there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub common: Vec<CommonDirectionEntry>,
     /// Expected errors of predictions; null without more residuals than unknowns.
@@ -84,7 +84,8 @@ pub struct CalibrationFile {
     /// Suspected rows, the worst first, at most 1,000; `robust` has their number.
     #[serde(default)]
     pub outliers: Vec<OutlierEntry>,
-    /// Configurations in which all targets are suspected and off alike, the worst first, at most 100: the arm or its readings are wrong there.
+    /// Configurations in which all targets are suspected with similar residuals, the worst first, at most 100: the arm or its readings are wrong
+    /// there.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub suspected_configurations: Vec<SuspectedConfigurationEntry>,
     /// Configurations that were measured several times; null if there are none.
@@ -96,23 +97,23 @@ pub struct CalibrationFile {
     /// Warnings, a sentence each.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// Mistakes in the input: named, not corrected.
+    /// Mistakes in the input: reported, not corrected.
     #[serde(default)]
     pub diagnosis: Vec<DiagnosisEntry>,
-    /// What happened during the session and was repaired; all else in this file is of the repaired session.
+    /// Events of the session that were repaired; everything else in this file is of the repaired session.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repairs: Vec<Event>,
-    /// What seems to have happened and was not repaired.
+    /// Probable events that were not repaired.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub suspicions: Vec<Event>,
-    /// Joints that were calibrated anew since, by `poecal track --recalibrate`, in order; all else is of the calibration before.
+    /// Joints that were recalibrated since, by `poecal track --recalibrate`, in order; everything else is of the earlier calibration.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub recalibrated: Vec<RecalibratedEntry>,
     /// The calibrated robot's frames.
     pub robot: RobotEntry,
     /// The calibrated joints from base to tip.
     pub joints: Vec<JointEntry>,
-    /// How the readings of the joints are made of those that the controller counts; absent where they are the same.
+    /// Mapping from the controller's counts to the readings of the joints; absent if they are equal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub controller: Option<Controller>,
     /// Frame of the measuring device.
@@ -125,20 +126,19 @@ pub struct CalibrationFile {
     pub clocks: Vec<ClockEntry>,
     /// Pose of the tip in the last joint's frame.
     pub tool: PoseEntry,
-    /// Whether the point that was measured became the tip (`--move-tip`); otherwise the tip is where the model has it on the last link.
+    /// True if the measured point became the tip (`--move-tip`); otherwise the tip is the model's, on the last link.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub move_tip: bool,
-    /// Targets by their names, `measured` where no row names one: in the tip frame, or on a body of their own (`on`). None where `move_tip` is
-    /// true.
+    /// Targets by their names, `measured` if no row names one: in the tip frame, or on a body of their own (`on`). Empty if `move_tip` is true.
     pub targets: BTreeMap<String, TargetEntry>,
     /// Instruments on the robot.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub instruments: BTreeMap<String, InstrumentEntry>,
-    /// How far programs for the nominal robot miss in the sampled workspace, and the corrections of the joints that mend it; absent where the
-    /// calibration is not to be used, and of a robot whose tip not every joint moves.
+    /// Error of programs for the nominal robot in the sampled workspace, and the joint corrections that remove it. Absent if the calibration is not
+    /// to be used, or if some joint does not move the robot's tip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compensation: Option<Box<CompensationEntry>>,
-    /// The corrected model: screws and terms of the joints fitted together; absent if no terms were asked for.
+    /// The corrected model: screws and terms of the joints fitted together; absent if no terms were requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corrected: Option<Box<CorrectedEntry>>,
 }
@@ -162,22 +162,22 @@ pub struct Inputs {
     /// SHA-256 of each file by its name; of input that is no regular file, such as a pipe, only for measurements.
     #[serde(default)]
     pub sha256: BTreeMap<String, String>,
-    /// What each measurement file is and what was taken of it; one with joint readings and measurements has two entries.
+    /// Kind of each measurement file and its used rows; one with joint readings and measurements has two entries.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<InputEntry>,
-    /// How files of joint readings and of measurements were joined; absent if one file has both.
+    /// Joins of files of joint readings with files of measurements; absent if one file has both.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joins: Vec<JoinEntry>,
     /// The command that reproduces the calibration; null if it was not made by the program.
     #[serde(default)]
     pub command: Option<String>,
-    /// The URDF that was calibrated; absent if the model was none.
+    /// The URDF that was calibrated; absent if the model was no URDF.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub urdf: Option<OriginalUrdf>,
 }
 
 impl Inputs {
-    /// Adds what is kept of measurement files that were read.
+    /// Adds the stored facts of measurement files that were read.
     pub fn take(&mut self, file: &MeasurementFile) {
         self.sha256.extend(file.sha256.clone());
         self.files.extend(file.inputs());
@@ -185,7 +185,7 @@ impl Inputs {
     }
 
     /// Checksum of each model or mapping file by its name; for measurements see
-    /// [`MeasurementFile::sha256`](poecal_import::MeasurementFile::sha256). Inputs that are no regular files have none.
+    /// [`MeasurementFile::sha256`](poecal_import::MeasurementFile::sha256). Inputs that are no regular files are not listed.
     ///
     /// # Errors
     /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if a file cannot be read.
@@ -207,12 +207,12 @@ pub struct SolverEntry {
     /// Method of the solver: `levenberg-marquardt`, or others for comparison.
     #[serde(default = "usual_method")]
     pub method: String,
-    /// Effect of the formulation on the result, if it is not the usual one.
+    /// Effect of the formulation on the result, if it is not the default one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub note: Option<String>,
     /// Iterations of the full fit.
     pub iterations: usize,
-    /// Whether an optimum was reached.
+    /// True if an optimum was reached.
     pub converged: bool,
     /// Reason of its end.
     pub termination: Termination,
@@ -224,8 +224,8 @@ pub struct SolverEntry {
     /// Mean square of the whitened residual by iteration, the start first; each re-weighted round of the fit starts again.
     #[serde(default)]
     pub trace: Vec<f64>,
-    /// Joint offsets found: joint value minus reading, where the formulation has them. Data cannot separate them
-    /// from screws; in `joints` they are part of the screws, and the readings need no correction.
+    /// Fitted joint offsets: joint value minus reading, if the formulation contains them. Data cannot separate them from screws; in `joints` they are
+    /// part of the screws, and the readings need no correction.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub joint_offsets: Option<Vec<OffsetEntry>>,
 }
@@ -242,12 +242,12 @@ fn usual_method() -> String {
     FormulationWords::default().method.to_owned()
 }
 
-/// Tolerance of the prior: how far each axis may be from nominal, standard deviations.
+/// Tolerance of the prior: expected deviation of each axis from nominal, standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ToleranceEntry {
-    /// Of its direction, degrees.
+    /// Tolerance of its direction, degrees.
     pub angle_deg: f64,
-    /// Of its place, millimetres.
+    /// Tolerance of its position, millimetres.
     pub length_mm: f64,
 }
 
@@ -256,10 +256,10 @@ pub struct ToleranceEntry {
 pub struct OffsetEntry {
     /// The joint.
     pub joint: String,
-    /// Of a revolute joint, degrees.
+    /// Offset of a revolute joint, degrees.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub offset_deg: Option<f64>,
-    /// Of a prismatic joint, millimetres.
+    /// Offset of a prismatic joint, millimetres.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub offset_mm: Option<f64>,
 }
@@ -269,11 +269,11 @@ pub struct OffsetEntry {
 pub struct BlocksEntry {
     /// Fitted.
     pub free: Vec<String>,
-    /// Held as in the model; terms that are none are not listed.
+    /// Held as in the model; terms that are zero are not listed.
     pub held: Vec<String>,
 }
 
-/// Which unknowns the measurements determine.
+/// Determination of the unknowns by the measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IdentifiabilityEntry {
     /// Unknowns in the minimal basis.
@@ -305,7 +305,7 @@ impl IdentifiabilityEntry {
         self.weak.iter().map(|direction| direction.directions).sum()
     }
 
-    /// The entry of what measurements determine.
+    /// The entry of an analysis of identifiability.
     pub fn from_identifiability(found: &Identifiability) -> Self {
         IdentifiabilityEntry {
             parameters: found.parameters,
@@ -320,7 +320,7 @@ impl IdentifiabilityEntry {
     }
 }
 
-/// Noise by which residuals were weighted where a row stated none.
+/// Noise by which residuals were weighted if a row stated none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NoiseEntry {
     /// Standard deviation of each component of each measured quantity, millimetres or degrees.

@@ -8,7 +8,7 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::MEASURED;
 
 impl CalibrationFile {
-    /// How many states the session had: one more than the moves of a device or a target that were repaired.
+    /// Number of states of the session: one more than the moves of a device or a target that were repaired.
     #[must_use]
     pub fn stages(&self) -> usize {
         let is_move = |kind| matches!(kind, EventKind::Device | EventKind::Target | EventKind::Nest);
@@ -20,7 +20,7 @@ impl CalibrationFile {
         names.map(|name| family(name).1).max().unwrap_or(1)
     }
 
-    /// Measurements whose targets and instruments are those of a state of the session, from 1; names that say which they are stay.
+    /// Measurements whose targets and instruments are those of a state of the session, from 1. Names that already state their state remain.
     #[must_use]
     pub fn at_stage<'d>(&self, data: &'d Dataset, stage: usize) -> Cow<'d, Dataset> {
         if self.stages() == 1 {
@@ -45,13 +45,13 @@ impl CalibrationFile {
         Cow::Owned(found)
     }
 
-    /// The last state of the target that rows without a name are of; `None` where that is the tip, or where rows must name theirs.
+    /// The last state of the target of rows without a name. `None` if that is the tip, or if rows must name theirs.
     pub(crate) fn unnamed(&self) -> Option<&str> {
         let targets: Vec<&str> = self.targets.keys().map(String::as_str).collect();
         state(&targets, MEASURED, usize::MAX)
     }
 
-    /// The last state of the only device; `None` of several devices.
+    /// The last state of the only device; `None` for several devices.
     pub(crate) fn last_station(&self) -> Option<&StationEntry> {
         let names: Vec<&str> = self.stations.iter().filter_map(|it| it.instrument.as_deref()).collect();
         let last = state(&names, single(&names)?, usize::MAX)?;
@@ -66,13 +66,13 @@ fn state<'n>(known: &[&'n str], name: &str, stage: usize) -> Option<&'n str> {
     own.max_by_key(|(_, (_, number))| *number).map(|(it, _)| it)
 }
 
-/// The name that all names are states of.
+/// The name whose states all names are.
 fn single<'n>(names: &[&'n str]) -> Option<&'n str> {
     let (first, _) = family(names.first()?);
     (names.len() > 1 && names.iter().all(|it| family(it).0 == first)).then_some(first)
 }
 
-/// The last state of the target that all names are states of; the only one.
+/// The last state of the only target; `None` unless all names are states of one.
 pub(crate) fn only_target<'n>(names: &[&'n str]) -> Option<&'n str> {
     match names {
         [only] => Some(only),

@@ -1,4 +1,4 @@
-//! The nominal robot as programs have it taught.
+//! The nominal robot with the base and tool that a program on the actual robot teaches.
 
 use super::CalibrationFile;
 use poecal_arm::lie::Pose;
@@ -9,11 +9,11 @@ use poecal_numerics::error::Result;
 
 /// Configurations over which base and tool are fitted.
 const CONFIGURATIONS: usize = 96;
-/// Range of a joint that the file says nothing of, to each side of zero (rad, m).
+/// Range of a joint without limits in the file, to each side of zero (rad, m).
 const UNKNOWN: f64 = 1.0;
 
-/// The nominal robot with the base and the tool of the actual one, `base_from_tip = base · nominal base_from_tip · tool`: what a program for
-/// the nominal robot means with the tip of the actual one ([`CalibrationFile::taught`]).
+/// The nominal robot with the base and the tool of the actual one, `base_from_tip = base · nominal base_from_tip · tool`. It is the meaning of a
+/// program for the nominal robot with the tip of the actual one ([`CalibrationFile::taught`]).
 #[derive(Clone, Debug)]
 pub struct TaughtRobot {
     /// The robot.
@@ -25,10 +25,10 @@ pub struct TaughtRobot {
 }
 
 impl CalibrationFile {
-    /// The nominal robot with the base and tool of an actual one, the calibrated or the corrected robot of this file: tips of both are of the
-    /// same thing, and what is between them is of the joints. The tip of the actual robot is what was measured, mostly a reflector, while
-    /// that of the nominal one is the flange of its model; and where the measuring device stood is a choice, unless it was known. Both are
-    /// fitted over the sampled range, least squares; a base that is known (`--device-frame base`) is that of the model.
+    /// The nominal robot with the base and tool of an actual one, the calibrated or the corrected robot of this file. Tips of both are then of the
+    /// same object, and their difference is that of the joints. The actual tip is the measured target, mostly a reflector; the nominal one is the
+    /// flange of its model. The position of the measuring device is arbitrary unless it was known. Both are fitted over the sampled range by least
+    /// squares; a base that is known (`--device-frame base`) is that of the model.
     ///
     /// # Errors
     /// As [`CalibrationFile::robot`] and [`Robot::arm`].
@@ -49,7 +49,7 @@ impl CalibrationFile {
             sampled.map_or([-UNKNOWN, UNKNOWN], |it| [it.sampled_min, it.sampled_max])
         };
         let ranges: Vec<[f64; 2]> = readings.iter().map(range).collect();
-        // Spread evenly: fractional parts of multiples of square roots.
+        // Evenly spread: fractional parts of multiples of square roots.
         let configuration = |index: usize| -> Vec<f64> {
             let share = |k: usize| (0.5 + index as f64 * (k as f64 + 2.0).sqrt() * 1.618).fract();
             ranges.iter().enumerate().map(|(k, [low, high])| low + (high - low) * share(k)).collect()

@@ -28,8 +28,7 @@ pub struct LeftOutEntry {
 pub struct CrossValidationEntry {
     /// Random folds, all together.
     pub random: LeftOutEntry,
-    /// Those of their rows with a joint beyond the range of the rows by which they were predicted, by more than a tenth of it. Absent if there
-    /// are none.
+    /// Errors of the rows with a joint beyond the range of the rows that predicted them, by more than a tenth of it. Absent if there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<LeftOutEntry>,
     /// The ends of each joint's range, files, and groups of equal `id`, each predicted by a fit without it.
@@ -54,7 +53,7 @@ pub struct BootstrapEntry {
     pub drawings: usize,
     /// Root mean square distance over these samples, millimetres.
     pub sigma_position_mm: f64,
-    /// The same by the covariance, for white noise, millimetres.
+    /// Root mean square distance by the covariance, for white noise, millimetres.
     pub formal_sigma_position_mm: f64,
 }
 
@@ -83,9 +82,9 @@ pub(crate) fn held_out(kept: &CoverageCheck) -> HeldOutEntry {
 pub struct RangeEntry {
     /// The joint.
     pub joint: String,
-    /// From, radians or metres.
+    /// Lower end, radians or metres.
     pub from: f64,
-    /// To.
+    /// Upper end.
     pub to: f64,
     /// Root mean square distance, millimetres, with the other joints anywhere in their ranges.
     pub sigma_position_mm: f64,
@@ -94,9 +93,9 @@ pub struct RangeEntry {
 /// Tilt and shift of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AxisEntry {
-    /// Of its direction, degrees.
+    /// Tilt of its direction, degrees.
     pub tilt_deg: Option<f64>,
-    /// Of its place, millimetres; null of a joint that slides.
+    /// Shift of its position, millimetres; null for a joint that slides.
     pub shift_mm: Option<f64>,
 }
 
@@ -119,10 +118,10 @@ pub struct CorrectionEntry {
     /// `sigma` if the axes of all other joints were known; absent where the axis was held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_alone: Option<AxisEntry>,
-    /// The measurements' share in what is known of the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
+    /// Share of the measurements in the information on the direction, from 0 to 1; the rest is the tolerance's. Absent without a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_from_data: Option<f64>,
-    /// The same of the axis' place; absent of a joint that slides.
+    /// Share of the measurements in the information on the axis' position; absent for a joint that slides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift_from_data: Option<f64>,
     /// Root mean square position error with this screw alone nominal, millimetres.
@@ -130,7 +129,7 @@ pub struct CorrectionEntry {
     /// The correction in parts, with directions; missing in older files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<JointChangeEntry>,
-    /// Why the joint is suspicious: a correction beyond those of the others, or residuals that follow its position.
+    /// Reason for suspicion of the joint: a correction beyond those of the others, or residuals that follow its position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub suspicious: Option<String>,
 }
@@ -140,15 +139,15 @@ pub struct CorrectionEntry {
 pub struct UncertaintyEntry {
     /// Factor of the covariance over that of independent residuals.
     pub inflation: f64,
-    /// The same outside the sampled range; absent if no larger.
+    /// Factor outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolation: Option<f64>,
-    /// Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and what else was measured.
+    /// Model error: standard deviation of each component, millimetres or degrees; of positions, rotations and other measured quantities.
     #[serde(rename = "model_error")]
     pub discrepancy: Measured<f64>,
     /// Measurement noise in the residuals: standard deviation of each component, millimetres or degrees.
     pub noise: Measured<f64>,
-    /// Whether the residuals of each quantity count as the robot's or the instrument's.
+    /// Attribution of the residuals of each quantity to the robot or to the instrument.
     #[schemars(with = "BTreeMap<String, Attribution>")]
     pub residuals: BTreeMap<Quantity, Attribution>,
     /// Degrees of freedom of the variance of each quantity's residuals; absent where their noise is stated.
@@ -158,9 +157,9 @@ pub struct UncertaintyEntry {
     /// Correlation of residuals of consecutive rows; null if not significant.
     #[serde(default)]
     pub lag_one_correlation: Option<f64>,
-    /// In the measured configurations.
+    /// Expected errors in the measured configurations.
     pub measured: ExpectedEntry,
-    /// Anywhere within the limits.
+    /// Expected errors anywhere within the limits.
     pub range: ExpectedEntry,
     /// Errors of held-out rows compared with their predicted uncertainty; null without such rows.
     #[serde(default)]
@@ -168,9 +167,9 @@ pub struct UncertaintyEntry {
     /// Bootstrap at measured configurations; null with too few rows.
     #[serde(default)]
     pub bootstrap: Option<BootstrapEntry>,
-    /// By parts of each joint's range.
+    /// Expected errors by parts of each joint's range.
     pub parts: Vec<RangeEntry>,
-    /// Metres that a radian counts in the covariance.
+    /// Metres that one radian equals in the covariance.
     pub length_m: f64,
     /// Frames `base_from_axis` at zero, z along the joint, of each joint's unknowns: shifts along x and y and turns about x and y of a
     /// revolute joint, turns about x and y of a prismatic one.
@@ -189,7 +188,7 @@ pub struct UncertaintyEntry {
     /// Covariance of the unknowns, square metres, turns multiplied by `length_m`: the upper triangle by rows, in the order of the fit with
     /// pure translations first.
     pub covariance_m2: Vec<f64>,
-    /// The same outside the sampled range; absent if no larger.
+    /// Covariance outside the sampled range; absent if no larger.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub covariance_outside_m2: Option<Vec<f64>>,
 }
@@ -256,7 +255,7 @@ impl BootstrapEntry {
 }
 
 impl CorrectionEntry {
-    /// Those of all joints.
+    /// Entries of all joints.
     pub(crate) fn of_all(trust: &Trust) -> Vec<Self> {
         trust.coverage.iter().zip(&trust.joints).map(Self::from_correction).collect()
     }

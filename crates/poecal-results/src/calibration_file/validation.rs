@@ -18,12 +18,12 @@ use poecal_numerics::error::{ErrorKind, Result};
 
 /// Ratio to the calibration's own error above which a device frame that is not refitted must have moved.
 const MOVED_DEVICE: f64 = 20.0;
-/// Share of the error that is left at most where a refitted frame explains it, and the chance that the frame's unknowns do.
+/// Largest share of the error that remains if a refitted frame explains it; and the largest probability that the frame's unknowns do so by chance.
 const MUCH: f64 = 0.7;
 const CHANCE: f64 = 1e-4;
 /// Share of errors inside their 95 % bound below which the bounds do not hold.
 const BROKEN: f64 = 0.75;
-/// Rows inside the sampled range from which on they say whether the robot is as it was calibrated.
+/// Fewest rows inside the sampled range that show a change of the robot since its calibration.
 const FEW: usize = 5;
 /// Errors of exact data below this are rounding: a nanometre, in millimetres; of angles in degrees.
 const ROUNDING: f64 = 1e-6;
@@ -32,7 +32,8 @@ impl CalibrationFile {
     /// Judges the calibration by all rows of some measurements, with device frame and targets refitted as asked.
     ///
     /// # Errors
-    /// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if the measurements are of other targets or instruments, or too few for the refit;
+    /// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if the measurements are of other targets or instruments, or
+    /// too few for the refit;
     /// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if the file holds no valid calibration.
     pub fn judge(&self, data: &Dataset, refit_frame: bool, refit_tool: bool) -> Result<Judgement> {
         let judgement = self.judged(data, refit_frame, refit_tool)?;
@@ -43,15 +44,15 @@ impl CalibrationFile {
         Ok(Judgement { corrected, rows, ..judgement })
     }
 
-    /// [`CalibrationFile::judge`] with the device's frame refitted where that stands elsewhere than at the calibration, and the rows show it: the
-    /// error with the frame refitted is smaller by much and by more than six unknowns explain (F, 1 in 10,000), and the bounds hold then. With
-    /// `refits` it is judged so; otherwise it is said.
+    /// [`CalibrationFile::judge`] with the device's frame refitted if the rows show a moved device. They do if the error with the frame refitted is
+    /// much smaller, and the bounds hold then. The decrease must exceed the effect of six unknowns (F test, 1 in 10,000). With `refits` the judgement
+    /// is the refitted one; otherwise a note states the move.
     ///
     /// # Errors
     /// As [`CalibrationFile::judge`].
     pub fn judge_wherever(&self, data: &Dataset, refit_tool: bool, refits: bool) -> Result<Judgement> {
         let found = self.judge(data, false, refit_tool)?;
-        // Too few rows for a frame show none.
+        // Too few rows for a frame do not show a move.
         let Ok(again) = self.judge(data, true, refit_tool) else { return Ok(found) };
         let [before, after] = [&found, &again].map(|it| it.delivered().errors.leading());
         let (Some((_, before)), Some((_, after))) = (before, after) else { return Ok(found) };
@@ -77,8 +78,8 @@ impl CalibrationFile {
         Ok(Judgement { moved_device, ..if refits { again } else { found } })
     }
 
-    /// Error of the nominal model over that of the delivered one on all rows of some measurements that were judged so, device frame and targets
-    /// fitted for both; `None` where these are too few for it.
+    /// Ratio of the nominal model's error to the delivered one's on all rows of some measurements that were judged with these refits, device frame
+    /// and targets fitted for both; `None` if the rows are too few for that.
     ///
     /// # Errors
     /// As [`CalibrationFile::judge`].
@@ -127,7 +128,7 @@ impl CalibrationFile {
         self.with_subject(data, refit_frame, refit_tool, judge)
     }
 
-    /// What `to` makes of the calibration and the measurements that judge it.
+    /// Result of `to` for the calibration and the measurements that judge it.
     fn with_subject<T>(
         &self,
         data: &Dataset,
@@ -179,7 +180,7 @@ impl CalibrationFile {
         to(&subject, data)
     }
 
-    /// Uncertainty of predictions as the first instrument sees them: they do not depend on what moves both.
+    /// Uncertainty of predictions relative to the first instrument: they do not depend on a motion of both.
     fn uncertainty_as_seen(&self, targets: &[Option<&str>]) -> Result<(Uncertainty, Vec<usize>)> {
         let robot = self.robot()?;
         let first = self.stations.first().and_then(|station| station.instrument.as_ref());
@@ -199,7 +200,7 @@ impl CalibrationFile {
         let (leading, found) = delivered.errors.leading()?;
         let (rms, unit) = (found.rms, leading.unit().symbol());
         let check = delivered.promised.filter(|_| rms > ROUNDING);
-        // Where most errors are inside their bounds, single rows are wrong, not the device.
+        // If most errors are inside their bounds, single rows are wrong, not the device.
         let mostly = check.is_some_and(|it| it.parts.lead().inside_bound95 > 0.5);
         let is_far = rms > MOVED_DEVICE * own;
         if mostly && is_far {

@@ -1,8 +1,8 @@
-//! What changed between two calibrations of one robot: in terms that do not depend on how base, tool and screws were written
-//! (theory.md §9, *Two calibrations*).
+//! Changes between two calibrations of one robot, in terms that do not depend on the choice of base, tool and screws (theory.md §9, *Two
+//! calibrations*).
 //!
-//! Offset, tilt and shift of each joint come with base and tool as they fit best (`poecal-model`'s `offsets`), the covariance of these from both files
-//! (`spread.rs`). No words and tables here: it has numbers, which `poecal-report` shows.
+//! Offset, tilt and shift of each joint come with base and tool in the best fit (`poecal-model`'s `offsets`), and their covariance from both files
+//! (`spread.rs`). This module has numbers only; `poecal-report` has the words and tables.
 
 mod chi_square;
 mod spread;
@@ -34,23 +34,23 @@ const OTHER_RAD: f64 = 0.1;
 /// Probability of a test to call noise a change; of the joints all together.
 const CHANCE: f64 = 0.01;
 
-/// How a joint changed.
+/// Change of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComparedJoint {
     /// Its name.
     pub name: String,
-    /// From the first calibration to the second, with combined standard deviations.
+    /// Change from the first calibration to the second, with combined standard deviations.
     pub change: JointChange,
     /// Its test; `None` without the uncertainty of both.
     pub test: Option<ChiSquare>,
 }
 
-/// Difference of the tips, with base and tool as they fit best, by the models that the calibrations deliver: corrected where both have terms.
+/// Difference of the tips, with base and tool in the best fit, by the models that the calibrations deliver: corrected if both have terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TipDifference {
     /// Number of random configurations in the range that both sampled.
     pub configurations: usize,
-    /// Whether they are by the corrected models.
+    /// True if they are by the corrected models.
     pub is_corrected: bool,
     /// Root mean square distance, metres.
     pub rms_m: f64,
@@ -60,15 +60,15 @@ pub struct TipDifference {
     pub rms_rad: f64,
     /// Readings of the largest distance, by [`Robot::reading_names`], radians or metres.
     pub max_at: Vec<(String, f64)>,
-    /// Where the tip of the first robot is there, base frame, metres.
+    /// Position of the first robot's tip there, base frame, metres.
     pub max_place: Vector3<f64>,
-    /// The distance (RMS) up to which the robot is as it was, metres: as stated, or the expected errors of both together; `None` without either.
+    /// The distance (RMS) up to which the robot is unchanged, metres: as stated, or the expected errors of both together; `None` without either.
     pub limit_m: Option<f64>,
-    /// Whether it was stated.
+    /// True if it was stated.
     pub limit_is_stated: bool,
 }
 
-/// What changed between two calibrations of one robot.
+/// Changes between two calibrations of one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Each joint.
@@ -77,18 +77,18 @@ pub struct Compared {
     pub test: Option<ChiSquare>,
     /// Difference of the tips.
     pub tip: TipDifference,
-    /// Whether the base frame was free in the comparison: at least one of the calibrations found it.
+    /// True if the base frame was free in the comparison: at least one of the calibrations fitted it.
     pub base_is_free: bool,
 }
 
 impl Compared {
-    /// Whether the tip moved by more than the limit; `None` where there is none.
+    /// True if the tip moved by more than the limit; `None` without a limit.
     #[must_use]
     pub fn is_moved(&self) -> Option<bool> {
         self.tip.limit_m.map(|limit_m| self.tip.rms_m > limit_m)
     }
 
-    /// Whether the joints changed by more than noise; `None` without the uncertainty of both.
+    /// True if the joints changed by more than noise; `None` without the uncertainty of both.
     #[must_use]
     pub fn is_change(&self) -> Option<bool> {
         self.test.map(|test| test.is_change() || self.changed().next().is_some())
@@ -100,9 +100,9 @@ impl Compared {
     }
 }
 
-/// Compares two calibrations of one robot, from `first` to `second`: offset, tilt and shift of each joint with base and tool as they fit
-/// best, these against the covariances of both, and the predictions of both over the range that both sampled, against a limit (metres, RMS), or
-/// else the expected errors of both together.
+/// Compares two calibrations of one robot, from `first` to `second`. The offset, tilt and shift of each joint, with base and tool in the best fit,
+/// are compared with the covariances of both. The predictions of both over the commonly sampled range are compared with a limit (metres, RMS), or
+/// else with the expected errors of both together.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if they are of different robots; [`ErrorKind::Model`] if a file holds no valid robot.
@@ -199,7 +199,7 @@ fn check_nominal(a: &Robot, b: &Robot) -> Result<()> {
     Ok(())
 }
 
-/// Difference of the tips over random configurations of the sampled range, base and tool of the second as they fit the first best.
+/// Difference of the tips over random configurations of the sampled range, base and tool of the second in the best fit to the first.
 fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDifference {
     let mut generator = ChaCha8Rng::seed_from_u64(SEED);
     let b = with_tool_of(a, b).unwrap_or_else(|| b.clone());
@@ -207,7 +207,7 @@ fn tips(sampled: &Robot, a: &Robot, b: &Robot, base_is_free: bool) -> TipDiffere
         (0..CONFIGURATIONS).map(|_| random_configuration(sampled, &mut generator)).collect();
     let pairs: Vec<(Pose, Pose)> =
         readings.iter().map(|q| (b.forward_kinematics(q), a.forward_kinematics(q))).collect();
-    // Points do not show how a tip is turned: its place alone decides the base and where the tool is.
+    // Points do not show the orientation of a tip: its position alone determines the base and the position of the tool.
     let (placed, taught) =
         (Taught::of_places(&pairs, !base_is_free), Taught::from_tips(&pairs, a.arm_m() / 3.0, !base_is_free));
     let differences = pairs.iter().map(|(b, a)| {

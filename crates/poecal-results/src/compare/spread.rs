@@ -13,9 +13,9 @@ use poecal_numerics::linalg;
 
 /// Numbers of a joint: offset, tilt, shift.
 const PARTS: usize = 7;
-/// Share of the largest eigenvalue below which a direction is none: rounding.
+/// Share of the largest eigenvalue below which a direction counts as undetermined: rounding.
 const NONE: f64 = 1e-10;
-/// What was held is the same within this, metres: rounding of files and of the alignment.
+/// Largest difference of held values, metres: rounding of files and of the alignment.
 const HELD_M: f64 = 1e-7;
 
 /// Covariance of the changes of all joints, square metres, angles times a length.
@@ -25,7 +25,7 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// The sum of those of both calibrations; `None` if one has no uncertainty.
+    /// The sum of the covariances of both calibrations; `None` if one has no uncertainty.
     pub(crate) fn from_changes(changes: &Changes, files: [&CalibrationFile; 2]) -> Result<Option<Self>> {
         let length_m = changes.length_m();
         let size = PARTS * changes.joints.len();
@@ -96,7 +96,7 @@ impl Spread {
                 freedom += 1;
             }
         }
-        // What both calibrations held has no noise: a difference is one.
+        // Values that both calibrations held have no noise: any difference is a change.
         if freedom == 0 && difference.norm() > HELD_M {
             (value, freedom) = ((difference.norm() / HELD_M).powi(2), 1);
         }
@@ -105,7 +105,7 @@ impl Spread {
     }
 }
 
-/// Metres that a unit of an offset counts.
+/// Metres that one unit of an offset equals.
 fn unit(kind: JointKind, length_m: f64) -> f64 {
     if kind == JointKind::Revolute { length_m } else { 1.0 }
 }

@@ -1,7 +1,7 @@
 //! Exports: a calibrated robot in the forms of controllers, drivers, simulators and other tools, each read back and compared.
 //!
-//! A module a form, from axis frames or DH tables (`poecal-model`'s `forms`), with a variant of [`ExportFormat`]. The text is read back on 1,000
-//! configurations. `onto.rs` puts the numbers in a URDF that is named instead (`--onto`, `poecal export --onto`).
+//! One module for each form, from axis frames or DH tables (`poecal-model`'s `forms`), with a variant of [`ExportFormat`]. The text is read back on
+//! 1,000 configurations. `onto.rs` puts the numbers in a URDF that is named instead (`--onto`, `poecal export --onto`).
 
 mod mjcf;
 mod names;
@@ -33,7 +33,7 @@ use written::{
     CONFIGURATIONS, Proof, SAME, Written, export_error, is_same, left_out, read_back, remaining, unread,
 };
 
-/// Makes the forms by their words.
+/// Defines the forms by their words.
 macro_rules! formats {
     ($($(#[$doc:meta])* $name:ident = $word:literal,)+) => {
         /// A form.
@@ -43,7 +43,7 @@ macro_rules! formats {
         }
 
         impl ExportFormat {
-            /// All of them.
+            /// All forms.
             pub const ALL: [ExportFormat; 19] = [$(ExportFormat::$name),+];
 
             /// Its word, as the program and the package name it.
@@ -90,28 +90,28 @@ formats! {
     Usd = "usd",
     /// Origins, a row for each joint.
     Csv = "csv",
-    /// The joint offsets, base and tool that come nearest, JSON.
+    /// The best joint offsets, base and tool, JSON.
     Offsets = "offsets",
-    /// What was located, as transforms: ROS 2, URDF, quaternions and so on.
+    /// Located frames as transforms: ROS 2, URDF, quaternions and so on.
     Tf = "tf",
     /// Arrays of C with the nominal and the actual arm, for kinematics on a controller.
     C = "c",
 }
 
-/// What some forms need beside the robot.
+/// Inputs that some forms need beside the robot.
 #[derive(Clone, Debug, Default)]
 pub struct ExportOptions {
     /// The controller's checksum, which Universal Robots' driver compares.
     pub hash: Option<String>,
-    /// The calibration of motors that LeRobot has, whose offsets are corrected.
+    /// LeRobot's existing calibration of motors, whose offsets are corrected.
     pub motors: Option<String>,
 }
 
 /// Writes a robot in a form, reads it back and compares the tip on 1,000 configurations.
 ///
 /// # Errors
-/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the form cannot hold the robot, or the text read back differs by more than 1e-9 m (of a robot of a metre) or rad
-/// though the form can carry it.
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the form cannot hold the robot, or the text read back
+/// differs by more than 1e-9 m (of a robot of a metre) or rad though the form can carry it.
 pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> Result<Exported> {
     let counted = model.sums().map(|it| {
         format!(
@@ -164,8 +164,8 @@ pub fn export(model: &Model, format: ExportFormat, options: &ExportOptions) -> R
     Ok(Exported { text: written.text, notes, remains, beside: screws::beside(model)? })
 }
 
-/// The robot that a form of geometry can hold: without gives and terms of joint values, with offsets in the screws. A note says what that
-/// loses. TOML has places for terms that need no weights.
+/// The robot that a form of geometry can hold: without compliant joints and terms of joint values, with offsets in the screws. A note states the
+/// resulting loss. TOML can hold terms that need no weights.
 fn geometry<'a>(robot: &'a Robot, format: ExportFormat, notes: &mut Vec<String>) -> Cow<'a, Robot> {
     let gives = robot.joints.iter().any(|joint| joint.give_of.is_some());
     let is_held = format == ExportFormat::Toml && robot.terms.iter().all(|it| !it.term.needs_gravity());

@@ -1,4 +1,4 @@
-//! Names of links for forms in which every name is there once.
+//! Names of links for forms in which each name must be unique.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Those of a robot, changed as little as possible: joints stay if they can.
+    /// Names of a robot, changed as little as possible: joints keep theirs if they can.
     pub(crate) fn from_robot(robot: &Robot) -> Self {
         let mut taken = BTreeSet::from(["world".to_owned()]);
         let mut free = |name: &str| {

@@ -74,7 +74,7 @@ fn header(robot: &Robot) -> String {
     )
 }
 
-/// Functions from what the controller counts to the readings of the arms, and back.
+/// Functions from the controller's counts to the readings of the arms, and back.
 fn counted(counting: &Counting, readings: &[usize]) -> String {
     let function = |name: &str, (from, to): (&str, &str), row: &dyn Fn(usize) -> String| {
         let lines = (0..readings.len()).map(|at| format!("  {to}[{at}] = {};\n", row(at)));

@@ -1,4 +1,4 @@
-//! The joint offsets that come nearest: for controllers that take nothing else.
+//! The best approximation by joint offsets: for controllers that take nothing else.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ struct File<'a> {
     formula: &'static str,
     robot: &'a str,
     joints: Vec<JointOffset>,
-    /// The same as what the controller counts, where its readings are not the model's.
+    /// The offsets in the controller's counts, if its readings are not the model's.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     counted: Vec<JointOffset>,
     base_motion: PoseEntry,
@@ -112,7 +112,7 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
     Ok(Written { text, notes, proof: Proof::Remains(remains) })
 }
 
-/// Offsets of what the controller counts; none where that is what the model has.
+/// Offsets of the controller's counts; empty if these are the model's readings.
 fn counted(model: &Model, robot: &Robot, found: &Explanation) -> Result<Vec<JointOffset>> {
     let Some(controller) = model.sums() else { return Ok(Vec::new()) };
     let counting = controller.counting()?;
@@ -163,7 +163,7 @@ struct Motor {
 /// Largest homing offset that the motors store.
 const MOST_TICKS: i64 = 2047;
 
-/// The calibration of motors that LeRobot has, or one without offsets.
+/// LeRobot's existing calibration of motors, or one without offsets.
 fn motors_of(robot: &Robot, motors: Option<&str>) -> Result<BTreeMap<String, Motor>> {
     match motors {
         Some(text) => serde_json::from_str(text).map_err(|error| {

@@ -1,4 +1,4 @@
-//! Calibrated numbers in a URDF that somebody names: the one that was calibrated, or one with the same kinematics.
+//! Calibrated numbers in a URDF that the user names: the one that was calibrated, or one with the same kinematics.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ use poecal_numerics::error::{ErrorKind, Result};
 use poecal_storage::hashes::sha256_of;
 use poecal_storage::source_text;
 
-/// Writes the calibrated numbers of a calibration into the text of a URDF; all other bytes stay. `selection` says what of it was calibrated,
-/// where the calibration does not.
+/// Writes the calibrated numbers of a calibration into the text of a URDF; all other bytes remain. `selection` states the calibrated part of it, if
+/// the calibration does not.
 ///
 /// # Errors
 /// [`ErrorKind::Option`] if the model is no calibration; [`ErrorKind::Export`] if the URDF is another robot than the one that was calibrated;
@@ -61,7 +61,7 @@ pub fn onto(calibration: &Model, urdf: &Path, selection: &ChainSelection) -> Res
     Ok(Converted { text: patched.text, notes })
 }
 
-/// Refuses a URDF that is not the nominal robot of the calibration, whose joint frames may be known.
+/// Refuses a URDF that differs from the nominal robot of the calibration, whose joint frames may be known.
 fn refuse_other(nominal: &Robot, found: &Robot, urdf: &Path, has_frames: bool) -> Result<()> {
     let refuse = |message: String| Err(ErrorKind::Export.error(message).in_file(urdf));
     let names = |robot: &Robot| -> Vec<String> { robot.joints.iter().map(|it| it.name.clone()).collect() };
@@ -80,7 +80,7 @@ fn refuse_other(nominal: &Robot, found: &Robot, urdf: &Path, has_frames: bool) -
     if is_same(nominal, &off) {
         return Ok(());
     }
-    // The first joint whose frame on its link is another one.
+    // The first joint whose frame on its link differs.
     let on_link = |robot: &Robot, at: usize| {
         let below = at.checked_sub(1).and_then(|below| robot.joints.get(below));
         let joint = robot.joints.get(at)?;

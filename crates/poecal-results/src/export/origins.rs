@@ -25,7 +25,7 @@ const NO_TOOL: f64 = 1e-12;
 const NO_HASH: &str = "the file has no `hash`, which the driver compares with the controller's checksum and complains of if it is another: state it \
                        with --hash calib_…, as the driver's own extraction prints it";
 
-/// Whose file it is.
+/// Maker of the file's reader.
 pub(crate) enum Flavour<'a> {
     /// Joints by their own names.
     Names,
@@ -130,7 +130,7 @@ pub(crate) fn write(model: &Model, robot: &Robot, flavour: &Flavour<'_>) -> Resu
     Ok(Written { text, notes, proof: Proof::Again(again.robot(robot)?.into()) })
 }
 
-/// The frames of a text as it is written here; most have no place for the tip.
+/// The frames of a text as written here; most forms have no place for the tip.
 fn frames_of(text: &str, flavour: &Flavour<'_>, keys: &[String], last_from_tip: Pose) -> Result<AxisFrames> {
     match flavour {
         Flavour::Names => {
@@ -145,7 +145,7 @@ fn frames_of(text: &str, flavour: &Flavour<'_>, keys: &[String], last_from_tip: 
     }
 }
 
-/// Origins of the joints of the URDF that was calibrated, fixed ones too, with the axes that it has; none where an axis turned in its frame.
+/// Origins of the joints of the URDF that was calibrated, including fixed ones, with its axes. `None` if an axis turned in its frame.
 fn write_own(document: &UrdfDocument, robot: &Robot, path: &Path) -> Result<Option<Written>> {
     if !robot.is_serial() {
         return Ok(None);
@@ -212,7 +212,7 @@ fn named_numbers(pose: &Pose) -> impl Iterator<Item = (&'static str, f64)> {
     NUMBERS.into_iter().zip(xyz.into_iter().chain(rpy))
 }
 
-/// The same on one line.
+/// The numbers of an origin with their names, on one line.
 fn stated(pose: &Pose) -> String {
     let parts: Vec<String> =
         named_numbers(pose).map(|(name, number)| format!("{name}: {}", shortest(number))).collect();
@@ -236,10 +236,10 @@ fn push_origin(
     }
 }
 
-/// A number that YAML takes for one with decimals.
+/// A number that YAML reads as one with decimals.
 fn yaml_number(number: f64) -> String {
     let text = format!("{number:?}");
-    // YAML 1.1 wants a point before an exponent.
+    // YAML 1.1 requires a point before an exponent.
     match text.split_once('e') {
         Some((digits, power)) if !digits.contains('.') => format!("{digits}.0e{power}"),
         _ => text,
@@ -273,7 +273,7 @@ pub(crate) fn quoted(text: &str) -> String {
     found
 }
 
-/// Place, and roll, pitch, yaw, of the joints by their keys, of a text as it is written here.
+/// Position, and roll, pitch, yaw, of the joints by their keys, of a text as written here.
 fn read(text: &str, keys: &[String]) -> Result<Vec<([f64; 3], [f64; 3])>> {
     let path = Path::new("origins.yaml");
     let values = values(text, path, "origins of joints")?;

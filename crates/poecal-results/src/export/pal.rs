@@ -57,12 +57,12 @@ pub(crate) fn write(model: &Model, robot: &Robot) -> Result<Written> {
 /// Numbers by their names.
 fn read(text: &str) -> Result<BTreeMap<String, f64>> {
     let path = Path::new("master_calibration.yaml");
-    // A robot as it was has none.
+    // An unchanged robot has an empty text.
     let values = if text.is_empty() { Vec::new() } else { values(text, path, "differences of origins")? };
     values.into_iter().map(|value| Ok((value.keys.concat(), value.number(path)?))).collect()
 }
 
-/// What is to be added to an origin; of the two forms of the same turn, by the smaller one.
+/// Addition to an origin; of the two equivalent sets of angles the smaller one.
 fn differences(before: &Origin, after: &Origin) -> [f64; 6] {
     let turn = |angle: f64| angle - TAU * (angle / TAU).round();
     let by = |rpy: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| turn(rpy[k] - before.rpy[k])) };
@@ -74,7 +74,7 @@ fn differences(before: &Origin, after: &Origin) -> [f64; 6] {
     [x, y, z, a, b, c]
 }
 
-/// Origins with what the file adds.
+/// Origins with the file's differences added.
 fn corrected(origins: &[Origin], numbers: &BTreeMap<String, f64>) -> Vec<Origin> {
     let of = |origin: &Origin| {
         let added: [f64; 6] =

@@ -1,4 +1,4 @@
-//! Screws of a product of exponentials, and what no other form says of joints.
+//! Screws of a product of exponentials, and the properties of joints that no other form can hold.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +34,7 @@ struct JointScrew {
 }
 
 pub(crate) fn write(robot: &Robot) -> Result<Written> {
-    // With offsets of readings taken in.
+    // With offsets of readings included.
     let plain = AxisFrames::from_robot(robot)?.robot(robot)?;
     let file = File {
         form: "poe".to_owned(),
@@ -82,7 +82,7 @@ struct Beside<'a> {
     robot: &'a str,
     formula: &'static str,
     units: &'static str,
-    /// Joints that turn by terms alone, with their axes.
+    /// Compliant joints, which turn by terms alone, with their axes.
     gives: Vec<JointScrew>,
     terms: Vec<BesideTerm<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -99,7 +99,7 @@ struct BesideTerm<'a> {
     coefficient: f64,
 }
 
-/// What a form of geometry alone cannot say of the joints of a model.
+/// Properties of the joints of a model that a form of geometry alone cannot hold.
 pub(crate) fn beside(model: &Model) -> Result<Option<String>> {
     let plain = model.robot.without_offsets();
     if plain.terms.is_empty() {

@@ -1,4 +1,4 @@
-//! Gazebo's model: links placed in the links before, joints about the z of their links.
+//! Gazebo's model: links placed in their predecessors, joints about the z axes of their links.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write as _;

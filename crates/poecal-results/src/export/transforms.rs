@@ -1,4 +1,4 @@
-//! What a calibration located, as transforms: targets on the tip, and the measuring device or board in the base.
+//! The frames that a calibration located, as transforms: targets on the tip, and the measuring device or board in the base.
 
 use super::{Exported, export_error};
 use crate::calibration_file::{CalibrationFile, MeasuredEntry, StationEntry};
@@ -35,7 +35,7 @@ pub(crate) fn write(model: &Model) -> Result<Exported> {
     Ok(Exported { text: all.join("\n"), notes, remains, beside: None })
 }
 
-/// Targets in the frame of the tip, and what is to be said of them.
+/// Targets in the frame of the tip, and notes on them.
 fn on_tip(file: &CalibrationFile) -> Result<(Vec<String>, Vec<String>)> {
     let mut notes = Vec::new();
     let mut all = Vec::new();
@@ -53,7 +53,7 @@ fn on_tip(file: &CalibrationFile) -> Result<(Vec<String>, Vec<String>)> {
     Ok((all, notes))
 }
 
-/// Devices in the base that were located: of pictures the camera, or the board.
+/// Devices in the base that were located: for pictures the camera, or the board.
 fn in_base(file: &CalibrationFile) -> Result<Vec<String>> {
     if file.frame() == DeviceFrameKnowledge::Base {
         return Ok(Vec::new());
@@ -78,7 +78,7 @@ fn in_base(file: &CalibrationFile) -> Result<Vec<String>> {
     Ok(all)
 }
 
-/// The name of the only device: of pictures that of the camera, or of the board if the camera is on the arm.
+/// The name of the only device: for pictures that of the camera, or of the board if the camera is on the arm.
 fn device_name(file: &CalibrationFile) -> String {
     let Some(pictures) = &file.pictures else { return DEVICE.to_owned() };
     let mut names =
@@ -89,7 +89,7 @@ fn device_name(file: &CalibrationFile) -> String {
         .to_owned()
 }
 
-/// Names of what is on links other than the tip's.
+/// Names of targets on links other than the tip's.
 fn elsewhere(file: &CalibrationFile) -> Vec<&str> {
     let targets = file.targets.iter().filter(|(_, it)| it.on.is_some()).map(|(name, _)| name.as_str());
     targets.chain(file.instruments.keys().map(String::as_str)).collect()

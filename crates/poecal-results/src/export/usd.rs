@@ -95,7 +95,7 @@ fn push_body(text: &mut String, name: &str, pose: &Pose, mass: Option<(f64, Vect
 }
 
 fn push_joint(text: &mut String, (schema, name): (&str, &str), (before, link): (&str, &str), frame: &Pose) {
-    // What a reader of single precision keeps.
+    // The value in single precision, as a reader stores it.
     let [x, y, z] = <[f64; 3]>::from(frame.translation).map(|it| it as f32);
     let [qx, qy, qz, qw] = frame.quaternion_xyzw().map(|it| it as f32);
     let _ = writeln!(

@@ -1,4 +1,4 @@
-//! What an export makes, and how it is read back and compared.
+//! Result of an export: its text, read back and compared.
 
 use crate::model::Model;
 use poecal_formats::proof::Difference;
@@ -11,11 +11,11 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 pub struct Exported {
     /// The whole text.
     pub text: String,
-    /// What the form loses, and what was added, a sentence each.
+    /// Losses of the form, and additions, a sentence each.
     pub notes: Vec<String>,
-    /// Largest difference of the tip on 1,000 configurations, of the text read back from the robot without terms of its joints.
+    /// Largest difference of the tip on 1,000 configurations between the text read back and the robot without terms of its joints.
     pub remains: Difference,
-    /// What the form cannot say of the joints, as a text of its own: terms of their values, with formulas; none if there are none.
+    /// Properties of the joints that the form cannot hold, as a separate text: terms of their values, with formulas. `None` if there are none.
     pub beside: Option<String>,
 }
 
@@ -25,14 +25,14 @@ pub(crate) const CONFIGURATIONS: usize = 1000;
 /// Largest difference (metres for a robot of a metre, radians) of a form that can carry the geometry.
 pub(crate) const SAME: f64 = 1e-9;
 
-/// A text, and the robot that is read from it; what its form cannot say is in notes.
+/// A text, and the robot that is read from it; the properties that its form cannot hold are in notes.
 pub(crate) struct Written {
     pub(crate) text: String,
     pub(crate) notes: Vec<String>,
     pub(crate) proof: Proof,
 }
 
-/// How a text compares with the robot.
+/// Comparison of a text with the robot.
 pub(crate) enum Proof {
     /// It carries the geometry: the robot that was read back, which must be the same.
     Again(Box<Robot>),
@@ -40,7 +40,7 @@ pub(crate) enum Proof {
     Remains(Difference),
 }
 
-/// How far a robot that was read back is off.
+/// Deviation of a robot that was read back.
 pub(crate) fn remaining(robot: &Robot, again: &Robot) -> Difference {
     Difference::from_robots(robot, again, CONFIGURATIONS)
 }
@@ -59,12 +59,12 @@ pub(crate) fn read_back(text: &str, name: &str, ends: Option<(&str, &str)>) -> R
     read.map(|model| model.robot).map_err(|error| unread(&format!("a fault ({})", error.message())))
 }
 
-/// Whether a difference from a robot is rounding.
+/// True if a difference from a robot is rounding.
 pub(crate) fn is_same(robot: &Robot, remains: &Difference) -> bool {
     remains.is_within(SAME * robot.reach_m().max(1.0), SAME)
 }
 
-/// A note on targets that the form does not name; of what was measured without a name, every table of a calibration says where it is.
+/// A note on targets that the form does not name; the position of a target without a name is in every table of a calibration.
 pub(crate) fn left_out(robot: &Robot) -> Option<String> {
     let names = robot.targets.iter().map(|(name, _)| name.as_str());
     let names: Vec<&str> = names.filter(|name| *name != MEASURED).collect();

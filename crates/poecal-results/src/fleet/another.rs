@@ -1,4 +1,4 @@
-//! Measurements that are of another robot of the line than their serial number says: a file under two of them, and robots that were exchanged.
+//! Measurements of another robot of the line than their serial number states: a file under two serial numbers, and exchanged robots.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use super::{Ledger, LedgerRow, Station};
 use crate::calibration_file::CalibrationFile;
 use crate::compare::compare;
 
-/// How many times better a visit must fit another robot than its own, to be that robot's.
+/// Ratio of the errors against its own robot and another robot from which on a visit is of the other.
 const BETTER: f64 = 4.0;
 /// Code of a refused calibration.
 const REFUSED: u8 = 2;
 
-/// Of each of some rows, in their order, the sentence of a file that is of another serial number too, byte for byte: by a row of a ledger that was not
-/// refused or another robot's, or by an earlier one of these.
+/// For each of some rows, in their order, a sentence if its file also belongs to another serial number, byte for byte. The other is a row of a ledger
+/// that was not refused or of another robot, or an earlier one of these rows.
 #[must_use]
 pub fn doubled<'a>(open: &[&'a LedgerRow], ledger: &'a Ledger) -> Vec<Option<String>> {
     let mut known: BTreeMap<&str, &LedgerRow> = BTreeMap::new();
@@ -32,15 +32,15 @@ pub fn doubled<'a>(open: &[&'a LedgerRow], ledger: &'a Ledger) -> Vec<Option<Str
     open.iter().map(of).collect()
 }
 
-/// That the calibration of a row is of another robot of the ledger: its tip is where that robot's is, and not where its own was at its last visit.
-/// `None` where it is its own, and where nothing earlier is known of one of them.
+/// Sentence if the calibration of a row is of another robot of the ledger. Its tip is then at that robot's position, and not at its own of the last
+/// visit. `None` if it is its own, or if there is no earlier result of one of them.
 #[must_use]
 pub fn exchanged(station: &Station, row: &LedgerRow, ledger: &Ledger) -> Option<String> {
     let read = |it: &LedgerRow| {
         let path = station.folder.join(&it.results).join("calibration.json");
         CalibrationFile::read(path).ok()
     };
-    // The last result of each robot of this type, that is still there.
+    // The last result of each robot of this type that still exists.
     let is_known = |it: &&LedgerRow| {
         it.exit < REFUSED && it.of_type == row.of_type && it.results != row.results && it.of_another.is_none()
     };

@@ -1,4 +1,4 @@
-//! The measurements that lie in the inbox.
+//! The measurements in the inbox.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,9 +17,9 @@ const LONGEST: usize = 100;
 pub struct Found {
     /// Serial number of its robot.
     pub serial: String,
-    /// When it was measured, as its path says; empty where it does not.
+    /// Date of its measurement from its path; empty if the path has none.
     pub date: String,
-    /// Type of its robot; empty where there is one.
+    /// Type of its robot; empty if there is only one.
     pub of_type: String,
     /// Its path.
     pub path: PathBuf,
@@ -39,7 +39,7 @@ impl Found {
         station.models.get(&self.of_type).or_else(|| station.models.get(""))
     }
 
-    /// What is wrong with its names, if they cannot be names of folders.
+    /// Fault of its names, if they cannot be names of folders.
     #[must_use]
     pub fn fault(&self) -> Option<String> {
         let is_plain = |name: &str| {
@@ -59,7 +59,7 @@ impl Found {
         sha256(&self.path).ok().flatten()
     }
 
-    /// Whether it is of this part of all robots, by its serial number: 1 to `of`.
+    /// True if it belongs to this part of all robots, by its serial number: 1 to `of`.
     #[must_use]
     pub fn is_of_shard(&self, (number, of): (u32, u32)) -> bool {
         let hash = poecal_storage::hashes::sha256_of(&self.serial);
@@ -68,7 +68,7 @@ impl Found {
     }
 }
 
-/// All files of the inbox, by serial number and date, and what is none.
+/// All files of the inbox, by serial number and date, and the entries that are no measurements.
 ///
 /// # Errors
 /// [`ErrorKind::File`] if the folder before the first braces cannot be read, or a folder has too many files.
@@ -127,7 +127,7 @@ fn walk(
     Ok(())
 }
 
-/// The texts in the place of braces, if a name is of this pattern: each as short as it can be.
+/// The texts in place of the braces, if a name matches this pattern: each as short as possible.
 fn matched(pattern: &str, name: &str) -> Option<Vec<(String, String)>> {
     let Some(open) = pattern.find('{') else { return (pattern == name).then(Vec::new) };
     let rest = name.strip_prefix(pattern.get(..open)?)?;

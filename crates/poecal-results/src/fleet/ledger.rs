@@ -1,4 +1,4 @@
-//! `fleet.jsonl`: a line a robot, appended and synced.
+//! `fleet.jsonl`: one line for each robot, appended and synced.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _};
@@ -17,13 +17,13 @@ pub const LEDGER: &str = "fleet.jsonl";
 const SCHEMA: &str = "poecal-fleet-1";
 const FAMILY: &str = "poecal-fleet-";
 
-/// What was done, line by line.
+/// The calibrations done, line by line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     path: PathBuf,
     /// The lines, in their order.
     rows: Vec<LedgerRow>,
-    /// Places of each robot's and date's lines.
+    /// Indices of each robot's and date's lines.
     places: BTreeMap<Key, Vec<usize>>,
 }
 
@@ -35,10 +35,10 @@ fn key(row: &LedgerRow) -> Key {
 }
 
 impl Ledger {
-    /// Reads a ledger; an empty one if there is no file. A last line that a killed run left half written is cut off.
+    /// Reads a ledger; an empty one if there is no file. An incomplete last line of a killed run is cut off.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if it cannot be read, or the cut line cannot be; [`ErrorKind::Syntax`] if a line is none of this version.
+    /// [`ErrorKind::File`] if it cannot be read, or an incomplete line not cut off; [`ErrorKind::Syntax`] if a line is not of this version.
     pub fn open(path: &Path) -> Result<Self> {
         let mut ledger = Ledger { path: path.to_owned(), ..Ledger::default() };
         let Some(text) = bytes(path)? else { return Ok(ledger) };
@@ -68,7 +68,7 @@ impl Ledger {
         places.iter().rev().map(|at| &self.rows[*at])
     }
 
-    /// Whether it has a row of the same inputs.
+    /// True if it has a row of the same inputs.
     #[must_use]
     pub fn has(&self, row: &LedgerRow) -> bool {
         self.alike(row).any(|it| it.inputs == row.inputs)
@@ -99,7 +99,7 @@ impl Ledger {
     }
 }
 
-/// The rows of some ledgers, one after the other; of a robot and date that was done again, the last.
+/// The rows of some ledgers in sequence; for a robot and date that was repeated, the last.
 ///
 /// # Errors
 /// As [`Ledger::open`], and [`ErrorKind::File`] if there is no such file.
@@ -119,7 +119,7 @@ pub fn read_ledgers(paths: &[PathBuf]) -> Result<Vec<LedgerRow>> {
     let mut kept: Vec<usize> = last.into_values().collect();
     kept.sort_unstable();
     let mut found: Vec<LedgerRow> = kept.into_iter().map(|at| all[at].clone()).collect();
-    // In the order measured, where that is known; a clock that jumped changes nothing.
+    // In the order of measurement, if that is known; a clock that jumped changes nothing.
     found.sort_by(|a, b| a.date.cmp(&b.date));
     Ok(found)
 }

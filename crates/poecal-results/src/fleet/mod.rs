@@ -1,4 +1,4 @@
-//! A line of robots: where their measurements lie and their results go, and the ledger of what was done.
+//! A line of robots: paths of their measurements and results, and the ledger of their calibrations.
 
 mod another;
 mod inbox;

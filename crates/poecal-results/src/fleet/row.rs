@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use crate::calibration_file::CalibrationFile;
 use poecal_calibrate::{AcceptedModel, Decision, Level};
 
-/// How one joint differs from nominal.
+/// Deviation of one joint from nominal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CorrectionRow {
     /// The joint.
     pub joint: String,
-    /// What is to be added to its value, degrees, of a joint that slides millimetres; null where base or tool can take its place.
+    /// Addition to its value, degrees, for a joint that slides millimetres; null where base or tool can take its place.
     pub offset: Option<f64>,
     /// Its standard deviation.
     pub sigma_offset: Option<f64>,
@@ -24,21 +24,21 @@ pub struct CorrectionRow {
     pub shift_mm: f64,
     /// Standard deviation of that.
     pub sigma_shift_mm: Option<f64>,
-    /// Angle between the axis and its nominal direction, degrees: what a tolerance is of.
+    /// Angle between the axis and its nominal direction, degrees: the subject of a tolerance.
     #[serde(default)]
     pub axis_tilt_deg: f64,
     /// Distance of the axis from the nominal joint's origin, millimetres.
     #[serde(default)]
     pub axis_shift_mm: f64,
-    /// The measurements' share in what is known of its direction, 0 to 1; the rest is the prior's. Null without a prior.
+    /// Share of the measurements in the information on its direction, 0 to 1; the rest is the prior's. Null without a prior.
     #[serde(default)]
     pub tilt_from_data: Option<f64>,
-    /// The same of its place.
+    /// Share of the measurements in the information on its position, 0 to 1.
     #[serde(default)]
     pub shift_from_data: Option<f64>,
 }
 
-/// What one group of terms does at one joint: milliradians, of shift and runout millimetres.
+/// Effect of one group of terms at one joint: milliradians, of shift and runout millimetres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TermRow {
     /// The joint.
@@ -49,14 +49,14 @@ pub struct TermRow {
     pub amplitude: f64,
     /// Its standard deviation.
     pub sigma: f64,
-    /// Whether it is more than chance and the prior make.
+    /// True if it is larger than chance and the prior explain.
     pub found: bool,
 }
 
 /// An input: the measurements, the model, settings.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct InputRow {
-    /// Its path, from the folder of the station where it is in it.
+    /// Its path, from the folder of the station if the file is inside it.
     pub file: String,
     /// SHA-256 of its bytes.
     pub sha256: String,
@@ -67,7 +67,7 @@ pub struct InputRow {
 pub struct SizeRow {
     /// The group.
     pub group: String,
-    /// Radians, of shift and runout metres; 0 of a group that was left out.
+    /// Radians, of shift and runout metres; 0 for a group that was left out.
     pub size: f64,
 }
 
@@ -76,13 +76,13 @@ pub struct SizeRow {
 pub struct LedgerRow {
     /// Name and version of the ledger.
     pub schema: String,
-    /// When it was done, UTC.
+    /// Time of the calibration, UTC.
     pub time: String,
     /// Serial number of the robot.
     pub serial: String,
-    /// When it was measured, as the inbox says.
+    /// Date of the measurement, as the inbox states it.
     pub date: String,
-    /// Type of the robot; empty where there is one.
+    /// Type of the robot; empty if there is only one.
     #[serde(rename = "type")]
     pub of_type: String,
     /// The measurements, from the folder of the station.
@@ -93,38 +93,38 @@ pub struct LedgerRow {
     pub inputs: Vec<InputRow>,
     /// Version of the program.
     pub poecal_version: String,
-    /// What the calibration ended with: 0 good, 1 not to be used or a limit not kept, 2 refused, 3 no result.
+    /// Outcome of the calibration: 0 good, 1 not to be used or a limit not kept, 2 refused, 3 no result.
     pub exit: u8,
-    /// Why, as a sentence; null of a good one.
+    /// Reason for it, as a sentence; null for a good one.
     pub reason: Option<String>,
     /// The verdict: good, inside_sampled_range, do_not_use; null without a result.
     pub verdict: Option<String>,
-    /// Whether the limits that were asked for are kept: pass, fail, undecided; null where none were asked for.
+    /// Decision on the requested limits: pass, fail, undecided; null if none were requested.
     pub accepted: Option<String>,
     /// Number of measurements.
     pub rows: Option<u64>,
     /// Error of the delivered model on the rows that judge it (RMS), millimetres or degrees.
     pub error_rms: Option<f64>,
-    /// Which rows these are: held_out, cross_validation, or training.
+    /// Set of these rows: held_out, cross_validation, or training.
     pub error_of: Option<String>,
-    /// Noise of the measurements, millimetres or degrees a component.
+    /// Noise of the measurements, millimetres or degrees for each component.
     pub noise: Option<f64>,
     /// Each joint's correction.
     pub corrections: Vec<CorrectionRow>,
-    /// What joints do beyond geometry.
+    /// Effects of joints beyond geometry.
     pub terms: Vec<TermRow>,
-    /// Whether what the line says of its robots was the prior.
+    /// True if the line's estimate of its robots was the prior.
     #[serde(default)]
     pub by_prior: bool,
-    /// Sizes of the terms; none without terms.
+    /// Sizes of the terms; empty without terms.
     #[serde(default)]
     pub sizes: Vec<SizeRow>,
-    /// That the measurements are of another robot of the line, a sentence; empty where nothing says so.
+    /// Sentence if the measurements are of another robot of the line; empty if nothing shows that.
     #[serde(default, with = "sentence")]
     pub of_another: Option<String>,
 }
 
-/// A sentence that may be absent, as a text that is empty then: tables have one type for it.
+/// Serialisation of an optional sentence as a text, empty if absent: tables have one type for it.
 mod sentence {
     use serde::{Deserialize, Deserializer, Serializer};
 
@@ -137,7 +137,7 @@ mod sentence {
     }
 }
 
-/// A figure without digits that say nothing.
+/// A figure without insignificant digits.
 fn shown(value: f64) -> f64 {
     format!("{value:.6e}").parse().unwrap_or(value)
 }
@@ -147,7 +147,7 @@ fn word(value: impl Serialize) -> Option<String> {
 }
 
 impl LedgerRow {
-    /// The same with what a calibration found.
+    /// The same row with the findings of a calibration.
     #[must_use]
     pub fn with(self, file: &CalibrationFile) -> Self {
         let held = file.accuracy.held_out.as_ref();
@@ -207,13 +207,13 @@ impl LedgerRow {
         }
     }
 
-    /// Whether a robot passed: a good calibration whose limits are kept.
+    /// True if a robot passed: a good calibration whose limits are kept.
     #[must_use]
     pub fn is_passed(&self) -> bool {
         self.exit == 0
     }
 
-    /// The prior's share in what is known of its axes, 0 to 1; `None` without a prior.
+    /// Share of the prior in the information on its axes, 0 to 1; `None` without a prior.
     #[must_use]
     pub fn prior_share(&self) -> Option<f64> {
         let each = self.corrections.iter().flat_map(|it| [it.tilt_from_data, it.shift_from_data]).flatten();

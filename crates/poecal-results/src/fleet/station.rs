@@ -1,4 +1,4 @@
-//! `station.toml`: where robots lie, how they are calibrated, and which limits the line keeps.
+//! `station.toml`: paths of the robots' files, options of their calibration, and the limits of the line.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ struct File {
 type Refuse<'a> = &'a dyn Fn(usize, String) -> Result<()>;
 
 impl File {
-    /// Refuses paths without a place for the serial number, or with places for what is not known.
+    /// Refuses paths without a placeholder for the serial number, or with an unknown placeholder.
     fn check_paths(&self, refuse: Refuse<'_>) -> Result<()> {
         for (key, of) in [("inbox", &self.inbox), ("results", &self.results)] {
             let named = of.get_ref();
@@ -77,7 +77,7 @@ impl File {
     /// Refuses limits that are no range.
     fn check_limits(&self, refuse: Refuse<'_>) -> Result<()> {
         for (name, [low, high]) in &self.limits {
-            // Not a number is in no order.
+            // NaN is in no order.
             if !(low < high && (low.is_finite() || high.is_finite())) {
                 let message = format!(
                     "found limits of `{name}` that are no range, expected the lower one first, like [-0.3, 0.3], or [-inf, 0.3] of one limit"
@@ -94,40 +94,40 @@ impl File {
 pub struct Station {
     /// Its file.
     pub path: PathBuf,
-    /// Its folder, from which paths in it are.
+    /// Its folder, the base of the paths in it.
     pub folder: PathBuf,
-    /// Where measurements lie: a path with `{serial}`, and `{date}` and `{type}` where there are some.
+    /// Pattern of the paths of measurements: with `{serial}`, and `{date}` and `{type}` if there are several.
     pub inbox: String,
-    /// Where results go: a path with `{serial}`, and with `{date}` where the inbox has it.
+    /// Pattern of the paths of results: with `{serial}`, and with `{date}` if the inbox has it.
     pub results: String,
-    /// The model of each type; of one without a name that of all.
+    /// The model of each type; a single type has an empty name.
     pub models: BTreeMap<String, PathBuf>,
     /// The ledger.
     pub ledger: PathBuf,
     /// Settings of `poecal calibrate`.
     pub settings: Option<PathBuf>,
-    /// What the line says of its next robot, as `fleet_prior` of the report writes it: the prior of all but every twentieth.
+    /// Estimate of the line's next robot, as `fleet_prior` of the report writes it: the prior of all but every twentieth.
     pub prior: Option<PathBuf>,
     /// Limits of `--accept`.
     pub accept: Vec<String>,
-    /// Serial number of the reference arm, which is measured again and again.
+    /// Serial number of the reference arm, which is measured repeatedly.
     pub reference: Option<String>,
-    /// Lower and upper limits of figures, by their names, in the units of these.
+    /// Lower and upper limits of figures, by their names, in their units.
     pub limits: BTreeMap<String, [Option<f64>; 2]>,
 }
 
-/// Of so many robots one is measured in full, and judged without the prior.
+/// One robot of this many is measured in full and judged without the prior.
 const IN_FULL: u64 = 20;
 
 impl Station {
-    /// A path as the ledger has it: from the folder of the station, wherever the program was started.
+    /// A path as in the ledger: from the folder of the station, independent of the current folder.
     #[must_use]
     pub fn from_folder(&self, path: &Path) -> String {
         path.strip_prefix(&self.folder).unwrap_or(path).display().to_string()
     }
 
-    /// Whether a robot is one of those that are measured in full and judged without the prior: where its serial number ends in a number that 20
-    /// divides, so that it is known before; a serial number without one by its SHA-256.
+    /// True if a robot is measured in full and judged without the prior. Its serial number ends then in a multiple of 20, so that it is known
+    /// beforehand. A serial number without a final number is decided by its SHA-256.
     #[must_use]
     pub fn is_in_full(serial: &str) -> bool {
         let digits = serial.trim_start_matches(|letter: char| !letter.is_ascii_digit());

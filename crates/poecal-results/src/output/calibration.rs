@@ -11,21 +11,21 @@ use poecal_numerics::error::Result;
 /// Output of a calibration beside its models.
 #[derive(Clone, Debug)]
 pub struct Results<'a> {
-    /// For `calibration.json`.
+    /// Contents of `calibration.json`.
     pub file: CalibrationFile,
-    /// For `residuals.csv`.
+    /// Contents of `residuals.csv`.
     pub residuals: ResidualRows<'a>,
     /// `report.html`, if wanted.
     pub report: Option<Page>,
 }
 
-/// Writes a calibration's files, of the calibrated robot with its targets. They are written to a staging folder first, read back and
-/// compared with the robot on 1,000 configurations, and only then put in place. The report goes to the place `elsewhere` if there is
-/// one.
+/// Writes a calibration's files, of the calibrated robot with its targets. They are written to a staging folder first, read back and compared with
+/// the robot on 1,000 configurations, and only then put in place. The report is written to `elsewhere` if there is one.
 ///
 /// # Errors
-/// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if
-/// a file read back differs from the fit by more than 1e-9 m or rad. Nothing is left behind then.
+/// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written;
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a file read back differs from the fit by more than 1e-9 m or rad.
+/// Nothing is left behind then.
 pub fn write(
     place: FolderPlace,
     elsewhere: Option<FilePlace>,
@@ -35,7 +35,7 @@ pub fn write(
 ) -> Result<Written> {
     let mut notes = Vec::new();
     let json = results.file.to_text()?;
-    // As the file has it: every later way from it to a URDF gives the same text.
+    // As in the file: every later path from it to a URDF produces the same text.
     let as_written = results.file.robot()?;
     let mut files = vec![NewFile::of_robot("calibration.json".to_owned(), json, robot)];
     files.extend(robot_files("calibrated", model, &as_written, &mut notes)?);

@@ -35,7 +35,7 @@ const TIP: [&str; 3] = ["tcp.json", "transforms.txt", "rows.csv"];
 /// File names of every project.
 pub(crate) const PROJECT: [&str; 6] =
     ["measurements.csv", "joints.csv", "poecal.toml", "README.md", "poses.csv", "touches.csv"];
-/// File names of its model, one of which it has.
+/// Possible file names of its model, one of which it has.
 const MODELS: [&str; 3] = ["robot.urdf", "robot.toml", "robot.json"];
 
 /// Contents of an output folder.
@@ -49,16 +49,16 @@ pub enum Contents {
     Simulation,
     /// The report of a reproduction.
     Reproduction,
-    /// Where a camera is.
+    /// Pose of a camera.
     HandEye,
-    /// Where a tool's tip is.
+    /// Position of a tool's tip.
     Tip,
     /// A project to start from.
     Project,
 }
 
 impl Contents {
-    /// Whether any kind of run writes files of this name.
+    /// True if any kind of run writes files of this name.
     pub(crate) fn is_of_any(name: &str) -> bool {
         let all = [
             Contents::Calibration,
@@ -72,7 +72,7 @@ impl Contents {
         all.into_iter().any(|contents| contents.is_own(name)) || MODELS.contains(&name)
     }
 
-    /// The file by which a folder of other contents, whose report would be replaced, is known.
+    /// The file that identifies a folder of other contents, whose report would be replaced.
     pub(crate) fn of_others(self) -> Option<&'static str> {
         match self {
             Contents::Calibration => Some(VALIDATION[0]),
@@ -85,7 +85,7 @@ impl Contents {
         }
     }
 
-    /// Whether these contents may have a file of this name; one of an earlier run is removed.
+    /// True if these contents may have a file of this name; one of an earlier run is removed.
     #[must_use]
     pub fn is_own(self, name: &str) -> bool {
         match self {
@@ -110,7 +110,7 @@ fn is_picture(name: &str) -> bool {
     number.is_some_and(|it| it.len() >= 3 && it.bytes().all(|c| c.is_ascii_digit()))
 }
 
-/// Whether a reproduction may have a file of this name.
+/// True if a reproduction may have a file of this name.
 fn is_of_reproduction(name: &str) -> bool {
     let figure = name.strip_prefix("figure-").and_then(|rest| rest.strip_suffix(".svg"));
     ["report.html", "report.md", "results.json"].contains(&name)

@@ -46,7 +46,7 @@ impl FolderPlace {
             }
         }
         let _lock = lock(self.staging.disk.as_ref(), &self.folder).map_err(failed)?;
-        // An earlier holder of the lock may have been killed in the middle of an exchange.
+        // An earlier holder of the lock may have been killed during an exchange.
         let mut notes = Vec::new();
         leftovers::settle_inside(self.staging.disk.as_ref(), &self.folder, &mut |note| notes.push(note));
         let replaced = self.look_again(failed)?;
@@ -115,7 +115,7 @@ impl FolderPlace {
         Ok(Some(notes))
     }
 
-    /// The new files in a staging folder beside the folder, if that holds only files of ours.
+    /// The new files in a staging folder beside the folder, if the folder holds only files of poecal.
     fn moved_beside(&self) -> Option<Staging> {
         let disk = self.staging.disk.clone();
         let names = staging::names(disk.as_ref(), &self.folder).ok()?;
@@ -191,7 +191,7 @@ impl FolderPlace {
     }
 }
 
-/// Whether something is at a path.
+/// True if something exists at a path.
 fn is_taken(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::AlreadyExists | io::ErrorKind::DirectoryNotEmpty)
 }

@@ -13,7 +13,7 @@ pub(crate) const GENERATOR: &str = "<meta name=\"generator\" content=\"poecal ";
 /// Number of leading bytes that contain it.
 const HEAD: u64 = 4096;
 
-/// What may happen to existing files.
+/// Treatment of existing files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// They stay, and nothing is written.
@@ -25,7 +25,7 @@ pub enum Existing {
 }
 
 impl Existing {
-    /// From the state of a switch.
+    /// Variant by the state of a switch.
     #[must_use]
     pub fn forced(force: bool) -> Self {
         if force { Existing::Replaced } else { Existing::Kept }
@@ -66,7 +66,7 @@ pub(crate) fn new_place(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, PathBu
     }
 }
 
-/// Object that a link leads to.
+/// Object at the end of a link.
 pub(crate) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Object)> {
     let actual = disk.actual(path).and_then(|actual| Ok((actual.clone(), disk.look(&actual)?)));
     actual.map_err(|error| {
@@ -74,7 +74,7 @@ pub(crate) fn led_to(disk: &dyn Disk, path: &Path) -> Result<(PathBuf, Object)> 
     })
 }
 
-/// Refuses to replace an input of the same run, by whatever path.
+/// Refuses to replace an input of the same run, by any path.
 pub(crate) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Result<()> {
     let Some(input) = inputs.iter().find(|input| named_files::are_same(disk, input, path)) else {
         return Ok(());
@@ -87,7 +87,7 @@ pub(crate) fn refuse_input(disk: &dyn Disk, path: &Path, inputs: &[&Path]) -> Re
     Err(refused(path, message))
 }
 
-/// Whether poecal wrote a file.
+/// True if poecal wrote a file.
 pub(crate) fn is_of_poecal(disk: &dyn Disk, path: &Path, mark: &str) -> bool {
     let mut head = Vec::new();
     let is_file = disk.look(path).is_ok_and(|found| found.kind == ObjectKind::File);

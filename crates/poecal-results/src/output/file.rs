@@ -13,7 +13,7 @@ use poecal_storage::document;
 /// Name of the file in its staging folder.
 const NAME: &str = "file";
 
-/// Whether a path is a stream of this process.
+/// True if a path is a stream of this process.
 fn is_stream(path: &Path) -> bool {
     let number = |path: &str| {
         let number = path.strip_prefix("/dev/fd/").or_else(|| path.strip_prefix("/proc/self/fd/"))?;
@@ -25,7 +25,7 @@ fn is_stream(path: &Path) -> bool {
 
 /// A reserved place for a file. Nothing has changed yet.
 pub struct FilePlace {
-    /// As given by the user.
+    /// Path as stated by the user.
     named: PathBuf,
     way: Way,
 }
@@ -51,8 +51,8 @@ impl FilePlace {
     /// followed. Remains of an interrupted run are removed first, with a message. `inputs` are files of this run, which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if `existing` does not allow replacement, if it is an input or a folder, or if nothing
-    /// can be written there.
+    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if `existing` does not allow replacement, if it is an input or a folder, or if
+    /// nothing can be written there.
     pub fn reserve(
         path: &Path,
         existing: Existing,
@@ -103,11 +103,11 @@ impl FilePlace {
         self.put().map(Put::finish)
     }
 
-    /// Writes the file from what `make` hands on piece by piece, so that it is never held whole.
+    /// Writes the file from the pieces that `make` passes on, so that it is never held whole.
     ///
     /// # Errors
-    /// Those of `make`, and [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if the file cannot be written; then nothing has changed, but for what
-    /// a stream has got.
+    /// Those of `make`, and [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if the file cannot be written; then nothing has changed,
+    /// except for the pieces that a stream has received.
     pub fn write_by<T>(
         self,
         make: impl FnOnce(&mut dyn FnMut(&str) -> Result<()>) -> Result<T>,
@@ -233,7 +233,7 @@ impl Put {
 const IN_THE_WAY: &str =
     "found this file, expected none: choose another, or write over this one with --force";
 
-/// Whether a file may be replaced.
+/// True if a file may be replaced.
 fn may_go(disk: &dyn Disk, path: &Path, existing: Existing) -> bool {
     match existing {
         Existing::Kept => false,

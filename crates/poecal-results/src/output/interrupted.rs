@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
 
 /// Staging folders of this process.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-/// Held while results are put in place.
+/// Lock that is held while results are put in place.
 static EXCHANGE: RwLock<()> = RwLock::new(());
 
 fn live() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -21,7 +21,7 @@ pub(crate) fn ended(staging: &Path) {
     live().remove(staging);
 }
 
-/// While held, no [`clean_up`](super::clean_up) begins.
+/// Guard that prevents the start of a [`clean_up`](super::clean_up).
 pub(crate) fn undisturbed() -> RwLockReadGuard<'static, ()> {
     EXCHANGE.read().unwrap_or_else(PoisonError::into_inner)
 }

@@ -147,7 +147,7 @@ impl Journal {
     }
 }
 
-/// Whether the file is another one than the kept one.
+/// True if the file differs from the kept one.
 fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
     if !is_file(disk, place)? {
         return Ok(false);
@@ -166,7 +166,7 @@ fn is_changed(disk: &dyn Disk, kept: &Path, place: &Path) -> io::Result<bool> {
     Ok(one != other)
 }
 
-/// Whether there is a file.
+/// True if there is a file.
 fn is_file(disk: &dyn Disk, path: &Path) -> io::Result<bool> {
     Ok(there(disk, path)?.is_some_and(|found| found.kind == ObjectKind::File))
 }

@@ -24,7 +24,7 @@ pub(crate) fn settle(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(String))
             drop(lock);
         }
     }
-    // Locked, so that no one puts files in place meanwhile.
+    // Locked, so that no other run puts files in place meanwhile.
     if is_folder
         && !left(disk, place, &staging::prefix(None)).is_empty()
         && let Ok(_locked) = disk.lock_folder(place)
@@ -40,7 +40,7 @@ pub(crate) fn settle_inside(disk: &dyn Disk, place: &Path, say: &mut dyn FnMut(S
     }
 }
 
-/// Staging folders in a folder. One that cannot be listed cannot be written to either, which is reported then.
+/// Staging folders in a folder. A folder that cannot be listed cannot be written to either, which is reported then.
 fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> Vec<(PathBuf, Lock)> {
     staging::left(disk, parent, prefix).unwrap_or_default()
 }
@@ -82,7 +82,7 @@ fn settle_one(disk: &dyn Disk, staging: &Path, target: &Path) -> io::Result<bool
     Ok(journal.is_some())
 }
 
-/// Removes a folder that was, or was to be, exchanged for `target`: files of ours are removed, others moved to the target.
+/// Removes a folder that was, or was to be, exchanged for `target`: files of poecal are removed, others moved to the target.
 pub(crate) fn give_back(
     disk: &dyn Disk,
     folder: &Path,

@@ -4,10 +4,10 @@
 //! and put in place together (`exchange.rs`, `journal.rs`). Remains of an interrupted run are settled by the next one (`leftovers.rs`), or
 //! by a signal handler ([`clean_up`]).
 //!
-//! A folder that holds nothing but results is exchanged whole. In any other folder, and in the current one, which an open shell or a bind mount would
-//! still see as it was, files are renamed one by one by a journal, which is on the disk before the first rename, together with the journal that undoes
-//! it, since a full disk may be the cause of a failure. A lock on the staging folder shows whether its run still lives. A signal cleans up at once
-//! (`interrupted.rs`), but not while files are put in place.
+//! A folder that holds nothing but results is exchanged whole. In any other folder, files are renamed one by one by a journal. That holds for the
+//! current folder too, whose earlier state an open shell or a bind mount would still show. The journal is on the disk before the first rename,
+//! together with the journal that undoes it: a full disk may cause a failure. A lock on the staging folder shows whether its run is still active. A
+//! signal cleans up at once (`interrupted.rs`), but not while files are put in place.
 
 mod calibration;
 mod contents;
@@ -84,7 +84,7 @@ enum Content<'a> {
 pub struct NewFile<'a> {
     name: String,
     content: Content<'a>,
-    /// The robot of a model file, and the selection with which it gives it.
+    /// The robot of a model file, and the selection that reads it from the file.
     model_of: Option<(Cow<'a, Robot>, ChainSelection)>,
 }
 

@@ -34,7 +34,7 @@ pub struct PhotographedSession<'a> {
     pub command: &'a str,
 }
 
-/// Truth of a simulated session of pictures (`truth.json`): lengths in metres and angles in radians unless a key says otherwise.
+/// Truth of a simulated session of pictures (`truth.json`): lengths in metres and angles in radians unless a key states another unit.
 #[derive(Serialize)]
 struct TruthFile {
     schema: &'static str,
@@ -45,14 +45,14 @@ struct TruthFile {
     count: usize,
     board: String,
     errors: Magnitudes,
-    /// What the arm is off in each configuration beside them: standard deviations.
+    /// Further error of the arm in each configuration: standard deviations.
     noise: Magnitudes,
     robot: RobotEntry,
     joints: Vec<JointEntry>,
     camera_in_hand: bool,
-    /// What the tip holds: the camera, or the board.
+    /// Pose of the object on the tip: the camera, or the board.
     tip_from_held: PoseEntry,
-    /// What stays: the board, or the camera.
+    /// Pose of the stationary object: the board, or the camera.
     base_from_other: PoseEntry,
 }
 

@@ -14,16 +14,16 @@ use poecal_storage::held::{self, HeldPlace};
 
 /// A reserved place for files. Nothing in it has changed yet, and nothing will unless all is written.
 pub struct FolderPlace {
-    /// As given by the user.
+    /// Path as stated by the user.
     pub(crate) named: PathBuf,
     /// Without links.
     pub(crate) folder: PathBuf,
     pub(crate) contents: Contents,
     pub(crate) existing: Existing,
-    /// Whether the folder existed.
+    /// True if the folder existed.
     pub(crate) was_there: bool,
     pub(crate) staging: Staging,
-    /// No other run writes to the folder meanwhile.
+    /// Reservation against other runs of this process.
     _held: Option<HeldPlace>,
 }
 
@@ -38,8 +38,8 @@ impl FolderPlace {
     /// are completed or removed first, with messages. `inputs` are files of this run, which are never replaced.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if the folder holds something and `existing` does not let it go, if something there is no regular file or
-    /// is an input, or if the folder cannot be written to.
+    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if the folder holds something that `existing` does not allow to replace, if
+    /// something there is no regular file or is an input, or if the folder cannot be written to.
     pub fn reserve(
         folder: &Path,
         contents: Contents,
@@ -121,7 +121,7 @@ impl FolderPlace {
 /// Most folders of one name.
 const MOST_FOLDERS: usize = 9999;
 
-/// The first of `name`, `name-2`, `name-3`, … that is not there yet, or is an empty folder; the name itself if there are too many.
+/// The first of `name`, `name-2`, `name-3`, … that does not exist, or is an empty folder; the name itself if there are too many.
 #[must_use]
 pub fn free_folder(name: &Path) -> PathBuf {
     let disk = disk::here();
@@ -192,7 +192,7 @@ pub(crate) fn check_existing(
     }
 }
 
-/// Refuses to replace a `calibration.json` that is none of poecal, whatever was typed.
+/// Refuses to replace a `calibration.json` of another program, whatever option was typed.
 fn refuse_foreign(disk: &dyn Disk, folder: &Path, names: &[String]) -> Result<()> {
     let path = folder.join(CALIBRATION);
     let is_foreign = names.iter().any(|name| name == CALIBRATION)

@@ -18,10 +18,10 @@ use poecal_storage::{disk, source_text};
 const SETTINGS: &str = include_str!("project/poecal.toml");
 const README: &str = include_str!("project/README.md");
 
-/// Numbers of rows that are planned: with fewer nothing is to choose, of more all lists are alike.
+/// Numbers of rows that are planned: fewer leave no choice, and with more all lists are similar.
 const PLANNED_ROWS: RangeInclusive<usize> = 8..=200;
-/// Candidates of a list: few, since it is a beginning; of more than eight joints as many fewer as the square of their number grows, which is how
-/// the time of each grows.
+/// Number of candidates of a list: few, since it is a first list. Beyond eight joints it falls with the square of their number, by which the time for
+/// each grows.
 fn candidates(joints: usize) -> usize {
     (400 * 8 * 8 / joints.max(8).pow(2)).max(100)
 }
@@ -52,7 +52,7 @@ impl Project<'_> {
 
     fn files(&self) -> Result<Vec<NewFile<'static>>> {
         let robot = &self.model.robot;
-        // Copied with its comments, not written from what was read.
+        // Copied with its comments, not written from the parsed model.
         let model = match &self.model.source {
             ModelSource::Urdf(document) => document.text().to_owned(),
             ModelSource::Toml | ModelSource::Calibration(_) => {
@@ -68,7 +68,7 @@ impl Project<'_> {
         ])
     }
 
-    /// Configurations to measure: planned ones, some at random to judge by, and returns to the first; where nothing can be planned, random ones.
+    /// Configurations to measure: planned ones, some random ones for validation, and returns to the first. If none can be planned, random ones.
     fn list(&self) -> Result<String> {
         let robot = &self.model.robot;
         let rows = self.count - returns_of(self.count);
@@ -87,7 +87,7 @@ impl Project<'_> {
             seed: self.seed,
             ..PlanOptions::default()
         };
-        // A robot that cannot be planned for has a list all the same.
+        // A robot without a possible plan gets a list too.
         let Ok(found) = plan(robot, &options) else { return random_list(robot, self.count, self.seed) };
         planned_table(robot, &found)
     }
@@ -143,7 +143,7 @@ impl Project<'_> {
 /// First step of the instructions.
 const PLANNED: &str = "1. **Before measuring**: which unknowns would these configurations determine, and with which expected error? `poecal plan` chooses \
 others: with your reflector's place, the device, and what is in the way.\n\n   ```sh\n   poecal plan {model} --rows joints.csv --kind {kind}{chain options}\n   ```";
-/// The same where something is touched: random configurations do not.
+/// The same step if something is touched: random configurations do not touch it.
 const TOUCHED: &str = "1. **Before measuring**: `joints.csv` has random configurations, to start from; in each, the robot must then be led to what it \
 touches. When a dozen rows are in `measurements.csv`, ask which unknowns they determine, and what is missing.\n\n   ```sh\n   \
 poecal plan {model} --rows measurements.csv --kind {kind}{chain options}\n   ```";

@@ -3,8 +3,8 @@
 use super::{FolderPlace, NewFile, Written, write_files};
 use poecal_numerics::error::Result;
 
-/// Writes a reproduction's files, each a name and a text as the crate `poecal-lou2009` makes them, whole or not at all. Figures of an
-/// earlier run that are not written again go.
+/// Writes a reproduction's files, each a name and a text as the crate `poecal-lou2009` makes them, completely or not at all. Figures of an earlier
+/// run that are not written again are removed.
 ///
 /// # Errors
 /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written; nothing is left behind then.

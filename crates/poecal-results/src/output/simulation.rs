@@ -34,8 +34,8 @@ pub struct SimulatedSession<'a> {
     pub command: &'a str,
 }
 
-/// Truth of a simulated session (`truth.json`). Lengths in metres and angles in radians unless a key says otherwise; "nominal" is the given
-/// model, the other entries are of the actual robot.
+/// Truth of a simulated session (`truth.json`). Lengths are in metres and angles in radians unless a key states another unit. "nominal" is the
+/// supplied model; the other entries are of the actual robot.
 #[derive(Serialize)]
 struct TruthFile {
     schema: String,
@@ -108,8 +108,9 @@ impl TruthFile {
 /// rows, and `truth.json`. Models are read back and compared with their robots in 1,000 configurations.
 ///
 /// # Errors
-/// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written; [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a model
-/// read back differs by more than 1e-9 m or rad. Nothing is left behind then.
+/// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written;
+/// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if a model read back differs by more than 1e-9 m or rad.
+/// Nothing is left behind then.
 pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSession) -> Result<Written> {
     let SimulatedSession { simulation, made, command, .. } = session;
     let noise = Noise::new(simulation.noise_position_m, simulation.noise_rotation_rad);
@@ -131,7 +132,7 @@ pub fn write_simulation(place: FolderPlace, model: &Model, session: &SimulatedSe
     write_files(place, &files, None, notes)
 }
 
-/// The actual robot in the form of `model`, without what its joints do beyond geometry, which is said.
+/// The actual robot in the form of `model`, without joint effects beyond geometry; a note states the omission.
 pub(crate) fn actual_files<'a>(
     model: &Model,
     actual: &Robot,

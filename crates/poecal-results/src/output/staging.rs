@@ -32,11 +32,11 @@ const ATTEMPTS: usize = 1000;
 pub(crate) struct Staging {
     pub(crate) disk: Arc<dyn Disk>,
     pub(crate) folder: PathBuf,
-    /// `None` where the system has no locks.
+    /// `None` if the system has no locks.
     _lock: Option<Lock>,
     /// Written and not yet synced files.
     unsynced: Vec<Box<dyn Output>>,
-    /// Whether the next run has to complete an exchange.
+    /// True if the next run has to complete an exchange.
     pub(crate) abandoned: bool,
 }
 
@@ -51,13 +51,13 @@ pub(crate) fn prefix(beside: Option<&OsStr>) -> OsString {
     prefix
 }
 
-/// Number of this process; 0 where there are none, and a disk has one user.
+/// Number of this process; 0 on systems without processes, whose disk has one user.
 fn process() -> u32 {
     if cfg!(target_family = "wasm") { 0 } else { std::process::id() }
 }
 
 impl Staging {
-    /// Creates one in a folder, with a name that begins with `prefix`.
+    /// Creates a staging folder in a folder, with a name that begins with `prefix`.
     pub(crate) fn new(disk: &Arc<dyn Disk>, parent: &Path, prefix: &OsStr) -> io::Result<Self> {
         // No signal may come between its creation and its registration.
         let _undisturbed = interrupted::undisturbed();
@@ -185,7 +185,7 @@ pub(crate) fn remove(disk: &dyn Disk, folder: &Path) -> io::Result<()> {
     gone(disk.remove_folder(folder))
 }
 
-/// Gives a file a second name, or a copy where there are no hard links.
+/// Creates a second name of a file, or a copy if there are no hard links.
 pub(crate) fn keep(disk: &dyn Disk, from: &Path, to: &Path) -> io::Result<()> {
     if disk.link(from, to).is_ok() {
         return Ok(());
@@ -220,7 +220,7 @@ pub(crate) fn names(disk: &dyn Disk, folder: &Path) -> io::Result<Vec<OsString>>
     }
 }
 
-/// Whether a name is that of a staging folder with this prefix.
+/// True if a name is that of a staging folder with this prefix.
 pub(crate) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
     let rest = name.as_encoded_bytes().strip_prefix(prefix.as_encoded_bytes());
     rest.is_some_and(|rest| {
@@ -228,8 +228,7 @@ pub(crate) fn is_staging(name: &OsStr, prefix: &OsStr) -> bool {
     })
 }
 
-/// Whether a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links
-/// there.
+/// True if a staging folder and its contents are as expected and this user's: others with access to the parent folder could have put links there.
 fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
     let is = |path: &Path, kind: ObjectKind| {
         there(disk, path).is_ok_and(|found| found.is_none_or(|found| found.kind == kind && found.is_mine))
@@ -239,7 +238,7 @@ fn is_real(disk: &dyn Disk, folder: &Path) -> bool {
         && JOURNALS.into_iter().chain([LOCK]).all(|name| is(&folder.join(name), ObjectKind::File))
 }
 
-/// Unlocked staging folders in a folder, each with its lock, which is then ours.
+/// Unlocked staging folders in a folder, each with its lock, which this run then holds.
 pub(crate) fn left(disk: &dyn Disk, parent: &Path, prefix: &OsStr) -> io::Result<Vec<(PathBuf, Lock)>> {
     let mut left = Vec::new();
     for name in names(disk, parent)? {

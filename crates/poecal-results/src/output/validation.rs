@@ -7,19 +7,19 @@ use super::{Existing, FilePlace, FolderPlace, NewFile, Page, Written, write_file
 use crate::validation::{JudgedRows, Validation};
 use poecal_numerics::error::Result;
 
-/// Where the output of a check goes.
+/// Destinations of the output of a check.
 #[derive(Debug)]
 pub struct ValidationPlaces {
     folder: Option<FolderPlace>,
     /// A report outside that folder.
     report: Option<(FilePlace, PathBuf)>,
-    /// Whether a report is wanted in it.
+    /// True if a report is wanted in it.
     is_among: bool,
 }
 
 impl ValidationPlaces {
-    /// Reserves a folder, if one is named, with the report in it where that is wanted, or at a place of its own. `say` gets what was done with remains
-    /// of interrupted runs.
+    /// Reserves a folder, if one is named, with the report in it if that is wanted, or at a path of its own. `say` receives messages about remains of
+    /// interrupted runs.
     ///
     /// # Errors
     /// As [`FolderPlace::reserve`] and [`FilePlace::reserve`].
@@ -42,12 +42,12 @@ impl ValidationPlaces {
         Ok(ValidationPlaces { folder, is_among: is_wanted && report.is_none(), report })
     }
 
-    /// Writes a check's files, completely or not at all, with its page where a report is wanted. Returns what was written to the folder, and the
-    /// place of a report outside it.
+    /// Writes a check's files, completely or not at all, with its page if a report is wanted. Returns the summary of the folder's files, and the path
+    /// of a report outside it.
     ///
     /// # Errors
-    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written, [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the check
-    /// cannot be written as JSON. Nothing is left behind then.
+    /// [`ErrorKind::File`](poecal_numerics::error::ErrorKind::File) if something cannot be written,
+    /// [`ErrorKind::Export`](poecal_numerics::error::ErrorKind::Export) if the check cannot be written as JSON. Nothing is left behind then.
     pub fn write(
         self,
         found: &Validation,

@@ -35,7 +35,7 @@ impl Residuals {
         Self::parse_at(text, path.as_ref())
     }
 
-    /// Compiled once, and not for each kind of path.
+    /// The part of reading that does not depend on the kind of path, compiled once.
     fn parse_at(text: &str, path: &Path) -> Result<Self> {
         let mut found = Residuals::default();
         let (mut named, mut is_head) = (false, true);
@@ -58,7 +58,7 @@ impl Residuals {
         Ok(found)
     }
 
-    /// Reads the header; returns whether the last column names the instrument.
+    /// Reads the header; sets `named` to true if the last column names the instrument.
     fn head(&mut self, cells: &[Cow<'_, str>], named: &mut bool) -> std::result::Result<(), Wrong> {
         let mut first = 0;
         FIRST.into_iter().try_for_each(|column| expect(cells, &mut first, column))?;
@@ -130,7 +130,7 @@ impl Residuals {
     }
 }
 
-/// Goes past a column that must be this one.
+/// Skips a column that must have this name.
 fn expect(cells: &[Cow<'_, str>], next: &mut usize, expected: &str) -> std::result::Result<(), Wrong> {
     let cell = cells.get(*next).map_or("", |cell| cell);
     if cell != expected {
@@ -174,14 +174,14 @@ struct Wrong {
     message: String,
 }
 
-/// The cells of a row, one after the other.
+/// The cells of a row, in sequence.
 struct Cells<'a> {
     cells: &'a [Cow<'a, str>],
     next: usize,
 }
 
 impl<'a> Cells<'a> {
-    /// An error at the cell taken last.
+    /// An error at the last cell that was read.
     fn wrong(&self, found: &str, expected: &str) -> Wrong {
         Wrong {
             cell: self.next.saturating_sub(1),
@@ -208,7 +208,7 @@ impl<'a> Cells<'a> {
         if number.is_finite() { Ok(number) } else { Err(self.wrong(cell, "a finite number")) }
     }
 
-    /// Whether the next cells are all empty; then they are skipped.
+    /// True if the next cells are all empty; then they are skipped.
     fn are_empty(&mut self, count: usize) -> bool {
         let here = self.cells.get(self.next..self.next + count);
         let empty = here.is_some_and(|cells| cells.iter().all(|cell| cell.is_empty()));

@@ -15,21 +15,21 @@ pub(crate) const MODELS: usize = 3;
 /// Last column, if there are several instruments.
 pub(crate) const INSTRUMENT: &str = "instrument";
 
-/// Errors of one quantity in one row by the nominal, registered and calibrated model, and the delivered model's residual by component, of
-/// vectors in the device's axes. Millimetres or degrees. The corrected model is delivered if there is one, else the calibrated one.
+/// Errors of one quantity in one row by the nominal, registered and calibrated model, and the delivered model's residual by component, of vectors in
+/// the device's axes. Millimetres or degrees. The corrected model is delivered if there is one, else the calibrated one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelErrors {
-    /// Of the nominal, registered and calibrated model.
+    /// Errors of the nominal, registered and calibrated model.
     pub models: [f64; MODELS],
-    /// Of the corrected model, if there is one.
+    /// Error of the corrected model, if there is one.
     pub corrected: Option<f64>,
-    /// By component, NaN where one was not measured, 0 beyond them.
+    /// Residual by component, NaN for one that was not measured, 0 beyond the quantity's components.
     residual: [f64; Quantity::MOST_COMPONENTS],
     components: usize,
 }
 
 impl ModelErrors {
-    /// Errors of the three models, and the residual by component, of which there are at most [`Quantity::MOST_COMPONENTS`].
+    /// Errors of the three models, and the residual by component, at most [`Quantity::MOST_COMPONENTS`].
     #[must_use]
     pub fn new(models: [f64; MODELS], residual: &[f64]) -> Self {
         let mut all = [0.0; Quantity::MOST_COMPONENTS];
@@ -37,7 +37,7 @@ impl ModelErrors {
         ModelErrors { models, corrected: None, residual: all, components: residual.len().min(all.len()) }
     }
 
-    /// The same with the error of a corrected model.
+    /// The same errors with the error of a corrected model.
     #[must_use]
     pub fn with_corrected(self, corrected: Option<f64>) -> Self {
         ModelErrors { corrected, ..self }
@@ -55,7 +55,7 @@ impl ModelErrors {
         self.corrected.unwrap_or(self.models[2])
     }
 
-    /// The delivered model's residual by component, NaN of a component that was not measured.
+    /// The delivered model's residual by component, NaN for a component that was not measured.
     #[must_use]
     pub fn residual(&self) -> &[f64] {
         self.residual.get(..self.components).unwrap_or_default()
@@ -67,22 +67,22 @@ impl ModelErrors {
     }
 }
 
-/// Names of the columns of a quantity: errors of the three models, and of the corrected one where there is one, then the residual of the
-/// delivered model by component.
+/// Names of the columns of a quantity: errors of the three models, and of the corrected one if there is one, then the residual of the delivered model
+/// by component.
 pub fn columns(quantity: Quantity, has_corrected: bool) -> impl Iterator<Item = String> {
     let (name, unit) = (quantity.name(), quantity.unit().symbol());
     let components = quantity.component_names().iter().map(move |component| format!("{component}[{unit}]"));
     model_names(has_corrected).map(move |model| format!("{name}_{model}[{unit}]")).chain(components)
 }
 
-/// Errors of the corners of a picture by the nominal, registered and calibrated model; NaN where a model sees none of them.
+/// Errors of the corners of a picture by the nominal, registered and calibrated model; NaN if a model sees none of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CornerErrors {
     /// Root mean square distance in the picture by each model, pixels.
     pub models_px: [f64; MODELS],
-    /// By the corrected model, if there is one.
+    /// Distance by the corrected model, if there is one.
     pub corrected_px: Option<f64>,
-    /// By the delivered model at the board, square to the ray, millimetres.
+    /// Distance by the delivered model at the board, perpendicular to the ray, millimetres.
     pub at_board_mm: f64,
 }
 
@@ -111,7 +111,7 @@ pub struct RowDiagnostics {
     pub leverage: f64,
     /// Studentised residual: length of the residual over its own standard deviation.
     pub studentized: f64,
-    /// Whether it is suspected of a gross error.
+    /// True if it is suspected of a gross error.
     pub suspected: bool,
 }
 
@@ -124,7 +124,7 @@ pub struct ResidualRow {
     pub line: u32,
     /// Its name; empty without one.
     pub id: String,
-    /// Whether it was held out.
+    /// True if it was held out.
     pub held_out: bool,
     /// Index of its target.
     pub target: usize,
@@ -164,20 +164,20 @@ pub struct Residuals {
     pub targets: Vec<String>,
     /// The instruments' names, if there are several.
     pub stations: Vec<String>,
-    /// Names of the joint readings, and whether each is a length (millimetres) or an angle (degrees).
+    /// Names of the joint readings, each a length (millimetres) or an angle (degrees).
     pub readings: Vec<(String, ReadingKind)>,
     /// Quantities that were measured beside positions and rotations, which always have their columns; in the order of
     /// [`Quantity::ALL`]. Errors of a quantity without columns are not written.
     pub further: Vec<Quantity>,
-    /// Whether the rows have errors of a corrected model.
+    /// True if the rows have errors of a corrected model.
     pub has_corrected: bool,
-    /// Whether some rows are pictures.
+    /// True if some rows are pictures.
     pub has_corners: bool,
     /// The rows.
     pub(crate) rows: Vec<ResidualRow>,
-    /// How many rows measured which quantities, in the order of the first row of each kind.
+    /// Sets of measured quantities with their numbers of rows, in the order of the first row of each.
     pub(crate) kinds: Vec<(Measured<()>, usize)>,
-    /// The readings of all rows, one after the other, degrees or millimetres.
+    /// The readings of all rows, in sequence, degrees or millimetres.
     pub(crate) values: Vec<f64>,
 }
 
@@ -193,7 +193,7 @@ impl Residuals {
         &self.rows
     }
 
-    /// Adds a row; its readings are apart.
+    /// Adds a row; its readings are stored separately.
     pub(crate) fn push(&mut self, row: ResidualRow) {
         self.count(row.errors.map(|_, _| ()), 1);
         self.rows.push(row);
@@ -207,7 +207,7 @@ impl Residuals {
         }
     }
 
-    /// How many rows measured which quantities.
+    /// Sets of measured quantities with their numbers of rows.
     #[must_use]
     pub fn kinds(&self) -> &[(Measured<()>, usize)] {
         &self.kinds
@@ -220,7 +220,7 @@ impl Residuals {
         Quantity::ALL.into_iter().filter(has).collect()
     }
 
-    /// The first quantity that some row measured, lengths before angles: that by which the calibration is judged.
+    /// The first quantity that some row measured, lengths before angles: the one that judges the calibration.
     #[must_use]
     pub fn leading(&self) -> Option<Quantity> {
         let measured = self.measured();

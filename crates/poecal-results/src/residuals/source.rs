@@ -102,7 +102,7 @@ fn stations(data: &Dataset) -> Vec<String> {
     if data.station_count() > 1 { names.collect() } else { Vec::new() }
 }
 
-/// Errors of one quantity of the three models, with the residual of the delivered one, in the unit in which people read it, if it was measured.
+/// Errors of one quantity by the three models, with the residual of the delivered one, in the unit of files, if it was measured.
 fn errors_of(
     errors: [&RowError; 3],
     corrected: Option<&RowError>,

@@ -25,7 +25,7 @@ const ROW: usize = 480;
 /// Rows to write.
 #[derive(Clone, Copy, Debug)]
 pub enum ResidualRows<'a> {
-    /// Given rows.
+    /// Existing rows.
     AtHand(&'a Residuals),
     /// Rows of a finished calibration, computed while they are written, since there may be many.
     Of(&'a Dataset, &'a Calibration),
@@ -56,7 +56,7 @@ impl ResidualRows<'_> {
     }
 }
 
-/// Passes on the results of `make` for consecutive ranges of rows: all threads make some while earlier ones are taken.
+/// Passes on the results of `make` for consecutive ranges of rows: all threads compute some while earlier ones are consumed.
 pub(crate) fn in_pieces<T: Send, E: Send>(
     rows: usize,
     make: impl Fn(Range<usize>) -> T + Sync + Send,
@@ -162,7 +162,7 @@ fn push_errors(
     out.push_str(EMPTY.get(..empty).unwrap_or_default());
 }
 
-/// The cells of the corners, empty of a row that is no picture.
+/// The cells of the corners, empty for a row that is no picture.
 fn push_corners(out: &mut String, corners: Option<&CornerErrors>, has_corrected: bool) {
     let numbers: Vec<f64> = corners.map_or_else(Vec::new, |it| it.numbers().collect());
     for at in 0..=MODELS + usize::from(has_corrected) {

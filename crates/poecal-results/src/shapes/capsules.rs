@@ -13,10 +13,10 @@ use poecal_formats::urdf::{Geometry, UrdfDocument, Visual};
 use poecal_model::robot::Body;
 use poecal_plan::plan::Capsule;
 
-/// Corners of the polygon around a circle.
+/// Vertices of the polygon around a circle.
 const CORNERS: usize = 16;
 
-/// Capsules of a model that has shapes, and sentences as of `capsules`; none of other models.
+/// Capsules of a model that has shapes, and sentences as of `capsules`; empty for other models.
 #[must_use]
 pub fn capsules_of(model: &Model) -> (Vec<Capsule>, Vec<String>) {
     match &model.source {
@@ -25,8 +25,8 @@ pub fn capsules_of(model: &Model) -> (Vec<Capsule>, Vec<String>) {
     }
 }
 
-/// A capsule around each shape of the links, `<collision>` where the model has any, else `<visual>`, and sentences of meshes that are not
-/// there or cannot be read, beside the URDF.
+/// A capsule around each shape of the links, `<collision>` if the model has any, else `<visual>`. The sentences are about meshes beside the URDF that
+/// do not exist or cannot be read.
 #[must_use]
 fn capsules(urdf: &UrdfDocument, path: &Path) -> (Vec<Capsule>, Vec<String>) {
     let folders = Folders::from_files(&[path]);

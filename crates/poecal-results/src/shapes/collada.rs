@@ -1,4 +1,4 @@
-//! COLLADA: triangles and polygons of the geometries in the scene, in metres. As RViz does, the axis that is said to be up is not turned.
+//! COLLADA: triangles and polygons of the geometries in the scene, in metres. As in RViz, the scene is not turned by its stated up axis.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::collector::{Collector, Reason, Triangles};
 use poecal_storage::xml::parsed;
 
-/// Nodes above each other, at most.
+/// Most levels of nested nodes.
 const DEEPEST: usize = 64;
 
 /// The first three rows of a transformation.
@@ -17,7 +17,7 @@ const STILL: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0,
 
 pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Reason> {
     let document = parsed(text, Path::new("mesh"), "COLLADA").map_err(|error| {
-        // The sentence without the name of a file, which is said before.
+        // The sentence without the name of a file, which is stated before.
         error.to_string().lines().next().unwrap_or_default().trim_start_matches("mesh:").trim().to_owned()
     })?;
     let root = document.root_element();
@@ -61,7 +61,7 @@ fn numbers(node: Node) -> Vec<f64> {
     text.split_ascii_whitespace().map(|word| word.parse().unwrap_or(f64::NAN)).collect()
 }
 
-/// What elements refer to, and the numbers that were read of it.
+/// Elements by their references, and the numbers that were read from them.
 struct Library<'a> {
     by_id: BTreeMap<&'a str, Node<'a, 'a>>,
     places: BTreeMap<&'a str, Vec<[f64; 3]>>,
@@ -77,7 +77,7 @@ impl<'a> Library<'a> {
         self.by_id.get(url.strip_prefix('#')?).copied()
     }
 
-    /// The places of the corners to which an input of `VERTEX` refers.
+    /// Positions of the vertices to which an input of `VERTEX` refers.
     fn places(&mut self, url: &str) -> Option<&[[f64; 3]]> {
         let vertices = self.named(url)?;
         let position = children(vertices, "input").find(|it| it.attribute("semantic") == Some("POSITION"))?;
@@ -137,7 +137,7 @@ impl<'a> Library<'a> {
     }
 }
 
-/// The transformation of an instance by the nodes above it; none if they are too many.
+/// The transformation of an instance by the nodes above it; `None` if they are too many.
 fn place(instance: Node) -> Option<Rows> {
     let above: Vec<Node> = instance.ancestors().filter(|node| is(*node, "node")).take(DEEPEST + 1).collect();
     let steps = above.iter().rev().flat_map(|node| node.children().filter(Node::is_element)).filter_map(step);
@@ -183,7 +183,7 @@ fn moved(rows: &Rows, place: &[f64; 3]) -> [f64; 3] {
     rows.map(|row| row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3])
 }
 
-/// A square of 2 mm and a triangle, in millimetres, of which the square stands twice in the scene.
+/// A square of 2 mm and a triangle, in millimetres; the square occurs twice in the scene.
 #[cfg(test)]
 pub(crate) const EXAMPLE: &str = r##"<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
   <asset><unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset>

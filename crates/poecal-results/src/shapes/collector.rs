@@ -1,17 +1,17 @@
-//! Triangles, as readers find them.
+//! Triangles from the readers of meshes.
 
-/// Triangles of all meshes, at most.
+/// Most triangles of all meshes.
 pub(crate) const MOST_TRIANGLES: usize = 3_000_000;
 /// Largest coordinate, metres.
 const FAR: f64 = 1e4;
 
-/// Corners of triangles, metres.
+/// Vertices of triangles, metres.
 pub(crate) type Triangles = Vec<[[f32; 3]; 3]>;
 
-/// Why a mesh cannot be drawn, in words that follow "not drawn: ".
+/// Reason why a mesh cannot be drawn, in words that follow "not drawn: ".
 pub(crate) type Reason = String;
 
-/// Takes triangles up to a number, scaled.
+/// Collects triangles up to a number, scaled.
 pub(crate) struct Collector {
     scale: [f64; 3],
     most: usize,
@@ -23,7 +23,7 @@ impl Collector {
         Collector { scale, most, found: Vec::new() }
     }
 
-    /// Adds a triangle. One with a corner that is no place is left out.
+    /// Adds a triangle. One with a vertex that is no position is left out.
     pub(crate) fn add(&mut self, corners: [[f64; 3]; 3]) -> Result<(), Reason> {
         if self.found.len() >= self.most {
             return Err(format!("with the others it has more than {MOST_TRIANGLES} triangles"));
@@ -35,7 +35,7 @@ impl Collector {
         Ok(())
     }
 
-    /// Adds a polygon as triangles about its first corner.
+    /// Adds a polygon as triangles about its first vertex.
     pub(crate) fn fan(&mut self, corners: &[[f64; 3]]) -> Result<(), Reason> {
         for pair in corners.get(1..).unwrap_or_default().windows(2) {
             if let (Some(&first), &[second, third]) = (corners.first(), pair) {

@@ -1,16 +1,16 @@
-//! Where the files are that a URDF names.
+//! Search for the files that a URDF names.
 
 use std::path::{Path, PathBuf};
 
 use poecal_storage::disk::{self, ObjectKind};
 
-/// Folders beside files, each with those above it.
+/// Folders beside files, each with its ancestors.
 pub(crate) struct Folders {
     ways: Vec<Vec<PathBuf>>,
 }
 
 impl Folders {
-    /// Of some files, which need not be there.
+    /// Folders of some files, which need not exist.
     pub(crate) fn from_files(files: &[&Path]) -> Self {
         let mut ways: Vec<Vec<PathBuf>> = Vec::new();
         for file in files {
@@ -22,7 +22,7 @@ impl Folders {
         Folders { ways }
     }
 
-    /// The file of a name: `package://NAME/…` below a folder upwards that is the package or holds it, others beside the URDF.
+    /// The file of a name. `package://NAME/…` is searched in each folder upwards that is the package or contains it; other names beside the URDF.
     pub(crate) fn find(&self, name: &str) -> Option<PathBuf> {
         let packaged = ["package://", "model://"].iter().find_map(|scheme| name.strip_prefix(scheme));
         if let Some(rest) = packaged {
@@ -50,7 +50,7 @@ impl Folders {
     }
 }
 
-/// A folder and those above it, from the root's names; the folder itself need not be there.
+/// A folder and its ancestors, from the root's names; the folder itself need not exist.
 fn way(folder: &Path) -> Option<Vec<PathBuf>> {
     let disk = disk::here();
     let named =

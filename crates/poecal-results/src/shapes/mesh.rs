@@ -1,4 +1,4 @@
-//! Meshes as triangles, whatever their form.
+//! Meshes as triangles, from files of any form.
 
 use std::io::Read as _;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn text(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, Reason> {
 mod tests {
     use super::*;
 
-    /// Bytes that differ from run to run of the loop alone.
+    /// Pseudorandom bytes (xorshift64).
     fn noise(seed: u64, count: usize) -> Vec<u8> {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut next = || {

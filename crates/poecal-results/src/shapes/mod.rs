@@ -1,4 +1,4 @@
-//! What a robot looks like: the shapes of its links, from the URDF in a `calibration.json` and the meshes that it names.
+//! Appearance of a robot: the shapes of its links, from the URDF in a `calibration.json` and the meshes that it names.
 
 mod capsules;
 mod collada;
@@ -25,14 +25,14 @@ use poecal_arm::lie::Pose;
 use poecal_formats::urdf::{Geometry, Visual};
 use poecal_model::robot::{Body, Robot};
 
-/// Characters of all meshes in a page, at most: about 80,000 triangles. Finer ones are made coarser.
+/// Most characters of all meshes in a page: about 80,000 triangles. Finer meshes are made coarser.
 pub const MOST_CHARACTERS: usize = 1_000_000;
-/// Names of meshes in a note.
+/// Most names of meshes in a note.
 const NAMED: usize = 3;
-/// A mesh that is larger than this many arms would leave nothing of the arm to see.
+/// Ratio of a mesh's size to the arm's above which the arm would not be visible beside the mesh.
 const MOST_ARMS: f64 = 20.0;
 
-/// The form of a shape, metres. Boxes, cylinders (along z) and spheres are about their middles; a mesh has the axes of its file.
+/// The form of a shape, metres. Boxes, cylinders (along z) and spheres are about their centres; a mesh has the axes of its file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// Its sides.
@@ -45,14 +45,14 @@ pub enum Form {
     Mesh(usize),
 }
 
-/// A shape of a link, and where it is with all joints at zero.
+/// A shape of a link with its pose at zero joint values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     /// The link.
     pub link: String,
     /// The body that carries it.
     pub body: Body,
-    /// Its pose in the base, calibrated: it stays with the frame of its joint.
+    /// Its pose in the base, calibrated: it remains fixed to the frame of its joint.
     pub pose: Pose,
     /// Its pose in the base by the nominal model.
     pub nominal_pose: Pose,
@@ -60,26 +60,26 @@ pub struct Shape {
     pub form: Form,
 }
 
-/// What a robot looks like.
+/// Shapes of a robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shapes {
     /// The shapes, in the order of the URDF.
     pub shapes: Vec<Shape>,
     /// Meshes of these shapes.
     pub meshes: Vec<Mesh>,
-    /// Meshes that are not drawn, and why, in sentences.
+    /// Meshes that are not drawn with their reasons, in sentences.
     pub notes: Vec<String>,
 }
 
 impl Shapes {
-    /// Boxes, cylinders and spheres of the URDF that was calibrated, without opening any file. Nothing if the model was no URDF.
+    /// Boxes, cylinders and spheres of the URDF that was calibrated, without opening any file. Empty if the model was no URDF.
     #[must_use]
     pub fn from_calibration(file: &CalibrationFile) -> Self {
         collected(file, &mut |_, _| None)
     }
 
-    /// The same with the meshes that the URDF names: STL, OBJ or COLLADA, beside the URDF, or beside the `calibration.json` at `path`. A
-    /// mesh that is missing or broken gives a note; if all would be larger than [`MOST_CHARACTERS`], they are made coarser.
+    /// Shapes with the meshes that the URDF names: STL, OBJ or COLLADA, beside the URDF, or beside the `calibration.json` at `path`. A mesh that is
+    /// missing or broken adds a note. If all would be larger than [`MOST_CHARACTERS`], they are made coarser.
     #[must_use]
     pub fn read(file: &CalibrationFile, path: &Path) -> Self {
         let folders = Folders::from_files(&[Path::new(&file.inputs.model), path]);
@@ -132,7 +132,7 @@ impl Shapes {
     }
 }
 
-/// The shapes of a file; `mesh` gives the index of a mesh by its name and scale.
+/// The shapes of a file; `mesh` returns the index of a mesh by its name and scale.
 fn collected(file: &CalibrationFile, mesh: &mut dyn FnMut(&str, [f64; 3]) -> Option<usize>) -> Shapes {
     let path = PathBuf::from(&file.inputs.model);
     let (Ok(Some(urdf)), Ok(robot), Ok(nominal)) =

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: corners (`v`) and faces (`f`), nothing else.
+//! Wavefront OBJ: vertices (`v`) and faces (`f`), nothing else.
 
 use super::collector::{Collector, Reason, Triangles};
 
@@ -33,7 +33,7 @@ pub(crate) fn triangles(text: &str, mut into: Collector) -> Result<Triangles, Re
     into.finished()
 }
 
-/// The index of a corner such as `7/1/2`, from 1, or from the end if it is negative.
+/// The index of a vertex such as `7/1/2`, from 1, or from the end if it is negative.
 fn index(word: &str, count: usize) -> Option<usize> {
     let number: i64 = word.split('/').next()?.parse().ok()?;
     let index = if number < 0 { i64::try_from(count).ok()?.checked_add(number)? } else { number - 1 };

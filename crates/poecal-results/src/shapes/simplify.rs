@@ -1,4 +1,4 @@
-//! Meshes as texts of a limited length: corners that are alike become one, the coarser the more there are.
+//! Meshes as texts of a limited length: nearby vertices are merged, in larger cells the more there are.
 
 use std::collections::HashMap;
 
@@ -7,19 +7,19 @@ use super::collector::Triangles;
 
 /// Steps along the longest side of a mesh.
 const STEPS: f32 = 65535.0;
-/// The first cell in which corners become one if there are too many, metres, and by which it grows.
+/// First and smallest cell in which vertices are merged if there are too many, and the step of its growth, metres.
 const FINEST: f32 = 2.5e-4;
 const COARSER: f32 = std::f32::consts::SQRT_2;
-/// The largest cell, metres: of triangles as large, no robot is left.
+/// The largest cell, metres: triangles of that size would not show a robot.
 const COARSEST: f32 = 0.1;
 
-/// Places and triangles between them.
+/// Vertices and triangles between them.
 struct Indexed {
     places: Vec<[f32; 3]>,
     corners: Vec<[u32; 3]>,
 }
 
-/// All meshes as texts of so many characters together, at most. If even the coarsest are longer, the last ones stay empty.
+/// All meshes as texts of at most `most` characters together. If even the coarsest are longer, the last ones are empty.
 pub(crate) fn fitted(meshes: &[Triangles], most: usize) -> Vec<Mesh> {
     let bounds: Vec<([f32; 3], f32)> = meshes.iter().map(bounds).collect();
     let mut cell = 0.0;
@@ -40,7 +40,7 @@ pub(crate) fn fitted(meshes: &[Triangles], most: usize) -> Vec<Mesh> {
     }
 }
 
-/// The least corner, and the step by which 16 bits reach from it over the longest side.
+/// The corner with the least coordinates, and the step by which 16 bits reach from it over the longest side.
 fn bounds(mesh: &Triangles) -> ([f32; 3], f32) {
     let (mut least, mut most) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for corner in mesh.iter().flatten() {
@@ -53,7 +53,7 @@ fn bounds(mesh: &Triangles) -> ([f32; 3], f32) {
     (least, (longest / STEPS).max(f32::MIN_POSITIVE))
 }
 
-/// Corners that lie in one cell as one, at their mean; triangles that shrink to less are left out.
+/// Vertices in one cell merged at their mean; triangles that degenerate are left out.
 fn merged(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> Indexed {
     let side = cell.max(step);
     let mut known: HashMap<[u32; 3], u32> = HashMap::new();
@@ -79,7 +79,7 @@ fn merged(mesh: &Triangles, (least, step): ([f32; 3], f32), cell: f32) -> Indexe
     used(&sums, corners)
 }
 
-/// The same without places that no triangle has, and without triangles that are there twice.
+/// The mesh without unused vertices and repeated triangles.
 fn used(sums: &[([f64; 3], f64)], mut corners: Vec<[u32; 3]>) -> Indexed {
     let mut seen = std::collections::HashSet::new();
     corners.retain(|triangle| {
@@ -160,7 +160,7 @@ mod tests {
                 std::f32::consts::PI * i as f32 / rings as f32,
                 std::f32::consts::TAU * k as f32 / rings as f32,
             );
-            // Exactly one place at each pole.
+            // Exactly one vertex at each pole.
             let ring = if i.is_multiple_of(rings) { 0.0 } else { radius * a.sin() };
             [ring * b.cos(), ring * b.sin(), radius * a.cos()]
         };
@@ -186,7 +186,7 @@ mod tests {
     fn corners_become_one_and_finer_meshes_coarser_within_the_limit() {
         let mesh = sphere(0.2, 40);
         let whole = fitted(std::slice::from_ref(&mesh), 1_000_000).remove(0);
-        // Those at the poles have no area.
+        // The triangles at the poles have no area.
         assert_eq!(whole.triangles, mesh.len() - 2 * 40);
         assert_eq!(whole.places.len(), (6_usize * (39 * 40 + 2)).div_ceil(3) * 4);
         let fine = [sphere(0.2, 300), sphere(0.1, 200)];
@@ -202,7 +202,7 @@ mod tests {
         );
         assert!(length <= most && length > most / 4 && coarse.iter().all(|it| it.triangles > 500));
         assert_eq!(coarse, fitted(&fine, most));
-        // Wide indices where there are more than 16 bits.
+        // Wide indices for more than 16 bits.
         assert!(fitted(&fine[..1], 10_000_000)[0].wide);
         // Nothing fits.
         assert_eq!(fitted(&fine, 10), [Mesh::default(), Mesh::default()]);

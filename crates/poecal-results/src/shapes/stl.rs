@@ -2,13 +2,13 @@
 
 use super::collector::{Collector, Reason, Triangles};
 
-/// Bytes before the number of triangles, and of a triangle: its normal, three corners, and two bytes without a meaning.
+/// Bytes before the number of triangles, and of a triangle: its normal, three vertices, and two bytes without a meaning.
 const HEAD: usize = 80;
 const TRIANGLE: usize = 50;
 const NORMAL: usize = 12;
 
 pub(crate) fn triangles(bytes: &[u8], into: Collector) -> Result<Triangles, Reason> {
-    // Some binary files begin with `solid` too: their length tells.
+    // Some binary files begin with `solid` too: their length decides.
     let count = bytes.get(HEAD..HEAD + 4).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
     let binary = bytes.get(HEAD + 4..).unwrap_or_default();
     match count {

@@ -1,4 +1,4 @@
-//! Rows that repeat nothing, judged by the model that is delivered: its own errors are what changes must exceed.
+//! Rows that repeat no earlier configuration, judged by the delivered model: changes must exceed its own errors.
 
 use std::collections::BTreeSet;
 
@@ -17,18 +17,18 @@ use poecal_model::simulate::random::uniform;
 use poecal_numerics::error::Result;
 use poecal_numerics::linalg;
 
-/// Visits drawn of the calibration's own rows, and the share of them that may be called changed.
+/// Number of visits drawn from the calibration's own rows, and the share of them that may be called changed.
 const DRAWN: usize = 300;
 const CHANCE: f64 = 0.01;
-/// Where the model is geometry alone, how much larger squares may be elsewhere than the largest of the calibration's own rows.
+/// Largest ratio of squared errors elsewhere to the largest of the calibration's own rows, if the model is geometry alone.
 const OF_GEOMETRY: f64 = 1.3;
 /// Most configurations that are judged by the model: their errors are one covariance.
 pub(crate) const MOST: usize = 40;
-/// Level by which errors of the model exceed those that the calibration states, where its rows are not there to say so.
+/// Level by which errors of the model exceed those that the calibration states, if its rows are not available to determine it.
 const UNKNOWN: f64 = 1.5;
 
-/// Covariance of the errors of predictions and measurements of some numbers: what the calibration is uncertain of, what it states of its
-/// errors (the same for all targets of a configuration), and noise.
+/// Covariance of the errors of predictions and measurements of some numbers: of the calibration's unknowns, of its stated model error (common to all
+/// targets of a configuration), and of noise.
 fn covariance(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<DMatrix<f64>> {
     let numbers: Vec<usize> =
         rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
@@ -64,12 +64,12 @@ fn configurations(data: &Dataset) -> Vec<Vec<u32>> {
     data.configurations(&data.all_rows())
 }
 
-/// Changes of some rows from what the model predicts, in its standard deviations; `None` where the calibration states no uncertainty.
+/// Changes of some rows from the model's prediction, in its standard deviations; `None` if the calibration states no uncertainty.
 fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Option<Changes> {
     let numbers: Vec<usize> =
         rows.iter().flat_map(|&row| visit.starts[row as usize]..visit.starts[row as usize + 1]).collect();
     let all = covariance(model, visit, rows, groups)?;
-    // Of a coordinate alone: noise, and the errors that the calibration states.
+    // Variances of a single coordinate: noise, and the errors that the calibration states.
     let entry = model.file.uncertainty.as_ref()?;
     let own = |number: &usize| {
         let quantity = visit.quantities[*number];
@@ -93,26 +93,26 @@ fn of_rows(model: &Model, visit: &Visit, rows: &[u32], groups: &[usize]) -> Opti
     })
 }
 
-/// At most so many of them, evenly.
+/// At most [`MOST`] of them, evenly selected.
 fn some_of(all: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     let step = all.len().div_ceil(MOST).max(1);
     all.into_iter().step_by(step).collect()
 }
 
-/// Groups of rows, as a group of each row in their order.
+/// Rows of groups in sequence, with the group of each row.
 fn grouped(configurations: &[Vec<u32>]) -> (Vec<u32>, Vec<usize>) {
     let each =
         configurations.iter().enumerate().flat_map(|(group, rows)| rows.iter().map(move |row| (*row, group)));
     each.unzip()
 }
 
-/// Changes of a visit from what the model predicts.
+/// Changes of a visit from the model's prediction.
 pub(crate) fn changes(model: &Model, visit: &Visit, data: &Dataset) -> Option<Changes> {
     let (rows, groups) = grouped(&some_of(configurations(data)));
     of_rows(model, visit, &rows, &groups)
 }
 
-/// The level of the model's errors: what visits of as many configurations, drawn of the rows of the calibration, must not exceed.
+/// The level of the model's errors: the value that visits of as many configurations, drawn from the rows of the calibration, rarely exceed.
 pub(crate) fn level(
     model: &Model,
     earlier: Option<(&Visit, &Dataset)>,
@@ -126,7 +126,7 @@ pub(crate) fn level(
     }
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let mut ratios = Vec::with_capacity(DRAWN);
-    // The rows of the calibration are as if its device stood anywhere.
+    // The rows of the calibration are treated as if its device were anywhere.
     let as_anew = Visit { device_is_known: options.device_is_known, ..visit.clone() };
     for _ in 0..DRAWN {
         let mut chosen = BTreeSet::new();
@@ -144,14 +144,14 @@ pub(crate) fn level(
         ratios.push(ratio(&evidence, &hypotheses, &tests));
     }
     ratios.sort_by(f64::total_cmp);
-    // Errors of geometry alone have few large values, which few rows do not show: then it is the largest.
+    // Errors of geometry alone have few large values, which few rows may miss: then the level is the largest.
     let (chance, beyond) = if model.is_corrected { (CHANCE, 1.0) } else { (0.0, OF_GEOMETRY) };
     let at = ((1.0 - chance) * ratios.len() as f64) as usize;
     let found = ratios.get(at.min(ratios.len().saturating_sub(1))).copied().unwrap_or(1.0);
     Ok((Level::Known(found.max(1.0) * beyond * shrunk(model, visit)), true))
 }
 
-/// How much larger squares of errors are of rows that the calibration has not seen, over those of its own rows.
+/// Ratio of squared errors of rows outside the calibration to those of its own rows.
 fn shrunk(model: &Model, visit: &Visit) -> f64 {
     let accuracy = &model.file.accuracy;
     let set = accuracy.held_out.as_ref().unwrap_or(&accuracy.training);

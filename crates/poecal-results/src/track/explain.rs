@@ -1,4 +1,4 @@
-//! Explanations of changes: which motions take the most of them away, and whether by more than noise does.
+//! Explanations of changes: the motions that remove most of them, and whether by more than noise does.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,16 +9,16 @@ use poecal_numerics::linalg;
 
 /// Probability to call an unchanged robot changed, of all explanations together.
 const CHANCE: f64 = 0.01;
-/// Degrees of freedom that stand for a level that is known.
+/// Degrees of freedom that represent a known level.
 pub(crate) const KNOWN: f64 = 1e6;
-/// Share of a motion's own effect below which, beside what is free, nothing is left of it.
+/// Share of a motion's own effect below which nothing of it remains beside the free unknowns.
 const NOTHING: f64 = 1e-10;
 /// Gain, in variances, by which an explanation may be worse than the best and still explain the changes nearly as well.
 const NEARLY: f64 = 7.0;
 /// Normal quantile of the scatter that a stated repeatability allows: 0.1 %.
 const ALLOWED: f64 = 3.09;
 
-/// Standard deviations of a shift at which it would show.
+/// Number of standard deviations at which a shift becomes visible.
 const SHOWN: f64 = 5.0;
 
 /// A kind of explanation, in the order in which they are tried: the simplest first.
@@ -30,13 +30,13 @@ pub enum Kind {
     Tool,
     /// One of several targets.
     Target,
-    /// All lengths of the arm: warmth.
+    /// All lengths of the arm: thermal expansion.
     Lengths,
     /// The zero of one joint.
     Zero,
     /// The axis of one joint.
     Axis,
-    /// What one joint gives under weight.
+    /// The compliance of one joint.
     Give,
     /// The zeros of two joints.
     TwoZeros,
@@ -51,7 +51,7 @@ pub struct Size {
     pub value: f64,
     /// Its standard deviation.
     pub sigma: f64,
-    /// Whether it is an angle.
+    /// True if it is an angle.
     pub turns: bool,
 }
 
@@ -59,23 +59,23 @@ pub struct Size {
 #[derive(Clone, Debug)]
 pub(crate) struct Hypothesis {
     pub(crate) kind: Kind,
-    /// What it is of.
+    /// Subjects of its columns.
     pub(crate) of: Vec<Of>,
     pub(crate) columns: DMatrix<f64>,
-    /// Whether each unknown is an angle.
+    /// For each unknown, true if it is an angle.
     pub(crate) turns: Vec<bool>,
-    /// Whether it may be named: not where its size would have to be beyond what is linear to be seen at all.
+    /// True if it may be named. It may not if its size would have to exceed the linear range to be seen at all.
     pub(crate) is_candidate: bool,
 }
 
-/// What a hypothesis explains.
+/// Result of one hypothesis.
 #[derive(Clone, Debug)]
 pub(crate) struct Tried {
     /// Its index.
     pub(crate) at: usize,
-    /// How many unknowns are seen beside what is free.
+    /// Number of unknowns that are seen beside the free ones.
     pub(crate) rank: usize,
-    /// Squares that it takes away.
+    /// Reduction of the sum of squares.
     pub(crate) gain: f64,
     /// Its unknowns, each with its standard deviation at level 1.
     pub(crate) step: Vec<(f64, f64)>,
@@ -83,16 +83,16 @@ pub(crate) struct Tried {
     pub(crate) covariance: DMatrix<f64>,
 }
 
-/// The level of the noise: what is known of the variance of a number, in units of that by which numbers are whitened.
+/// The level of the noise: knowledge of the variance of a number, in units of the one by which numbers are whitened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Level {
-    /// Known: stated, or found on many rows.
+    /// Known: stated, or estimated from many rows.
     Known(f64),
-    /// Squares of repeats, and their degrees of freedom: the changes that are left say the rest.
+    /// Sum of squares of repeats, and their degrees of freedom; the remaining changes add to the estimate.
     Found(f64, f64),
 }
 
-/// What was found by all hypotheses.
+/// Result of all hypotheses.
 #[derive(Clone, Debug)]
 pub(crate) struct Verdict {
     /// The best explanation, if the changes are more than noise.
@@ -102,21 +102,21 @@ pub(crate) struct Verdict {
     /// Variance of a number, and its degrees of freedom.
     pub(crate) variance: f64,
     pub(crate) freedom: f64,
-    /// Whether more scatters than was stated.
+    /// True if the scatter exceeds the stated one.
     pub(crate) is_wider: bool,
-    /// Squares that are left with what is free alone, and their degrees of freedom.
+    /// Sum of squares that remains with the free unknowns alone, and its degrees of freedom.
     pub(crate) left: (f64, f64),
 }
 
-/// Changes with what is free taken out.
+/// Changes with the free unknowns projected out.
 pub(crate) struct Evidence {
-    /// Orthonormal columns of what is free.
+    /// Orthonormal basis of the columns of the free unknowns.
     free: DMatrix<f64>,
     residual: DVector<f64>,
     pub(crate) numbers: f64,
 }
 
-/// Orthonormal columns that span some columns, and by which steps of these: `Q = C S`.
+/// Orthonormal basis of the span of some columns, and the steps of these that form it: `Q = C S`.
 fn spanned(columns: &DMatrix<f64>, before: &[f64]) -> (DMatrix<f64>, DMatrix<f64>) {
     let k = columns.ncols();
     let unit: Vec<f64> = before.iter().map(|norm| if *norm > 0.0 { 1.0 / norm } else { 0.0 }).collect();
@@ -138,25 +138,25 @@ fn norms(columns: &DMatrix<f64>) -> Vec<f64> {
 }
 
 impl Evidence {
-    /// Of whitened changes beside columns of what is free.
+    /// Evidence of whitened changes beside columns of the free unknowns.
     pub(crate) fn new(residual: &DVector<f64>, free: &DMatrix<f64>) -> Self {
         let (free, _) = spanned(free, &norms(free));
         let residual = residual - &free * free.tr_mul(residual);
         Evidence { numbers: residual.len() as f64, free, residual }
     }
 
-    /// Squares that are left, and their degrees of freedom.
+    /// Sum of squares that remains, and its degrees of freedom.
     pub(crate) fn left(&self) -> (f64, f64) {
         (self.residual.norm_squared(), self.numbers - self.free.ncols() as f64)
     }
 
-    /// What is left of columns beside what is free: orthonormal, and by which steps.
+    /// Orthonormal basis of the part of columns that the free unknowns leave, and the steps that form it.
     fn beside(&self, columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
         let own = columns - &self.free * self.free.tr_mul(columns);
         spanned(&own, &norms(columns))
     }
 
-    /// What a hypothesis explains; `None` where nothing is seen of it.
+    /// Result of a hypothesis; `None` if nothing of it is seen.
     pub(crate) fn tried(&self, at: usize, hypothesis: &Hypothesis) -> Option<Tried> {
         if !hypothesis.is_candidate {
             return None;
@@ -173,7 +173,7 @@ impl Evidence {
         Some(Tried { at, rank: own.ncols(), gain: along.norm_squared(), step, covariance })
     }
 
-    /// The unknowns of some columns, each with its standard deviation at level 1; `None` where they are not all seen.
+    /// The unknowns of some columns, each with its standard deviation at level 1; `None` if they are not all seen.
     pub(crate) fn steps(&self, columns: &DMatrix<f64>) -> Option<Vec<(f64, f64)>> {
         let (own, steps) = self.beside(columns);
         let step = &steps * own.tr_mul(&self.residual);
@@ -181,14 +181,14 @@ impl Evidence {
         (own.ncols() == columns.ncols()).then(|| all.collect())
     }
 
-    /// Standard deviation at level 1 of the only unknown of some columns; infinite where it is not seen.
+    /// Standard deviation at level 1 of the only unknown of some columns; infinite if it is not seen.
     pub(crate) fn sigma(&self, column: &DMatrix<f64>) -> f64 {
         let (_, steps) = self.beside(column);
         if steps.ncols() == 0 { f64::INFINITY } else { steps.row(0).norm() }
     }
 }
 
-/// Leaves out zeros of joints that are not seen, and pairs with them: their shift would be beyond what is linear before it showed.
+/// Excludes zeros of joints that are not seen, and pairs with them: their shift would exceed the linear range before it became visible.
 pub(crate) fn leave_unseen_out(hypotheses: &mut [Hypothesis], evidence: &Evidence, level: Level) {
     let variance = match level {
         Level::Known(variance) => variance,
@@ -205,14 +205,14 @@ pub(crate) fn leave_unseen_out(hypotheses: &mut [Hypothesis], evidence: &Evidenc
     all.for_each(|it| it.is_candidate = false);
 }
 
-/// Hypotheses with how much each must explain.
+/// Critical gains of the hypotheses.
 pub(crate) struct Tests {
-    /// Probability of each hypothesis.
+    /// Significance level of each hypothesis.
     chance: Vec<f64>,
 }
 
 impl Tests {
-    /// Each kind has the same share of the probability, and within it each hypothesis.
+    /// Tests with the same share of the significance level for each kind, and within a kind for each hypothesis (Bonferroni).
     pub(crate) fn new(hypotheses: &[Hypothesis]) -> Self {
         let candidates = || hypotheses.iter().filter(|it| it.is_candidate);
         let of = |kind: Kind| candidates().filter(move |it| it.kind == kind).count().max(1) as f64;
@@ -223,7 +223,7 @@ impl Tests {
         Tests { chance: hypotheses.iter().map(|it| CHANCE / kinds / of(it.kind)).collect() }
     }
 
-    /// What a gain of so many unknowns exceeds by noise with the probability of a hypothesis, in variances.
+    /// Gain of so many unknowns, in variances, that noise exceeds with the significance level of a hypothesis.
     pub(crate) fn quantile(&self, at: usize, rank: usize, freedom: f64) -> f64 {
         let rank = rank.max(1) as f64;
         let chance = self.chance.get(at).copied().unwrap_or(CHANCE);
@@ -232,7 +232,7 @@ impl Tests {
 }
 
 impl Level {
-    /// Variance of a number with so many squares left, and its degrees of freedom.
+    /// Variance of a number with such a remaining sum of squares, and its degrees of freedom.
     fn variance(self, (squares, freedom): (f64, f64)) -> (f64, f64) {
         match self {
             Level::Known(variance) => (variance, KNOWN),
@@ -244,18 +244,18 @@ impl Level {
     }
 }
 
-/// The largest gain of any hypothesis over what noise of variance 1 is allowed.
+/// The largest ratio of any hypothesis' gain to its critical gain for noise of variance 1.
 pub(crate) fn ratio(evidence: &Evidence, hypotheses: &[Hypothesis], tests: &Tests) -> f64 {
     let tried = hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.tried(at, it));
     tried.map(|it| it.gain / tests.quantile(it.at, it.rank, KNOWN)).fold(0.0, f64::max)
 }
 
-/// Whether squares that are left are no more than noise of a variance.
+/// True if a remaining sum of squares is no more than noise of a variance.
 pub(crate) fn is_noise(squares: f64, freedom: f64, variance: f64) -> bool {
     freedom >= 1.0 && squares / freedom / variance <= mean_square_quantile(freedom, ALLOWED)
 }
 
-/// The simplest explanation that suffices.
+/// The simplest sufficient explanation.
 pub(crate) fn explain(
     evidence: &Evidence,
     hypotheses: &[Hypothesis],
@@ -266,7 +266,7 @@ pub(crate) fn explain(
         hypotheses.iter().enumerate().filter_map(|(at, it)| evidence.tried(at, it)).collect();
     let first = judged(evidence, hypotheses, tests, level, &tried);
     let Level::Known(stated) = level else { return first };
-    // More than was stated scatters: the rows themselves say how much.
+    // The scatter exceeds the stated one: the rows themselves determine it.
     let (squares, freedom) = evidence.left();
     let (gain, rank) = tried
         .iter()
@@ -288,7 +288,7 @@ fn judged(
 ) -> Verdict {
     let left = evidence.left();
     let with = |it: &Tried| level.variance((left.0 - it.gain, left.1 - it.rank as f64));
-    // How far each exceeds what noise is allowed, by what it leaves itself.
+    // Excess of each over its critical gain, by its own remaining squares.
     let excess = |it: &Tried| {
         let (variance, freedom) = with(it);
         it.gain / variance / tests.quantile(it.at, it.rank, freedom)
@@ -306,7 +306,7 @@ fn judged(
     if ratio <= 1.0 {
         return found;
     }
-    // All are compared by one variance: that of the explanation that leaves least for its unknowns.
+    // All are compared by one variance: that of the explanation with the smallest remaining squares for its unknowns.
     let (variance, freedom) =
         tried.iter().map(with).fold(nothing, |least, it| if it.0 < least.0 { it } else { least });
     let score = |it: &Tried| it.gain / variance - tests.quantile(it.at, it.rank, freedom);
@@ -314,7 +314,7 @@ fn judged(
     let is_simple = |it: &&Tried| kind(it) <= Kind::Zero;
     let most = |a: &&Tried, b: &&Tried| score(a).total_cmp(&score(b));
     let mut best = tried.iter().filter(is_simple).max_by(most);
-    // A richer one must explain more by as much as noise is allowed.
+    // A richer explanation must explain more by its critical gain.
     let richer = tried.iter().filter(|it| !is_simple(it)).filter(|it| {
         best.is_none_or(|best| {
             let more = it.rank.saturating_sub(best.rank).max(1);
@@ -334,7 +334,7 @@ fn judged(
     Verdict { best: Some(best.clone()), nearly, variance, freedom, ..found }
 }
 
-/// Columns by what they are of, in standard deviations.
+/// Columns by their subjects, in standard deviations.
 pub(crate) fn picked(
     jacobian: &DMatrix<f64>,
     columns: &[Columns],

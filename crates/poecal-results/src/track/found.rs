@@ -1,4 +1,4 @@
-//! What a visit shows.
+//! Result of a visit.
 
 use super::explain::{Hypothesis, Kind, Size, Tried, Verdict};
 use super::model::Model;
@@ -9,14 +9,14 @@ use poecal_fit::analysis::JointCoverage;
 use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
 
-/// What explains the changes.
+/// An explanation of the changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
     /// Its kind.
     pub kind: Kind,
     /// Names of the joints, targets or devices.
     pub names: Vec<String>,
-    /// Whether the first joint slides, so that its zero is a length.
+    /// True if the first joint slides, so that its zero is a length.
     pub slides: bool,
     /// Its unknowns.
     pub sizes: Vec<Size>,
@@ -24,43 +24,43 @@ pub struct Explanation {
     pub gain: f64,
 }
 
-/// What a visit shows.
+/// Result of a visit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tracked {
-    /// What was known of the visit.
+    /// Knowledge of the visit.
     pub options: TrackOptions,
-    /// Whether the robot is as it was.
+    /// State of the robot: unchanged or changed.
     pub state: State,
-    /// By what the rows were judged.
+    /// Reference by which the rows were judged.
     pub judged_by: JudgedBy,
-    /// Rows of the visit, and those among them that repeat earlier ones.
+    /// Number of rows of the visit.
     pub rows: usize,
-    /// Of these, how many repeat configurations of the earlier visit.
+    /// Number of these that repeat configurations of the earlier visit.
     pub repeated: usize,
-    /// The simplest explanation that suffices; `None` of an unchanged robot, and where none does.
+    /// The simplest sufficient explanation; `None` for an unchanged robot, and if no explanation suffices.
     pub explanation: Option<Explanation>,
     /// Others that explain the changes nearly as well.
     pub alternatives: Vec<Explanation>,
-    /// What of each joint's zero would be found, and what cannot be seen.
+    /// Detectable shift of each joint's zero, and the reason for those that cannot be seen.
     pub joints: Vec<JointSight>,
-    /// Which part of each joint's range the rows sample.
+    /// Part of each joint's range that the rows sample.
     pub ranges: Vec<JointCoverage>,
-    /// Root mean square change of measured places with what is free fitted, metres: noise of both visits is in it.
+    /// Root mean square change of measured positions with the free unknowns fitted, metres: noise of both visits is in it.
     pub change_m: f64,
-    /// The same of what the explanation leaves.
+    /// Root mean square change that the explanation leaves, metres.
     pub left_m: f64,
-    /// Standard deviation of each coordinate, metres: the stated repeatability, or what was found.
+    /// Standard deviation of each coordinate, metres: the stated repeatability, or an estimate.
     pub noise_m: f64,
     /// Degrees of freedom of that.
     pub freedom: f64,
     /// Root mean square error of the delivered model in this visit, metres: with the frame of the device fitted, unless that is known.
     pub error_m: f64,
-    /// What else is to be said, a sentence each.
+    /// Further notes, a sentence each.
     pub notes: Vec<String>,
 }
 
 impl Explanation {
-    /// Length of its angles or of its lengths, radians or metres, with its standard deviation along it; `None` where it has none.
+    /// Length of the vector of its angles or of its lengths, radians or metres, with the standard deviation along it; `None` if it has none.
     #[must_use]
     pub fn size(&self, turns: bool) -> Option<(f64, f64)> {
         let own: Vec<&Size> = self.sizes.iter().filter(|it| it.turns == turns).collect();
@@ -73,7 +73,7 @@ impl Explanation {
         (!own.is_empty()).then_some((length, along))
     }
 
-    /// Whether it is too far for what is linear.
+    /// True if it exceeds the linear range.
     #[must_use]
     pub fn is_far(&self) -> bool {
         matches!(self.kind, Kind::Zero | Kind::TwoZeros | Kind::Zeros | Kind::Axis)

@@ -1,4 +1,4 @@
-//! What may have changed, as columns of changes.
+//! Possible changes, as columns of the Jacobian.
 
 use nalgebra::{DMatrix, Vector3};
 
@@ -6,7 +6,7 @@ use super::explain::{Hypothesis, Kind, picked};
 use super::options::TrackOptions;
 use super::visit::{Columns, Of, Visit};
 
-/// What is free in any case: the frames of devices that were set up anew, and the targets of a tool that was mounted anew.
+/// Columns of the unknowns that are free in any case: frames of newly set up devices, and targets of a newly mounted tool.
 pub(crate) fn free(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOptions) -> DMatrix<f64> {
     picked(jacobian, &visit.columns, |of| match of {
         Of::Device(_) => !visit.device_is_known,
@@ -15,7 +15,7 @@ pub(crate) fn free(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOption
     })
 }
 
-/// All that may explain changes.
+/// All possible explanations of changes.
 pub(crate) fn hypotheses(jacobian: &DMatrix<f64>, visit: &Visit, options: &TrackOptions) -> Vec<Hypothesis> {
     let columns = &visit.columns;
     let one = |kind: Kind, it: &Columns| Hypothesis {

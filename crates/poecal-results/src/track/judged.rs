@@ -1,4 +1,4 @@
-//! A visit with what its rows are judged by.
+//! A visit with the reference of its judgement.
 
 use std::borrow::Cow;
 
@@ -13,9 +13,9 @@ use crate::calibration_file::CalibrationFile;
 use poecal_model::measurement::Dataset;
 use poecal_numerics::error::Result;
 
-/// Numbers beyond what is free that repeated rows must have, to be judged alone.
+/// Degrees of freedom beside the free unknowns that repeated rows must have, to be judged alone.
 const FREEDOM: f64 = 3.0;
-/// Error over that of the calibration itself above which a device stands elsewhere.
+/// Ratio of the error to that of the calibration itself above which the device has moved.
 const MUCH: f64 = 3.0;
 
 /// Earlier rows.
@@ -23,12 +23,12 @@ const MUCH: f64 = 3.0;
 pub struct Earlier<'a> {
     /// The rows.
     pub data: &'a Dataset,
-    /// Whether they are those that the calibration was made of: before joints were calibrated anew.
+    /// True if they are the rows of the calibration itself: from before joints were recalibrated.
     pub is_own: bool,
 }
 
 impl<'a> Earlier<'a> {
-    /// The rows, of the calibration's own but for those that it suspects.
+    /// The rows; for the calibration's own rows, without those that it suspects.
     #[must_use]
     pub fn kept(&self, file: &CalibrationFile) -> Cow<'a, Dataset> {
         let rows = self.is_own.then(|| file.kept_rows(self.data)).filter(|rows| rows.len() < self.data.len());
@@ -49,7 +49,7 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
-    /// Of the rows of a visit: compared with earlier ones where enough of them repeat, with the model elsewhere.
+    /// Judgement of the rows of a visit: compared with earlier ones if enough of them repeat, otherwise with the model.
     pub(crate) fn from_rows(
         file: &CalibrationFile,
         data: &Dataset,
@@ -93,7 +93,7 @@ impl Judged {
     }
 }
 
-/// The earlier visit, about the model that its rows are of.
+/// The earlier visit, about the model of its rows.
 fn before(
     file: &CalibrationFile,
     model: &Model,
@@ -109,7 +109,7 @@ fn before(
     Ok((earlier_visit(&model, &data, &same_tool)?, data))
 }
 
-/// The earlier visit: from where its devices are by the calibration, if that has them; else as they fit.
+/// The earlier visit: with the devices of the calibration, if it has them; otherwise with fitted ones.
 pub(crate) fn earlier_visit(model: &Model, data: &Dataset, options: &TrackOptions) -> Result<Visit> {
     match Visit::from_measurements(model, data, true, options) {
         Ok(found) if found.rms() < MUCH * model.own_m() => Ok(found),

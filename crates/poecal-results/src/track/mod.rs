@@ -1,9 +1,10 @@
-//! Whether a robot is still as it was calibrated, by a few measurements: which joint is not, what cannot be seen, and how large a shift
-//! would be found (theory.md §9, *Has it drifted*).
+//! Detection of a robot's change since its calibration by a few measurements (theory.md §9, *Has it drifted*). The result is the changed joint, the
+//! joints that cannot be seen, and the detectable size of a shift.
 //!
-//! `judged.rs` has the visit (`visit.rs`: rows as linear functions) and the earlier one, by `pairs.rs` or `by_model.rs`; `hypotheses.rs` what may have
-//! changed, as columns; `explain.rs` the simplest that suffices; `sight.rs` the smallest shift of each joint, and why one is not seen; `witness.rs`
-//! chooses configurations for `--plan`; `repair.rs` is `--recalibrate`. No files and tables here: it has numbers and single sentences.
+//! `judged.rs` has the visit (`visit.rs`: rows as linear functions) and the earlier one, by `pairs.rs` or `by_model.rs`. `hypotheses.rs` has the
+//! possible changes as columns, `explain.rs` the simplest sufficient one. `sight.rs` has the smallest detectable shift of each joint, and the reason
+//! if it is not seen. `witness.rs` chooses configurations for `--plan`; `repair.rs` is `--recalibrate`. This module has numbers and single sentences,
+//! no files and tables.
 
 mod by_model;
 mod explain;

@@ -1,4 +1,4 @@
-//! The model that is delivered, as visits are compared by it.
+//! The delivered model, as the reference of visits.
 
 use super::options::TrackOptions;
 use crate::calibration_file::CalibrationFile;
@@ -7,19 +7,19 @@ use poecal_model::measurement::{ByQuantity, Noise, Quantity};
 use poecal_model::robot::Robot;
 use poecal_numerics::error::Result;
 
-/// A model that is delivered.
+/// A delivered model.
 pub(crate) struct Model {
     /// The file whose entries are those of the delivered model.
     pub(crate) file: CalibrationFile,
     pub(crate) robot: Robot,
     pub(crate) noise: Noise,
-    /// The joints that have readings: all but the gives.
+    /// The joints that have readings: all but the compliant ones.
     pub(crate) joints: Vec<usize>,
     pub(crate) is_corrected: bool,
 }
 
 impl Model {
-    /// Of a calibration, with the noise of a visit where that is stated.
+    /// Model of a calibration, with the noise of a visit if that is stated.
     pub(crate) fn from_calibration(file: &CalibrationFile, options: &TrackOptions) -> Result<Self> {
         let corrected = file.corrected();
         let is_corrected = corrected.is_some();
@@ -39,12 +39,12 @@ impl Model {
         Ok(Model { file, robot, noise, joints, is_corrected })
     }
 
-    /// Error of the calibration itself, metres a coordinate or distance.
+    /// Error of the calibration itself, metres for each coordinate or distance.
     pub(crate) fn own_m(&self) -> f64 {
         1e-3 * self.own_rms()
     }
 
-    /// The same in millimetres or degrees.
+    /// Error of the calibration itself, millimetres or degrees.
     pub(crate) fn own_rms(&self) -> f64 {
         let model = if self.is_corrected { AcceptedModel::Corrected } else { AcceptedModel::Calibrated };
         self.file.own_rms(model)

@@ -11,13 +11,13 @@ use poecal_numerics::linalg;
 const SAME_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 const SAME_M: f64 = 1e-4;
 
-/// Numbers of a place.
+/// Numbers of a position.
 const PLACE: usize = 3;
 
 /// Changes of measured numbers between visits, about the model.
 #[derive(Clone, Debug)]
 pub(crate) struct Changes {
-    /// Measured less predicted of this visit, less the same of the earlier one, in standard deviations.
+    /// Measured less predicted in this visit, less the same in the earlier one, in standard deviations.
     pub(crate) residual: DVector<f64>,
     /// Derivatives in those units, by the unknowns of the visit.
     pub(crate) jacobian: DMatrix<f64>,
@@ -40,7 +40,7 @@ pub(crate) fn groups(data: &Dataset) -> Vec<Vec<u32>> {
     found
 }
 
-/// Largest difference of each reading within one configuration; that of a factor does not count.
+/// Largest difference of each reading within one configuration; infinite for a factor.
 fn tolerances<'a>(data: &'a Dataset, robot: &'a Robot) -> impl Iterator<Item = f64> + 'a {
     data.reading_names().iter().map(|name| match robot.reading_kind(name) {
         ReadingKind::Angle => SAME_RAD,
@@ -49,8 +49,8 @@ fn tolerances<'a>(data: &'a Dataset, robot: &'a Robot) -> impl Iterator<Item = f
     })
 }
 
-/// How many of their first numbers rows of two visits share: all of one kind of measurement, the place alone where one visit shows the orientation
-/// too; none otherwise.
+/// Number of leading numbers that rows of two visits share: all if they are of one kind of measurement, those of the position if one visit has
+/// orientations too; otherwise 0.
 fn shared_numbers((a, rows): (&Dataset, &[u32]), (b, others): (&Dataset, &[u32])) -> usize {
     let seen = |data: &Dataset, row: &u32| data.observations[*row as usize];
     let all = || rows.iter().map(|row| seen(a, row)).chain(others.iter().map(|row| seen(b, row)));
@@ -58,14 +58,14 @@ fn shared_numbers((a, rows): (&Dataset, &[u32]), (b, others): (&Dataset, &[u32])
     if all().all(|it| it.measurement.function() == first.measurement.function()) {
         return first.measurement.dim();
     }
-    // Numbers of a place are along the axes of the base, unless its noise has a shape.
+    // Numbers of a position are along the axes of the base, unless its noise has a shape.
     let is_place = |it: &Observation| {
         it.measurement.channels().range(Quantity::Position) == (0..PLACE) && it.noise_shape.is_none()
     };
     if all().all(|it| is_place(&it)) { PLACE } else { 0 }
 }
 
-/// Whether rows of two visits are of one configuration, target and instrument.
+/// True if rows of two visits are of one configuration, target and instrument.
 fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> bool {
     let (one, two) = (&a.observations[row as usize], &b.observations[other as usize]);
     let named = |data: &Dataset, at: usize| data.targets.get(at).cloned().flatten();
@@ -82,13 +82,13 @@ fn is_same(a: &Dataset, row: u32, b: &Dataset, other: u32, robot: &Robot) -> boo
 }
 
 impl Changes {
-    /// The largest standard deviation of a number, which is that of places.
+    /// The largest standard deviation of a number of a position.
     pub(crate) fn largest_sigma(&self) -> f64 {
         self.sigma.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Of a visit from an earlier one; `None` where no row repeats. Where another place on the tool is measured, what the calibration is uncertain of
-    /// moves both places differently, and is part of the changes.
+    /// Changes of a visit from an earlier one; `None` if no row repeats. If another point on the tool is measured, the calibration's uncertainty
+    /// moves both points differently, and is part of the changes.
     pub(crate) fn between(
         (visit, data): (&Visit, &Dataset),
         (earlier, before): (&Visit, &Dataset),
@@ -151,7 +151,7 @@ impl Changes {
     }
 }
 
-/// Residuals and their derivatives beside what the calibration is uncertain of, whitened by both.
+/// Residuals and their derivatives, whitened by noise and by the calibration's uncertainty.
 fn weigh_known(
     by_known: &DMatrix<f64>,
     residual: DVector<f64>,
@@ -174,7 +174,7 @@ fn mean(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
     (value, variance)
 }
 
-/// Squares of the deviations from that mean, in variances, and their degrees of freedom.
+/// Sum of squared deviations from that mean, in variances, and its degrees of freedom.
 fn scatter(visit: &Visit, rows: &[u32], number: usize) -> (f64, f64) {
     let (value, _) = mean(visit, rows, number);
     let at = |row: &u32| visit.starts[*row as usize] + number;

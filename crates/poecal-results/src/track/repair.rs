@@ -1,4 +1,4 @@
-//! One joint calibrated anew, all else held.
+//! Recalibration of one joint with everything else held.
 
 use nalgebra::DMatrix;
 
@@ -17,25 +17,25 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::JointKind;
 use poecal_numerics::error::{ErrorKind, Result};
 
-/// A calibration with one joint calibrated anew.
+/// A calibration with one joint recalibrated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repaired {
     /// The new calibration.
     pub file: CalibrationFile,
-    /// What changed.
+    /// The change.
     pub repair: JointRepair,
-    /// By what the rows were judged.
+    /// Reference by which the rows were judged.
     pub judged_by: JudgedBy,
-    /// What else is to be said, a sentence each.
+    /// Further notes, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// Calibrates the zero or the axis of one joint anew by the rows of a visit. All else stays as the calibration has it, with its covariance, which
-/// is the prior: what repeats is compared with earlier rows, so that nothing else is learnt of it. `sources` are the files.
+/// Recalibrates the zero or the axis of one joint by the rows of a visit. Everything else is as in the calibration, with its covariance, which is the
+/// prior. Repeated rows are compared with earlier rows, so that they add no information on anything else. `sources` are the files.
 ///
 /// # Errors
-/// [`ErrorKind::Option`] if there is no such joint; [`ErrorKind::Problem`] if the rows do not show it, contradict that it alone changed, or show
-/// it farther than 2°; and as [`track`](super::track).
+/// [`ErrorKind::Option`] if there is no such joint; [`ErrorKind::Problem`] if the rows do not determine it, contradict that it alone changed, or show
+/// a change of more than 2°; and as [`track`](super::track).
 pub fn recalibrate(
     file: &CalibrationFile,
     data: &Dataset,
@@ -62,7 +62,7 @@ pub fn recalibrate(
              and state --device known where the device stands as it did"
         ));
     };
-    // What is left must be noise beside it.
+    // The remainder must be noise beside it.
     let beside = side_by_side(&free_columns, &hypothesis.columns);
     let rest: Vec<Hypothesis> =
         all.iter().filter(|it| it.kind <= Kind::Zero && it.of != [of]).cloned().collect();
@@ -97,7 +97,7 @@ pub fn recalibrate(
     Ok(Repaired { file: file.repaired(&repair, provenance)?, repair, judged_by, notes })
 }
 
-/// The joint that is to be calibrated anew.
+/// The joint that is to be recalibrated.
 fn find_joint(model: &Model, joint: &str) -> Result<usize> {
     let own = model.joints.iter().find(|&&at| model.robot.joints[at].name == joint);
     let Some(&at) = own else {

@@ -1,4 +1,4 @@
-//! A visit judged: the steps in order.
+//! Judgement of a visit: the steps in order.
 
 use super::explain::{Evidence, Hypothesis, Level, Tests, Tried, Verdict, explain, leave_unseen_out};
 use super::found::{Explanation, Tracked, explanation};
@@ -17,21 +17,21 @@ use poecal_fit::state::{Packed, Session};
 use poecal_model::measurement::{Dataset, Quantity};
 use poecal_numerics::error::Result;
 
-/// How many times what noise and errors of the model explain the changes may scatter beside the best explanation: beyond it no single change
-/// explains them, or the calibration is of another robot.
+/// Largest ratio of the scatter beside the best explanation to that of noise and model errors. Beyond it no single change explains the changes, or
+/// the calibration is of another robot.
 const BEYOND: f64 = 5.0;
 /// Changes in standard deviations below which a row is a copy: rounding of a device that is fitted.
 const ROUNDING: f64 = 1e-6;
-/// Share of the changes that an explanation beyond what is linear may leave.
+/// Largest share of the changes that an explanation beyond the linear range may leave.
 const NEARLY: f64 = 0.3;
 
-/// Judges by a visit whether a robot is as it was when it was calibrated. `earlier` are the rows of the calibration, or of an earlier visit:
-/// rows that repeat their configurations are compared with them, others with the delivered model.
+/// Judges by a visit whether a robot is unchanged since its calibration. `earlier` are the rows of the calibration, or of an earlier visit: rows that
+/// repeat their configurations are compared with them, others with the delivered model.
 ///
 /// # Errors
 /// [`ErrorKind::Problem`](poecal_numerics::error::ErrorKind::Problem) if the rows are too few, of other targets or of other instruments;
-/// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if the file holds no valid calibration, or none whose errors are known where rows must be
-/// judged by it.
+/// [`ErrorKind::Model`](poecal_numerics::error::ErrorKind::Model) if the file holds no valid calibration, or none with known errors though rows must
+/// be judged by it.
 ///
 /// ```
 /// use poecal_calibrate::{CalibrationOptions, calibrate};
@@ -74,7 +74,7 @@ pub fn track(
     let noise_m = stated.map_or(own_noise_m, |variance| changes.largest_sigma() * variance.sqrt());
     let left_m = left_m(changes, &verdict);
     let usual_m = usual_m(changes, *level, model);
-    // Of a zero far off, what is not linear is left.
+    // For a large shift of a zero, its nonlinear part remains.
     let is_nearly = is_far && left_m < NEARLY * change_m;
     let is_unexplained = !is_nearly && own_noise_m > BEYOND * usual_m;
     if is_unexplained {
@@ -85,7 +85,7 @@ pub fn track(
     }
     notes.extend(explanation.as_ref().filter(|_| is_far).map(words::far));
     let joints = sights(&judged, (&hypotheses, &tests), &verdict, options);
-    // Beside a shift too far to be linear, others are not known.
+    // Beside a shift beyond the linear range, others are not determined.
     let shifts = (!is_unexplained && !is_far).then(|| sight::shifts(&evidence, &hypotheses, &verdict));
     Ok(Tracked {
         options: *options,
@@ -106,7 +106,7 @@ pub fn track(
     })
 }
 
-/// What of each joint's zero would be found.
+/// Detectable shift of each joint's zero.
 fn sights(
     judged: &Judged,
     tests: (&[Hypothesis], &Tests),
@@ -117,7 +117,7 @@ fn sights(
     sight::joints(&judged.changes, &judged.visit, &judged.model, tests, level, options)
 }
 
-/// Which part of each joint's range the rows sample.
+/// Part of each joint's range that the rows sample.
 fn ranges(model: &Model, data: &Dataset) -> Vec<JointCoverage> {
     let packed = Packed::from_dataset(&model.robot, data);
     let mut all = coverage(&Session::new(&model.robot, data, &packed, false), &data.all_rows());
@@ -126,7 +126,7 @@ fn ranges(model: &Model, data: &Dataset) -> Vec<JointCoverage> {
     all
 }
 
-/// The variance of a number where it was stated: by repeats.
+/// The variance of a number if it was stated: by repeats.
 fn stated(level: Level, judged_by: JudgedBy) -> Option<f64> {
     match level {
         Level::Known(variance) if judged_by == JudgedBy::Repeats => Some(variance),
@@ -134,14 +134,14 @@ fn stated(level: Level, judged_by: JudgedBy) -> Option<f64> {
     }
 }
 
-/// Root mean square change of places that the best explanation leaves, metres.
+/// Root mean square change of positions that the best explanation leaves, metres.
 fn left_m(changes: &Changes, verdict: &Verdict) -> f64 {
     let (gain, rank) = verdict.best.as_ref().map_or((0.0, 0), |it| (it.gain, it.rank));
     in_metres(changes, verdict, (verdict.left.0 - gain, verdict.left.1 - rank as f64)).0
 }
 
-/// The verdict, or where it leaves more than the stated noise (variance) the zeros of several joints that do not: what was stated is kept, and more than it
-/// is a change that is not named yet.
+/// The verdict. If it leaves more than the stated noise (variance), the zeros of several joints that leave less replace it. The stated noise is kept,
+/// and an excess is a change without a name yet.
 fn completed(
     verdict: Verdict,
     stated: Option<f64>,
@@ -155,7 +155,7 @@ fn completed(
     complete
 }
 
-/// Standard deviation of a coordinate, metres, that noise and errors of the model explain.
+/// Standard deviation of a coordinate that noise and errors of the model explain, metres.
 fn usual_m(changes: &Changes, level: Level, model: &Model) -> f64 {
     let variance = match level {
         Level::Known(variance) => variance,
@@ -164,13 +164,13 @@ fn usual_m(changes: &Changes, level: Level, model: &Model) -> f64 {
     model.own_m().max(changes.largest_sigma() * variance.sqrt())
 }
 
-/// Root mean square error of measured places, metres.
+/// Root mean square error of measured positions, metres.
 fn error_m(visit: &Visit) -> f64 {
     let is_place = visit.quantities.contains(&Quantity::Position);
     visit.rms() * if is_place { 3f64.sqrt() } else { 1.0 }
 }
 
-/// Root mean square change of places in metres from squares in variances, and the standard deviation of a coordinate.
+/// Root mean square change of positions in metres from squares in variances, and the standard deviation of a coordinate.
 fn in_metres(changes: &Changes, verdict: &Verdict, (squares, _): (f64, f64)) -> (f64, f64) {
     let count = changes.residual.len().max(1) as f64;
     let largest = changes.largest_sigma();

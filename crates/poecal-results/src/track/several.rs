@@ -1,15 +1,15 @@
-//! Zeros of several joints at once: where one or two leave more than the stated repeatability explains.
+//! Zeros of several joints at once: used if one or two leave more than the stated repeatability explains.
 
 use nalgebra::DMatrix;
 
 use super::explain::{Evidence, Hypothesis, KNOWN, Kind, Tried, Verdict, is_noise};
 
-/// Most joints of which all sets are tried.
+/// Most joints for which all sets are tried.
 const MOST: usize = 10;
-/// Standard deviations of the least zero of a set: one that is no more than noise explains nothing.
+/// Smallest zero of a set in standard deviations: one that is no more than noise explains nothing.
 const LEAST: f64 = 3.0;
 
-/// The fewest zeros that leave no more than noise of this variance, with what they are judged by; `None` where no set of them does.
+/// The smallest set of zeros that leaves no more than noise of this variance, with its test; `None` if no set does.
 pub(crate) fn several_zeros(
     evidence: &Evidence,
     hypotheses: &[Hypothesis],

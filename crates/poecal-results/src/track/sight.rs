@@ -1,4 +1,4 @@
-//! How large a shift of each joint's zero would be found, and why one would not.
+//! Detectable shift of each joint's zero, and the reason if none is detectable.
 
 use nalgebra::DMatrix;
 
@@ -13,45 +13,45 @@ use poecal_model::robot::JointKind;
 /// Normal quantile of 95 %.
 const NORMAL: f64 = 1.644_853_627;
 
-/// Why the zero of a joint is not seen.
+/// Reason why the zero of a joint is not seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// The device was set up anew: its place hides the shift.
+    /// The device was set up anew: its frame absorbs the shift.
     Device,
-    /// The tool was mounted anew: its targets take the shift.
+    /// The tool was mounted anew: its targets absorb the shift.
     Tool,
-    /// Both together do.
+    /// Both together absorb it.
     DeviceAndTool,
     /// The joint moves no target, or none by enough.
     NoMotion,
 }
 
-/// What would be found of a joint's zero.
+/// Detectability of a shift of a joint's zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSight {
     /// Its name.
     pub joint: String,
-    /// Whether it slides, so that its zero is a length.
+    /// True if it slides, so that its zero is a length.
     pub slides: bool,
     /// Standard deviation of its shift, radians or metres; infinite if it is not seen.
     pub sigma: f64,
-    /// Smallest shift that is found with a probability of 95 %, radians or metres.
+    /// Smallest shift that is detected with a probability of 95 %, radians or metres.
     pub smallest: f64,
-    /// Why it is not seen at all.
+    /// Reason why it is not seen at all.
     pub unseen: Option<Unseen>,
-    /// Shift of its zero as found beside the explanation; `None` where it is not seen beside that, nothing explains the changes, or nothing was
+    /// Estimated shift of its zero beside the explanation. `None` if it is not seen beside that, nothing explains the changes, or nothing was
     /// measured.
     pub shift: Option<Size>,
 }
 
-/// Smallest shift over its standard deviation that is found with 95 %, where noise must not exceed `quantile` (a square) by as many degrees
-/// of freedom: of a noncentral t by its normal approximation.
+/// Ratio of the smallest shift that is detected with 95 % to its standard deviation. `quantile` is the critical value (a square) with `freedom`
+/// degrees of freedom. The noncentral t has its normal approximation (abramowitz1964, 26.7.10, without its term 1/(4ν)).
 pub(crate) fn smallest(quantile: f64, freedom: f64) -> f64 {
     let t = quantile.sqrt();
     t + NORMAL * (1.0 + 0.5 * quantile / freedom.max(1.0)).sqrt()
 }
 
-/// Of all joints.
+/// Detectability of all joints.
 pub(crate) fn joints(
     changes: &Changes,
     visit: &Visit,
@@ -80,7 +80,7 @@ pub(crate) fn joints(
         let factor = smallest(tests.quantile(at, 1, freedom), freedom);
         let sigma = |evidence: &Evidence| variance.sqrt() * evidence.sigma(&it.columns);
         let [own, device, tool, both] = [0, 1, 2, 3].map(|k| sigma(&all[k]));
-        // What is known must show a shift well, to be the reason why it is not seen.
+        // A free device or tool is the reason only if a shift would be clearly visible with it known.
         let is_seen = |sigma: f64| factor * sigma <= if sigma < own { 0.25 * most } else { most };
         let unseen = match () {
             () if is_seen(own) => None,
@@ -103,7 +103,7 @@ pub(crate) fn joints(
     zeros.filter_map(sight).collect()
 }
 
-/// The shift of each joint's zero, in the order of [`joints`], beside the explanation of the changes; of a joint that the explanation names, the
+/// The shift of each joint's zero, in the order of [`joints`], beside the explanation of the changes; for a joint that the explanation names, the
 /// explanation's.
 pub(crate) fn shifts(evidence: &Evidence, hypotheses: &[Hypothesis], verdict: &Verdict) -> Vec<Option<Size>> {
     let best = verdict.best.as_ref().and_then(|it| hypotheses.get(it.at));
@@ -119,14 +119,14 @@ pub(crate) fn shifts(evidence: &Evidence, hypotheses: &[Hypothesis], verdict: &V
     hypotheses.iter().filter(|it| it.kind == Kind::Zero).map(shift).collect()
 }
 
-/// Columns side by side.
+/// Columns of two matrices side by side.
 fn joined(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = one.clone().resize_horizontally(one.ncols() + other.ncols(), 0.0);
     all.columns_mut(one.ncols(), other.ncols()).copy_from(other);
     all
 }
 
-/// The same with what was found of each; of a joint that is not seen nothing.
+/// The joints with their estimated shifts; `None` for a joint that is not seen.
 pub(crate) fn with_shifts(mut joints: Vec<JointSight>, shifts: Vec<Option<Size>>) -> Vec<JointSight> {
     for (joint, shift) in joints.iter_mut().zip(shifts) {
         joint.shift = shift.filter(|_| joint.unseen.is_none());

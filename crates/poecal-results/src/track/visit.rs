@@ -1,4 +1,4 @@
-//! A visit: the rows of some measurements as linear functions of all that may have changed, about the model that is delivered.
+//! A visit: the rows of some measurements as linear functions of all possible changes, about the delivered model.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -15,12 +15,12 @@ use poecal_model::robot::{Body, Robot, Term};
 use poecal_numerics::error::{ErrorKind, Result};
 use poecal_numerics::linalg;
 
-/// What columns of a visit are of.
+/// Subject of columns of a visit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Of {
-    /// Where the device at a station is.
+    /// Pose of the device at a station.
     Device(usize),
-    /// Where a target is on the arm.
+    /// Pose of a target on the arm.
     Target(usize),
     /// All lengths of the arm, as a share.
     Lengths,
@@ -28,7 +28,7 @@ pub(crate) enum Of {
     Zero(usize),
     /// The axis of a joint.
     Axis(usize),
-    /// What a joint gives under weight.
+    /// Compliance of a joint.
     Give(usize),
 }
 
@@ -36,37 +36,37 @@ pub(crate) enum Of {
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     pub(crate) of: Of,
-    /// Places in the Jacobian.
+    /// Indices of the columns in the Jacobian.
     pub(crate) places: Vec<usize>,
-    /// Whether each unknown is an angle; a length or a share otherwise.
+    /// For each unknown, true if it is an angle; otherwise it is a length or a share.
     pub(crate) turns: Vec<bool>,
 }
 
 /// The rows of a visit.
 #[derive(Clone, Debug)]
 pub(crate) struct Visit {
-    /// Where the numbers of each row begin.
+    /// First index of each row's numbers.
     pub(crate) starts: Vec<usize>,
-    /// Derivatives of what is measured, metres or radians, by each unknown in its own unit.
+    /// Derivatives of the measured numbers, metres or radians, by each unknown in its own unit.
     pub(crate) jacobian: DMatrix<f64>,
-    /// Measured less predicted, metres or radians: places along the axes of the base.
+    /// Measured less predicted, metres or radians: positions along the axes of the base.
     pub(crate) residual: DVector<f64>,
     /// Standard deviation of each number.
     pub(crate) sigma: DVector<f64>,
     pub(crate) quantities: Vec<Quantity>,
     pub(crate) columns: Vec<Columns>,
-    /// Derivatives by the unknowns of the calibration, turned so that these are independent of variance 1; none without an uncertainty.
+    /// Derivatives by the unknowns of the calibration, transformed so that these are independent with variance 1; `None` without an uncertainty.
     pub(crate) by_known: Option<DMatrix<f64>>,
-    /// Each target's orientation and place with all joints at zero, base frame, and which of its motions its columns are.
+    /// Each target's pose with all joints at zero, base frame, and the motions of it that its columns are.
     pub(crate) targets: Vec<(Pose, &'static [usize])>,
-    /// Frame of each axis with all joints at zero, by which its unknowns are.
+    /// Frame of each axis with all joints at zero, in which its unknowns are expressed.
     pub(crate) axes: Vec<Pose>,
-    /// Whether the frames of the devices were taken as the calibration has them.
+    /// True if the frames of the devices are those of the calibration.
     pub(crate) device_is_known: bool,
 }
 
 impl Visit {
-    /// Root mean square of places, metres a coordinate.
+    /// Root mean square of positions, metres for each coordinate.
     pub(crate) fn rms(&self) -> f64 {
         let own = self
             .residual
@@ -78,8 +78,8 @@ impl Visit {
         if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
     }
 
-    /// The rows of some measurements about the model. The frames of the devices are those of the calibration where `device_is_known`, and
-    /// fitted elsewhere, as targets are where `tool_is_anew`.
+    /// The rows of some measurements about the model. The frames of the devices are those of the calibration if `device_is_known`, otherwise fitted;
+    /// targets are fitted if `tool_is_anew`.
     pub(crate) fn from_measurements(
         model: &Model,
         original: &Dataset,
@@ -90,7 +90,7 @@ impl Visit {
         let shared = file.pictures.as_ref().map(|known| original.with_common(known.common_error()));
         let mut data = shared.as_deref().unwrap_or(original).clone();
         if options.repeatability_m.is_some() {
-            // What is stated of the visit holds for each row.
+            // The stated noise of the visit holds for each row.
             data.observations.iter_mut().for_each(|row| (row.stated, row.noise_shape) = Default::default());
         }
         if !options.tool_is_anew {
@@ -137,7 +137,7 @@ impl Visit {
     }
 }
 
-/// The estimate of a visit: devices where the calibration has them or, like targets of a tool that is anew, registered.
+/// The estimate of a visit: devices as in the calibration or, like targets of a tool that was mounted anew, registered.
 fn place(
     model: &Model,
     session: Session<'_>,
@@ -163,7 +163,7 @@ fn place(
     Ok(estimate)
 }
 
-/// Scales the columns of a Jacobian to the units of the unknowns, and says what they are of.
+/// Scales the columns of a Jacobian to the units of the unknowns, and returns their subjects.
 fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64>) -> Vec<Columns> {
     let mut columns = Vec::new();
     for (parameter, places) in problem.layout().parameters() {
@@ -180,7 +180,8 @@ fn sort_columns(problem: &Problem<'_>, robot: &Robot, jacobian: &mut DMatrix<f64
     columns
 }
 
-/// Turns whitened numbers into metres and radians, places along the axes of the base; gives the standard deviation and the quantity of each.
+/// Transforms whitened numbers into metres and radians, positions along the axes of the base; returns the standard deviation and the quantity of
+/// each.
 fn unwhiten(
     problem: &Problem<'_>,
     estimate: &Estimate,
@@ -217,7 +218,7 @@ fn unwhiten(
     (sigma, quantities)
 }
 
-/// Refuses rows that do not determine where device and tool are.
+/// Refuses rows that do not determine the frames of device and tool.
 fn check_count(registration: &Registration<'_>, data: &Dataset, rows: &[u32]) -> Result<()> {
     let frames = if registration.session.device_free { 6 * data.station_count() } else { 0 };
     let tool: usize = if registration.targets_free {
@@ -240,7 +241,7 @@ fn check_count(registration: &Registration<'_>, data: &Dataset, rows: &[u32]) ->
     ))
 }
 
-/// All that may have changed.
+/// All possible changes.
 fn unknowns(model: &Model, session: &Session<'_>, estimate: &Estimate, rows: &[u32]) -> Vec<Parameter> {
     let data = session.data;
     let stations = (0..data.station_count()).filter(|&station| {
@@ -253,7 +254,7 @@ fn unknowns(model: &Model, session: &Session<'_>, estimate: &Estimate, rows: &[u
         free.push(Parameter::ScrewAxis(ScrewAxis { joint, kind }));
         free.push(Parameter::ValueTerm(ValueTerm { joint, kind, term: Term::OFFSET }));
     }
-    // The last weight alone: the moments of the others at a joint are nearly its.
+    // The last weight alone: the moments of the others at a joint are nearly proportional to its moment.
     let last = robot.gravity.as_ref().map_or(0, |gravity| gravity.weights.len()).checked_sub(1);
     let is_of_last = |term: Term| term.needs_gravity() && last.is_some_and(|last| term.index() == last);
     for it in robot.terms.iter().filter(|it| is_of_last(it.term)) {
@@ -267,7 +268,7 @@ fn unknowns(model: &Model, session: &Session<'_>, estimate: &Estimate, rows: &[u
     free
 }
 
-/// What a parameter is of.
+/// Subject of a parameter.
 fn subject(parameter: &Parameter, robot: &Robot) -> Option<Of> {
     let owner = |joint: usize| robot.joints.get(joint).and_then(|it| it.give_of).unwrap_or(joint);
     Some(match (parameter.model().subject(), parameter.value_term(), parameter.screw_axis()) {
@@ -280,7 +281,7 @@ fn subject(parameter: &Parameter, robot: &Robot) -> Option<Of> {
     })
 }
 
-/// Derivatives of whitened numbers by the unknowns of the calibration, independent and of variance 1.
+/// Derivatives of whitened numbers by the unknowns of the calibration, transformed to independence and variance 1.
 fn by_known(
     model: &Model,
     session: &Session<'_>,
@@ -329,7 +330,7 @@ fn by_known(
 
 /// The same parameter of another target.
 fn of_target(parameter: &Parameter, target: usize) -> Parameter {
-    // What is of no target stays.
+    // Parameters without a target are unchanged.
     if let Parameter::TargetFrame(it) = parameter {
         return Parameter::TargetFrame(TargetFrame { target, ..*it });
     }
@@ -339,7 +340,8 @@ fn of_target(parameter: &Parameter, target: usize) -> Parameter {
     *parameter
 }
 
-/// The derivative of whitened numbers by a growth of all lengths of the arm: where the target is in the base, by the shifts of the device.
+/// The derivative of whitened numbers by a relative growth of all lengths of the arm: the target's position in the base, through the shifts of the
+/// device.
 fn lengths(
     columns: &[Columns],
     jacobian: &DMatrix<f64>,

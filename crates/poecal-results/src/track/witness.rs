@@ -1,4 +1,4 @@
-//! Witness configurations: those among the measured ones whose repeats show the smallest shifts.
+//! Witness configurations: those among the measured ones whose repeats detect the smallest shifts.
 
 use std::collections::BTreeSet;
 
@@ -23,34 +23,34 @@ use poecal_numerics::linalg;
 /// Most configurations among which witnesses are chosen, evenly, and starts of the exchange.
 const MOST: usize = 300;
 const STARTS: usize = 4;
-/// Rounds of the exchange, which ends before.
+/// Most rounds of the exchange, which usually ends before.
 const ROUNDS: usize = 30;
-/// Weight of how well joints are told apart beside how small their shifts are.
+/// Weight of the distinction of joints relative to the size of their detectable shifts.
 const APART: f64 = 0.2;
-/// Weight of how well a knock of the tool is seen.
+/// Weight of the detection of a displaced tool.
 const OF_TOOL: f64 = 1.0;
 /// Ridge of the information, as a share of its diagonal.
 const RIDGE: f64 = 1e-9;
 /// Standard deviation beyond which a joint is not seen, radians or metres.
 const UNSEEN: f64 = 0.01;
 
-/// Chosen configurations, and what their repeats would show.
+/// Chosen configurations, and the detectable shifts of their repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Witnesses {
     /// Rows of the chosen configurations, by configuration.
     pub configurations: Vec<Vec<u32>>,
-    /// The rows that they are of; of new configurations, as if they had been measured.
+    /// The rows of these configurations; for new configurations, as if they had been measured.
     pub rows: Dataset,
-    /// What of each joint would be found.
+    /// Detectability of each joint's shift.
     pub joints: Vec<JointSight>,
-    /// Standard deviation of a visit and coordinate that this is for, metres.
+    /// Standard deviation of a visit and coordinate for which this holds, metres.
     pub sigma_m: f64,
 }
 
-/// Information of each configuration about what is free and about the zeros.
+/// Information of each configuration about the free unknowns and about the zeros.
 struct Candidates {
     all: Vec<DMatrix<f64>>,
-    /// Number of columns that are free: the first ones.
+    /// Number of columns of free unknowns: the first ones.
     free: usize,
     /// Columns of the tool, behind the zeros.
     tool: usize,
@@ -64,7 +64,7 @@ impl Candidates {
         chosen.iter().fold(DMatrix::zeros(n, n), |sum, at| sum + &self.all[*at])
     }
 
-    /// Standard deviation of each zero alone, and beside all others; and of the tool in the mean of its directions.
+    /// Standard deviation of each zero alone, and beside all others; and of the tool as the mean over its directions.
     fn deviations(&self, sum: &DMatrix<f64>) -> (Vec<(f64, f64)>, f64) {
         let n = sum.nrows();
         let ridge = |matrix: &mut DMatrix<f64>| {
@@ -96,7 +96,7 @@ impl Candidates {
         (each.collect(), if self.tool == 0 { 0.0 } else { deviation(tool) })
     }
 
-    /// What the exchange makes small: the logarithm of the worst joint's deviation, and of the one that is told apart worst.
+    /// Objective of the exchange: weighted logarithms of the worst deviation of a joint alone, of one beside all others, and of the tool's.
     fn cost(&self, sum: &DMatrix<f64>) -> f64 {
         let (each, tool) = self.deviations(sum);
         let (alone, apart) =
@@ -106,7 +106,7 @@ impl Candidates {
     }
 }
 
-/// Information of the last unknowns, the geometric mean over its directions: by it most knocks are found, each of some direction.
+/// Information on the last unknowns, as the geometric mean over its directions: it describes knocks of random direction.
 fn mean_information(all: &DMatrix<f64>, count: usize) -> f64 {
     let from = all.nrows() - count;
     let upper: Vec<f64> = (0..count * count).map(|k| all[(from + k / count, from + k % count)]).collect();
@@ -115,13 +115,13 @@ fn mean_information(all: &DMatrix<f64>, count: usize) -> f64 {
     (logarithms / count.max(1) as f64).exp()
 }
 
-/// Chooses so many of the measured configurations that the shift of the worst joint that their repeats would find is smallest, by exchange; with
-/// `new`, readings of one configuration after the other, among these instead, with what the rows of the first measured one show. `target` alone is
-/// measured, where one is named.
+/// Chooses `count` of the measured configurations by exchange, so that their repeats detect the smallest shift of the worst joint. With `new`,
+/// readings of configurations in sequence, the choice is among these, with the measured quantities of the first measured configuration. If `target`
+/// is named, it alone is measured.
 ///
 /// # Errors
-/// [`ErrorKind::Problem`] if there are fewer configurations than asked for, or so few that nothing would be found;
-/// [`ErrorKind::Option`] if no row is of the target; [`ErrorKind::Model`] if the file holds no valid calibration.
+/// [`ErrorKind::Problem`] if there are fewer configurations than requested, or so few that nothing would be detected; [`ErrorKind::Option`] if no row
+/// is of the target; [`ErrorKind::Model`] if the file holds no valid calibration.
 pub fn witnesses(
     file: &CalibrationFile,
     measured: &Dataset,
@@ -137,7 +137,7 @@ pub fn witnesses(
     let same_tool = TrackOptions { tool_is_anew: false, ..*options };
     let visit = match new {
         None => earlier_visit(&model, data, &same_tool)?,
-        // What was not measured shows no device: it is where the calibration has it.
+        // Configurations that were not measured do not determine the device: it is as in the calibration.
         Some(_) => Visit::from_measurements(&model, data, true, &same_tool)?,
     };
     let visit = Visit { device_is_known: options.device_is_known, ..visit };
@@ -199,7 +199,7 @@ fn rows_of_target(data: &Dataset, target: Option<&str>) -> Result<Vec<u32>> {
     Ok(rows)
 }
 
-/// The rows of the first measured configuration as if they had been measured in others, in each once.
+/// The rows of the first measured configuration as if they had been measured in others, once in each.
 fn elsewhere(model: &Model, measured: &Dataset, readings: &[f64]) -> Result<Dataset> {
     let first = measured.configurations(&measured.all_rows()).into_iter().next().unwrap_or_default();
     let width = model.robot.reading_names().len();
@@ -238,7 +238,7 @@ fn candidates(visit: &Visit, configurations: &[Vec<u32>], options: &TrackOptions
     let (free, mut tool) = counts.first().copied().unwrap_or_default();
     let zeros = all.first().map_or(0, DMatrix::nrows) - free - tool;
     if tool > 6 {
-        // Of several targets the tool is seen well.
+        // With several targets the tool is seen well.
         tool = 0;
     }
     let all: Vec<DMatrix<f64>> = all

@@ -1,9 +1,9 @@
-//! Sentences of what a visit shows.
+//! Sentences on the result of a visit.
 
 use super::found::Explanation;
 use poecal_numerics::error::{Error, ErrorKind};
 
-/// That too few rows repeat an earlier configuration.
+/// Sentence if too few rows repeat an earlier configuration.
 pub(crate) fn few_repeat(repeated: usize, rows: usize) -> String {
     match repeated {
         0 => "none of the rows repeats a configuration of the earlier rows (to 0.1 deg or 0.1 mm): judged by the model".to_owned(),
@@ -30,7 +30,7 @@ pub(crate) fn geometry_alone() -> String {
     "the calibration has geometry alone: what the joints do beyond it looks like changes where configurations do not repeat".to_owned()
 }
 
-/// That the rows scatter more than was stated, beside an explanation if there is one.
+/// Sentence if the rows scatter more than stated, beside an explanation if there is one.
 pub(crate) fn wider(is_stated: bool, is_explained: bool, times: f64) -> String {
     if is_stated && is_explained {
         format!(
@@ -49,7 +49,7 @@ pub(crate) fn wider(is_stated: bool, is_explained: bool, times: f64) -> String {
     }
 }
 
-/// That no single change explains what is seen.
+/// Sentence if no single change explains the changes.
 pub(crate) fn unexplained(change_m: f64, usual_m: f64, device_is_known: bool) -> String {
     let device = if device_is_known { "if the device was set up anew, state --device refit; " } else { "" };
     format!(
@@ -60,12 +60,12 @@ pub(crate) fn unexplained(change_m: f64, usual_m: f64, device_is_known: bool) ->
     )
 }
 
-/// That a visit is a copy of the rows before.
+/// Sentence if a visit is a copy of the earlier rows.
 pub(crate) fn copied() -> String {
     "the rows are those before to the last digit, a copy: nothing was measured anew".to_owned()
 }
 
-/// That a shift is too far.
+/// Sentence if a shift exceeds the linear range.
 pub(crate) fn far(found: &Explanation) -> String {
     let name = found.names.first().map(String::as_str).unwrap_or_default();
     format!(

@@ -1,4 +1,4 @@
-//! `history.jsonl`: a line a check, beside the calibration.
+//! `history.jsonl`: one line for each check, beside the calibration.
 
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -16,31 +16,31 @@ use poecal_storage::limits::Limit;
 
 /// Name of the file beside a calibration.
 pub const HISTORY: &str = "history.jsonl";
-/// How long another run that appends is waited for: it takes as long as a line does.
+/// Longest wait for another run that appends: appending a line takes much less.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A check of the history.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Earlier {
-    /// When it was made, UTC, `2026-03-02T10:20:30Z`.
+    /// Time of the check, UTC, `2026-03-02T10:20:30Z`.
     pub time: String,
     /// Number of measurements.
     pub count: usize,
-    /// What the measurements said.
+    /// Verdict of the measurements.
     pub verdict: ValidationVerdict,
 }
 
-/// The checks of a calibration, in the order made.
+/// The checks of a calibration, in the order of their time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// Its file.
     path: PathBuf,
-    /// Whether the file ends without a line break: a run was killed while it wrote.
+    /// True if the file ends without a line break: a run was killed while it wrote.
     is_torn: bool,
     lines: Vec<Value>,
 }
 
-/// The time now, UTC, as the history has it: `SOURCE_DATE_EPOCH` if that is set; `None` where there is no clock.
+/// The current time, UTC, in the form of the history: `SOURCE_DATE_EPOCH` if that is set; `None` without a clock.
 #[must_use]
 pub fn now() -> Option<String> {
     #[cfg(target_family = "wasm")]
@@ -56,8 +56,8 @@ pub fn now() -> Option<String> {
 }
 
 impl History {
-    /// Reads the history at a path; an empty one if there is no file. Lines that are none of ours, such as one that a killed run left half
-    /// written, are passed over, also if it is the only one.
+    /// Reads the history at a path; an empty one if there is no file. Lines of another form are skipped, such as one that a killed run left
+    /// incomplete, even if it is the only one.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if the path is no file, the file cannot be read, or no line of it is a check.
@@ -86,7 +86,7 @@ impl History {
             line.get("schema").and_then(Value::as_str).is_some_and(|it| [SCHEMA, TRACK].contains(&it))
         };
         let lines: Vec<Value> = lines.filter(is_check).collect();
-        // A run that was killed while it wrote the first line leaves the beginning of one.
+        // A run that was killed while it wrote the first line leaves the beginning of a line.
         let begins_one = text.first() == Some(&b'{') && serde_json::from_slice::<IgnoredAny>(&text).is_err();
         if lines.is_empty() && !text.is_empty() && !(is_torn && begins_one && !text.contains(&b'\n')) {
             let message =
@@ -110,7 +110,7 @@ impl History {
         others.filter_map(|line| serde_json::from_value(line.clone()).ok()).collect()
     }
 
-    /// Appends a check, by `poecal validate` or by `poecal track`, with its time, unless the same one is there already.
+    /// Appends a check, by `poecal validate` or by `poecal track`, with its time, unless it is already there.
     ///
     /// # Errors
     /// [`ErrorKind::File`] if the file cannot be written, [`ErrorKind::Export`] if the check cannot be written as JSON.
@@ -153,7 +153,7 @@ fn line_of(check: &impl Serialize, time: &str) -> Result<(String, Value)> {
     Ok((text, line))
 }
 
-/// A line without what differs between two runs of the same check.
+/// A line without the keys that differ between two runs of the same check.
 fn without_run(mut line: Value) -> Value {
     if let Some(object) = line.as_object_mut() {
         object.remove("time");

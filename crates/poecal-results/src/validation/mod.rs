@@ -1,4 +1,4 @@
-//! `validation.json`: a calibration judged by other measurements, with what was judged by what; and the history of such checks.
+//! `validation.json`: a calibration judged by other measurements, with its inputs; and the history of such checks.
 
 mod history;
 mod rows;
@@ -23,10 +23,10 @@ use poecal_numerics::error::Result;
 const FITS: f64 = 0.8;
 /// Name of the schema.
 const SCHEMA: &str = "poecal-validation-1";
-/// Name of the schema of what `poecal track` finds: its lines are in the same history.
+/// Name of the schema of results of `poecal track`: its lines are in the same history.
 pub const TRACK: &str = "poecal-track-1";
 
-/// What was judged, and by what.
+/// The judged calibration and the measurements that judge it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ValidationInputs {
     /// The calibration's file.
@@ -35,28 +35,28 @@ pub struct ValidationInputs {
     pub measurements: Vec<String>,
     /// SHA-256 of each, by name.
     pub sha256: BTreeMap<String, String>,
-    /// What each file is and what was taken of it.
+    /// Kind of each file and its used rows.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<InputEntry>,
-    /// How files of joint readings and of measurements were joined.
+    /// Joins of files of joint readings with files of measurements.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub joins: Vec<JoinEntry>,
-    /// The command, if the program did it.
+    /// The command, if the program made it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub command: Option<String>,
 }
 
-/// What the measurements say of the model that is delivered.
+/// Verdict of the measurements on the delivered model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ValidationVerdict {
     /// The best level that they confirm; `None` if the calibration has no bounds to test.
     pub level: Option<Level>,
-    /// Why not a better one, a sentence each.
+    /// Reasons against a better level, a sentence each.
     #[serde(default)]
     pub reasons: Vec<String>,
-    /// The model that is delivered.
+    /// The delivered model.
     pub model: AcceptedModel,
-    /// Whether it predicts these measurements better than the nominal model; absent where they are too few.
+    /// Comparison with the nominal model's predictions of these measurements; absent if they are too few.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<Gain>,
     /// Its errors.
@@ -88,20 +88,20 @@ pub struct Validation {
     pub poecal_version: &'static str,
     /// The robot's name.
     pub robot: String,
-    /// What was judged, and by what.
+    /// The judged calibration and the measurements that judge it.
     pub inputs: ValidationInputs,
-    /// What is stated of this session, not of the calibration's.
+    /// Statements about this session, not about the calibration's.
     #[serde(skip_serializing_if = "Record::is_empty")]
     pub record: Record,
-    /// What the measurements say of the model that is delivered.
+    /// Verdict of the measurements on the delivered model.
     pub verdict: ValidationVerdict,
-    /// Which state of a repaired session the measurements were judged by, from 1: targets and devices before the first move, or after it.
+    /// State of a repaired session by which the measurements were judged, from 1: targets and devices before the first move, or after it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage: Option<usize>,
-    /// Files of the measurements of which the calibration itself was made, by their content.
+    /// Measurement files from which the calibration itself was made, by their content.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fitted: Vec<String>,
-    /// What contradicts the calibration, as a sentence.
+    /// Contradiction of the calibration, as a sentence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub doubt: Option<String>,
     /// The errors.
@@ -109,12 +109,12 @@ pub struct Validation {
     pub judgement: Judgement,
 }
 
-/// How measurements judge a calibration.
+/// Options of the judgement of a calibration.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Judging<'a> {
     /// Refit the device's frame.
     pub refit_frame: bool,
-    /// Refit it where the measurements show that the device stands elsewhere.
+    /// Refit it if the measurements show that the device has moved.
     pub refit_moved: bool,
     /// Refit the targets.
     pub refit_tool: bool,
@@ -141,7 +141,7 @@ impl Validation {
                 file.judge_wherever(data, refit_tool, refit_moved)
             }
         };
-        // Of a session that was repaired, the state that fits; the last one where several fit alike.
+        // For a repaired session, the state that fits best; the last one if several fit similarly.
         let stages = file.stages();
         let mut data = file.at_stage(original, stages);
         let mut judgement = judge(&data)?;
@@ -163,7 +163,7 @@ impl Validation {
         Ok(Validation { stage: judged_at, ..found })
     }
 
-    /// Of a finished judgement.
+    /// Validation of a finished judgement.
     ///
     /// ```
     /// use poecal_calibrate::{CalibrationOptions, calibrate};
@@ -199,7 +199,7 @@ impl Validation {
         }
     }
 
-    /// Sentences of what weakens the judgement, and of what contradicts the calibration.
+    /// Sentences on weaknesses of the judgement, and on contradictions of the calibration.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let fitted = (!self.fitted.is_empty()).then(|| {

@@ -1,4 +1,4 @@
-//! `errors.csv`: the error of each judging row beside what was promised of it.
+//! `errors.csv`: the error of each judging row beside its predicted uncertainty.
 
 use super::shown;
 use poecal_calibrate::JudgedRow;
@@ -10,12 +10,12 @@ use poecal_storage::numbers::push_number;
 /// First columns; those of each quantity follow, then the joint readings.
 const FIRST: &str = "file,line,id,target,inside_sampled_range";
 
-/// The rows of a judgement with the data that they are of.
+/// The rows of a judgement with their data.
 #[derive(Clone, Copy, Debug)]
 pub struct JudgedRows<'a> {
     /// The measurements.
     pub data: &'a Dataset,
-    /// The robot, which knows what the readings are.
+    /// The robot, which determines the units of the readings.
     pub robot: &'a Robot,
     /// The errors, in the order of the measurements.
     pub rows: &'a [JudgedRow],

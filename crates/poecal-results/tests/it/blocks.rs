@@ -1,4 +1,4 @@
-//! Fits of some blocks of unknowns only: what is held stays to the bit, and the rest is found.
+//! Fits of some blocks of unknowns only: held numbers stay equal to the bit, and the others are found.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -37,7 +37,7 @@ fn aside() -> Robot {
     Robot { home: robot.home * Pose::from_translation(nalgebra::Vector3::new(0.08, 0.0, 0.05)), ..robot }
 }
 
-/// Measurements of a robot without noise, seen by a device that stands anywhere; its nominal model differs by these errors.
+/// Measurements of a robot without noise, by a device at an arbitrary pose; its nominal model has these errors.
 fn exact(kind: Kind, error: f64) -> (Robot, Dataset) {
     exact_of(&aside(), kind, error)
 }
@@ -82,7 +82,7 @@ fn what_is_held_stays_and_the_rest_is_found() {
             );
             // The axis, the device's frame and the target.
             assert_eq!((parameters, rank), (4 + 6 + target, 4 + 6 + target));
-            // A prior pulls by its share of an exact fit's noise, which is rounding.
+            // A prior biases the result by its share of an exact fit's noise, which is rounding.
             assert!(held_out_mm(&found) < 1e-6, "{}", held_out_mm(&found));
         }
     }
@@ -101,7 +101,7 @@ fn identified(calibration: &Calibration) -> Identified {
 #[test]
 fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
     let (built, exact_data) = exact(Kind::POINT, 0.0);
-    // What is held, unknowns in the layout, and motions of the base that the held things do not see.
+    // Held blocks, unknowns in the layout, and motions of the base that do not affect the held blocks.
     let cases: [(&[&str], usize, usize); 6] = [
         // One axis: turning about it and sliding along it.
         (&["joint1"], 20 + 6 + 3, 2),
@@ -109,7 +109,7 @@ fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
         (&["joint1", "joint2"], 16 + 6 + 3, 0),
         // Two parallel ones: sliding along them.
         (&["joint2", "joint3"], 16 + 6 + 3, 1),
-        // A place: turns about it.
+        // A position: turns about it.
         (&["targets"], 24 + 6, 3),
         (&["frames"], 24 + 3, 0),
         (&["joints"], 6 + 3, 0),
@@ -123,7 +123,7 @@ fn held_axes_leave_those_motions_of_the_base_that_they_do_not_see() {
         assert_eq!(told, motions > 0, "{held:?}");
     }
     let (nominal, data) = exact(Kind::POINT, 0.001);
-    // One held axis, or a held place, takes nothing from what the model can be.
+    // One held axis, or a held position, does not restrict the set of models.
     for held in [&["joint1"][..], &["targets"]] {
         for has_prior in [true, false] {
             let found = fitted(&nominal, &data, choice(held, &[]), has_prior);
@@ -142,7 +142,7 @@ fn joint_zeros_alone_are_found_and_kept_as_offsets() {
         joint.reading.offset -= zero;
     }
     let found = fitted(&nominal, &data, choice(&["joints"], &["joint?.offset"]), true);
-    // The first joint's and the last one's zero are those of the device and the point.
+    // The zeros of the first and the last joint are those of the device and the point.
     println!("{:?}: {:.1e} mm", found.robot.terms, held_out_mm(&found));
     assert!(held_out_mm(&found) < 1e-6, "{}", held_out_mm(&found));
     let of = |joint: usize| {
@@ -212,7 +212,7 @@ fn files_hold_what_was_held_and_the_terms_that_were_found() {
 
 /// Terms with a coefficient to be found.
 const TERMS: &[(&str, f64)] = &[
-    // Of joint3, one line each.
+    // Terms of joint3, one line each.
     ("offset", 0.01),
     ("ratio", 0.002),
     ("sin2", 0.001),
@@ -260,7 +260,7 @@ fn terms_of_joint_values_are_found_and_written() {
         // The arrays are read back and compared.
         export(&model, ExportFormat::C, &ExportOptions::default()).unwrap();
         let urdf = convert(&model, ModelFormat::Urdf).unwrap();
-        // What URDF cannot hold is said.
+        // Losses of URDF are stated.
         let lost = !found.robot.without_offsets().terms.is_empty();
         assert_eq!(urdf.notes.iter().any(|note| note.contains(&name)), lost, "{:?}", urdf.notes);
 

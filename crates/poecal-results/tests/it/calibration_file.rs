@@ -1,4 +1,4 @@
-//! `calibration.json` read: what is refused, and where.
+//! Reading of `calibration.json`: refused texts and the positions of their faults.
 
 use poecal_results::calibration_file::CalibrationFile;
 

@@ -1,4 +1,4 @@
-//! What joints really do: terms beside the screws.
+//! Real effects of joints: terms beside the screws.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, rotation};
@@ -76,7 +76,7 @@ fn sag_and_eccentric_gears_are_found_and_predicted() {
     assert!(geometry > 0.15 && corrected < 0.045, "{geometry} {corrected}");
 }
 
-/// Nothing is planted: sizes that are chosen harm little, and the corrected robot is the one that predicts.
+/// Without planted effects, sizes that are chosen do little harm, and the corrected robot is the one that predicts.
 #[test]
 fn a_rigid_robot_stays_as_it_is() {
     let made = Simulation { seed: 3, count: 60, ..Simulation::default() }.run(&elbow(), Kind::POSE).unwrap();
@@ -113,7 +113,7 @@ fn sizes_are_chosen_and_the_robot_predicts_as_the_fit() {
     }
 }
 
-/// The components of a row are those of the model that is delivered: their length is its error, and not that of geometry alone.
+/// The components of a row are those of the delivered model: their length is its error, and not that of geometry alone.
 #[test]
 fn residuals_are_those_of_the_delivered_model() {
     let (robot, data) = measured(60);
@@ -158,7 +158,7 @@ fn a_written_corrected_model_predicts_as_the_fit() {
     assert!(read.joints.len() == 18 && apart < 1e-14 && wider < 1e-9);
 }
 
-/// Words for terms and their sizes, and what is wrong with others.
+/// Words for terms and their sizes, and errors for other words.
 #[test]
 fn terms_are_asked_for_by_words() {
     let parsed = |words: &str| words.parse::<Corrections>();
@@ -179,8 +179,8 @@ fn terms_are_asked_for_by_words() {
     }
 }
 
-/// What is planted is found: errors of predictions, noise-free, over those of a fit that knows the sizes; and over geometry alone where
-/// nothing is planted.
+/// Planted effects are found. The errors of predictions, noise-free, are compared with those of a fit that knows the sizes, and with those of
+/// geometry alone if nothing is planted.
 #[test]
 fn what_is_planted_is_found_and_nothing_else() {
     let runs = trials(12).at_least(12);
@@ -249,12 +249,12 @@ fn what_is_planted_is_found_and_nothing_else() {
             mean(0),
             mean(1)
         );
-        // 200 sessions have 1.01 and 1.00 where nothing is planted, 1.03 to 1.12 elsewhere; a dozen scatter by some 0.06.
+        // 200 sessions have 1.01 and 1.00 without planted effects, 1.03 to 1.12 otherwise; a dozen scatter by some 0.06.
         assert!(mean(0) < most, "{words}");
     }
 }
 
-/// The direction of gravity is found from what the joints give: a platform that is tilted by 17°, and a robot on the wall.
+/// The direction of gravity is found from the compliance of the joints: a platform that is tilted by 17°, and a robot on the wall.
 #[test]
 fn the_direction_of_gravity_is_found() {
     let sizes = "sag=1e-3,tilt=3e-4".parse();
@@ -276,7 +276,7 @@ fn the_direction_of_gravity_is_found() {
     }
 }
 
-/// Where nothing gives, no direction of gravity is better than another: -z is taken, and that is said.
+/// Without compliance, no direction of gravity is better than another: -z is used, and a note states that.
 #[test]
 fn a_direction_of_gravity_that_does_not_show_is_said_and_not_taken() {
     for seed in trials(5).seeds() {
@@ -307,7 +307,7 @@ fn the_verdict_is_of_the_model_that_is_delivered() {
     assert!(whole.verdict.level > Level::DoNotUse && whole.verdict.model == Some(AcceptedModel::Corrected));
 }
 
-/// The tolerance is chosen that fits how far the robot is from its drawing.
+/// The chosen tolerance fits the robot's distance from its drawing.
 #[test]
 fn the_tolerance_fits_how_far_a_robot_is_from_its_drawing() {
     for (error_deg, error_m, most) in [(0.03, 1e-4, 0.6), (2.0, 8e-3, 4.0)] {
@@ -327,7 +327,7 @@ fn the_tolerance_fits_how_far_a_robot_is_from_its_drawing() {
     }
 }
 
-/// A joint that another one turns, asked for by name.
+/// A joint that another one turns, requested by name.
 #[test]
 fn a_coupling_is_found_where_it_is_asked_for() {
     let nominal = elbow();
@@ -356,7 +356,7 @@ fn a_coupling_is_found_where_it_is_asked_for() {
     }
 }
 
-/// The more terms may explain, the more the noise of geometry alone counts: few rows are not explained away.
+/// The more the terms may explain, the more the noise of geometry alone counts: few rows are not explained away.
 #[test]
 fn noise_of_few_poses_stays() {
     let mut sizes = Sizes::NONE;
@@ -378,7 +378,7 @@ fn noise_of_few_poses_stays() {
     }
 }
 
-/// Where a model puts the frames of its joints along their axes changes neither weights nor gives.
+/// Positions of joint frames along their axes change neither weights nor compliant joints.
 #[test]
 fn frames_along_the_axes_change_no_correction() {
     let robot = elbow();
@@ -414,7 +414,7 @@ fn a_freed_term_is_fitted_once() {
     assert!(found.model.terms().all(|it| it != (third, name)));
 }
 
-/// What an effect is said to move the target is what the robot's predictions differ by.
+/// The stated motion of the target by an effect equals the difference of the robot's predictions.
 #[test]
 fn effects_are_what_predictions_lose_without_them() {
     let (robot, data) = measured(120);
@@ -452,7 +452,8 @@ fn effects_are_what_predictions_lose_without_them() {
     }
 }
 
-/// Backlash of joints whose approach is read, what follows the temperature, and what gives under a payload: a file keeps the factors and predicts as the fit.
+/// Backlash of joints whose approach is read, effects of the temperature, and compliance under a payload: a file keeps the factors and predicts as
+/// the fit.
 #[test]
 fn factors_are_read_fitted_and_kept() {
     for (words, first) in
@@ -483,7 +484,7 @@ fn factors_are_read_fitted_and_kept() {
     }
 }
 
-/// Terms that have nothing to depend on are refused, and so are those of all directions beside axes that are held.
+/// Terms without an argument are refused, and so are those of all directions beside axes that are held.
 #[test]
 fn corrections_that_cannot_be_are_refused() {
     let (robot, data) = measured(30);

@@ -1,4 +1,4 @@
-//! The examples of docs/file-formats.md are read as the text says, and what it says of results is what is written.
+//! The examples of docs/file-formats.md are read as the text states, and its statements on results hold for written files.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};

@@ -1,4 +1,4 @@
-//! Exports: every form of random calibrated robots says what was fitted, read back by readers of this file alone.
+//! Exports: every form of random calibrated robots states the fitted robot, read back by readers of this file alone.
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use poecal_arm::lie::{Pose, Screw};
@@ -39,7 +39,7 @@ fn ur_like() -> Robot {
     Robot::new("ur_like", joints, home).unwrap()
 }
 
-/// A robot whose axes are not where they should be.
+/// A robot whose axes deviate from nominal.
 fn off(robot: &Robot, seed: u64) -> Robot {
     let g = &mut ChaCha8Rng::seed_from_u64(seed);
     let mut any = |size: f64| Vector3::from_fn(|_, _| (2.0 * uniform(g) - 1.0) * size);
@@ -213,7 +213,7 @@ fn forms_of_fifty_robots_say_what_the_robot_does() {
     assert!(written > 450);
 }
 
-/// A joint that follows another one of the chain goes out as one, in the forms that have such joints; others refuse it.
+/// A joint that follows another one of the chain is written as a follower, in the forms that have such joints; others refuse it.
 #[test]
 fn followers_stay_followers() {
     let mut robot = off(&ur_like(), 5);
@@ -245,7 +245,7 @@ fn parallel_axes_have_tables() {
     }
 }
 
-/// Makers' files have the joints of their arms, and say the tool that they have no place for.
+/// Makers' files have the joints of their arms, and state the tool that they have no place for.
 #[test]
 fn files_of_makers() {
     let of = |robot: &Robot, format, hash: Option<&str>| {
@@ -272,7 +272,7 @@ fn files_of_makers() {
     assert!(of(&scara(), ExportFormat::Xarm, None).unwrap_err().to_string().contains("slides"));
 }
 
-/// What a form of geometry cannot say is stated, and is what it is.
+/// The losses of a form of geometry are stated, and the stated errors are right.
 #[test]
 fn offsets_state_what_remains() {
     let simulation = Simulation { count: 150, noise_position_m: 1e-5, ..Simulation::default() };
@@ -296,7 +296,7 @@ fn offsets_state_what_remains() {
     let ticks = motors["joint2"]["homing_offset"].as_i64().unwrap() as f64;
     let degrees = text["joints"][1]["offset_deg"].as_f64().unwrap();
     assert!((ticks + degrees / 360.0 * 4096.0).abs() <= 0.5, "{ticks} {degrees}");
-    // From the arm's own.
+    // Offsets from the arm's own calibration.
     let with = |homing: i64, mode: i64| {
         let motor = format!(
             r#"{{"id": 2, "drive_mode": {mode}, "homing_offset": {homing}, "range_min": 0, "range_max": 4095}}"#
@@ -318,7 +318,7 @@ fn offsets_state_what_remains() {
     assert!(refused(export(&model, ExportFormat::Lerobot, &bad)).contains("expected LeRobot's JSON"));
 }
 
-/// Names that a form reserves or would have twice are others there, and odd names are read back.
+/// Names that a form reserves or would repeat are changed there, and odd names are read back.
 #[test]
 fn names_of_all_kinds() {
     let mut robot = off(&elbow(), 5);
@@ -352,7 +352,7 @@ fn names_of_all_kinds() {
     assert!(!text.contains(['\u{2028}', '\u{85}']));
 }
 
-/// A robot with gives and terms has its geometry in every form, a word on what is lost, and a file beside.
+/// A robot with compliant joints and terms has its geometry in every form, a note on the losses, and a file beside.
 #[test]
 fn corrected_robots_are_geometry_and_a_file_beside() {
     let (mut robot, _) = elbow().giving(&[1, 2], poecal_model::robot::Gives::All);

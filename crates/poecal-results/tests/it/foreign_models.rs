@@ -75,7 +75,7 @@ fn sdf(joint: &str, more: &str) -> String {
     )
 }
 
-/// Where the tip is at zero.
+/// Position of the tip at zero.
 fn tip(text: &str, name: &str) -> Vector3<f64> {
     let model = read(text, name, Some("b")).unwrap();
     let q = vec![0.0; model.robot.reading_names().len()];

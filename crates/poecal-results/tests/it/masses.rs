@@ -28,7 +28,7 @@ const HEAVY: &str = r#"<robot name="heavy">
   <joint name="flange" type="fixed"><parent link="fore"/><child link="tool"/><origin xyz="0.3 0 0"/></joint>
 </robot>"#;
 
-/// The masses of a URDF are those of what its chain moves, come back from TOML, and their moments are the derivatives of their potential.
+/// The masses of a URDF are those that its chain moves, come back from TOML, and their moments are the derivatives of their potential.
 #[test]
 fn masses_of_a_urdf_pull_as_their_potential_says() {
     let selection = ChainSelection {
@@ -46,7 +46,7 @@ fn masses_of_a_urdf_pull_as_their_potential_says() {
         assert!((Vector3::from(found.1) - Vector3::from(expected.1)).norm() < 1e-15);
     }
     assert_eq!(found.len(), expected.len());
-    // Masses are not worth refusing a model: of a link whose own cannot be read there is none.
+    // Masses are no reason to refuse a model: a link whose mass cannot be read has none.
     for (from, to) in [("\"8\"", "\"heavy\""), ("\"8\"/>", "\"8\"/><mass value=\"9\"/>")] {
         assert_eq!(robot(&HEAVY.replace(from, to)).masses, heavy.masses[1..]);
     }

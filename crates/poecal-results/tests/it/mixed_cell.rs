@@ -1,4 +1,4 @@
-//! A session of everything at once: points of a tracker, distances of a wire, and poses of a second instrument, read from one file.
+//! A session with several instruments: points of a tracker, distances of a wire, and poses of a second instrument, read from one file.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -26,7 +26,7 @@ fn robots() -> (Robot, Robot) {
     (made.actual, made.nominal)
 }
 
-/// Rows of all three, each with its noise, one after the other.
+/// Rows of all three, each with its noise, in sequence.
 fn text(actual: &Robot, rows: usize, generator: &mut ChaCha8Rng) -> String {
     let joints = actual.reading_names();
     let mut text = format!("{},instrument,x,y,z,qx,qy,qz,qw,distance[mm]\n", joints.join(","));
@@ -68,7 +68,7 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
     let mut generator = ChaCha8Rng::seed_from_u64(4);
     let file =
         parse(&text(&actual, 450, &mut generator), "cell.csv", &nominal, &ReadOptions::default()).unwrap();
-    // No row is refused: every one is in the fit or held out, and the sums over rows have only one way, that of the kernels.
+    // No row is refused: every one is in the fit or held out, and the sums over rows have only one path, that of the kernels.
     assert_eq!(file.data.len(), 450);
     let found =
         calibrate(&nominal, &file.data, &CalibrationOptions { move_tip: true, ..geometry() }).unwrap();
@@ -86,7 +86,7 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
         );
     }
     let distance = held_out.calibrated.get(Quantity::Distance).unwrap();
-    // A distance that the model predicts is as wrong as it was measured: 105 rows tell its size to 7 %, taken three times.
+    // The residual of a predicted distance is the error of its measurement: 105 rows determine its size to 7 %, taken three times.
     assert!((distance.rms / (1e3 * WIRE_M) - 1.0).abs() < 0.25, "{}", distance.rms);
     for (name, quantity, truth) in [
         ("tracker", Quantity::Position, TRACKER_M),
@@ -102,7 +102,7 @@ fn points_distances_and_poses_are_calibrated_together_with_a_noise_of_each_instr
     assert!(found.identifiability.rank == found.identifiability.parameters);
     assert_eq!(found.verdict.level, Level::Good, "{:?}", found.verdict.reasons);
 
-    // What was not measured: the tip, anywhere, in the tracker's frame.
+    // The tip was not measured: it is predicted anywhere, in the tracker's frame.
     let configurations = Configurations::new(&actual);
     let tracker = Pose::from_xyz_rpy([2.0, -1.0, 0.5], [0.3, -0.2, 1.0]);
     let base_from_tracker = found.base_from_device;
@@ -135,7 +135,7 @@ fn distances_alone_give_a_robot_that_predicts_distances() {
         found.identifiability.rank
     );
     assert!(calibrated < 1.3e3 * WIRE_M && registered > 5.0 * calibrated);
-    // 24 of the axes and 3 of the point, less the turns about the anchor, which no distance sees.
+    // 24 of the axes and 3 of the point, less the turns about the anchor, which no distance determines.
     assert_eq!((found.identifiability.rank, found.identifiability.parameters), (24, 24));
 }
 

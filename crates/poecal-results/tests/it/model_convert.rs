@@ -1,4 +1,4 @@
-//! Every model in every other form: the same forward kinematics, and notes on what could not be carried.
+//! Every model in every other form: the same forward kinematics, and notes on the losses.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw};
@@ -24,7 +24,7 @@ fn every_reference_urdf_converts_both_ways() {
             // Forward kinematics is verified inside.
             let converted = convert(&model, to).unwrap();
             let again = match to {
-                // The chain of the new file is unique again, also where a leader stands beside it.
+                // The chain of the new file is unique again, even if a leader stands beside it.
                 ModelFormat::Urdf => UrdfDocument::parse(&converted.text, &path, &ChainSelection::default())
                     .unwrap()
                     .robot()

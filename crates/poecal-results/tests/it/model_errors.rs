@@ -1,4 +1,4 @@
-//! Bad robot models: each gets one sentence with its place, what was found and what was expected.
+//! Bad robot models: each results in one sentence with its place, what was found and what was expected.
 
 use poecal_formats::robot_toml;
 use poecal_formats::urdf::{ChainSelection, UrdfDocument};
@@ -51,7 +51,7 @@ fn what_is_not_read_is_not_judged() {
         let text = urdf("<limit lower='-1' upper='1' effort='0'/>", more);
         let found = read(&text).unwrap_or_else(|error| panic!("{more}: {error}"));
         assert_eq!(found.robot(), expected.robot());
-        // What is written keeps every byte of it.
+        // The written text keeps every byte of it.
         assert_eq!(found.text(), text);
     }
     let visual = plain.replace(

@@ -1,4 +1,4 @@
-//! Zeros of joints whose axes are held: what is stated of them holds, and what a free device or target hides is not determined.
+//! Zeros of joints whose axes are held: stated bounds hold, and a zero that a free device or target hides is not determined.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -12,7 +12,7 @@ use poecal_testing::trials::trials;
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-/// A visit to a robot that is as its model but for its zeros, with a reflector 100 mm beside the tip.
+/// A visit to a robot that differs from its model only by its zeros, with a reflector 100 mm beside the tip.
 fn visit(robot: &Robot, zeros: &[f64], seed: u64) -> Simulated {
     let mut model = robot.clone();
     model.home = model.home * Pose::from_translation(Vector3::new(0.03, 0.1, 0.02));
@@ -48,14 +48,14 @@ fn fitted(
     (found, file)
 }
 
-/// What was found of a joint's zero, with its deviation if there is one, radians.
+/// The estimate of a joint's zero, with its deviation if there is one, radians.
 fn zero(file: &CalibrationFile, joint: &str) -> (f64, Option<f64>) {
     let entry = file.joints.iter().find(|it| it.name == joint).unwrap();
     let value = entry.terms.iter().find(|(term, _)| **term == Term::OFFSET).map_or(0.0, |it| *it.1);
     (value, file.sigma(&format!("{joint}.offset")))
 }
 
-/// Arms of five to seven joints, any subset of whose zeros is free and off by up to 0.3°, behind a free device and a free target.
+/// Arms of five to seven joints, any subset of whose zeros is free with errors of up to 0.3°, behind a free device and a free target.
 #[test]
 fn no_zero_that_is_hidden_has_a_deviation_and_those_of_others_hold() {
     let sessions = trials(200).at_least(24);
@@ -122,7 +122,7 @@ fn a_hidden_zero_is_found_once_what_its_sentence_names_is_held() {
         .filter_map(|it| it.split([')', ' ']).next())
         .collect();
     assert_eq!(options, ["frame", "target"]);
-    // The model ends in the reflector, and the device is where a calibration of before has it.
+    // The model ends in the reflector, and the device is as in an earlier calibration.
     let device = made.device_from_base.inverse();
     let fix = [&["joints"][..], &options].concat();
     let (found, file) = fitted(&made, &fix, all(), vec![device]);

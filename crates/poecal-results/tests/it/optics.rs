@@ -1,4 +1,4 @@
-//! Lenses, boards and markers that are found with the robot, and those that corners contradict.
+//! Lenses, boards and markers that are fitted with the robot, and those that corners contradict.
 
 use nalgebra::{Vector2, Vector3};
 use poecal_calibrate::{BlockChoice, Calibration, CalibrationOptions, calibrate_repairing};
@@ -91,7 +91,7 @@ fn a_lens_is_found_with_the_arm() {
             held_out_px(&held),
             held_out_px(&free)
         );
-        // Corners of 0.3 px a coordinate are 0.42 px off by themselves.
+        // Corners of 0.3 px for each coordinate have an error of 0.42 px by themselves.
         assert!(held_out_px(&free) < 0.55 && held_out_px(&held) > 2.0 * held_out_px(&free));
         assert!(held.warnings.iter().any(|it| it.contains("--free lens")), "{:?}", held.warnings);
         assert!(!free.warnings.iter().any(|it| it.contains("--free")), "{:?}", free.warnings);
@@ -138,7 +138,7 @@ fn a_board_that_is_bent_and_printed_unequally_is_named_and_found() {
     }
 }
 
-/// Points of a body 0.5 mm (RMS) from where they are stated, without the motion of the whole body, which its place takes in.
+/// Points of a body with errors of 0.5 mm (RMS), without the motion of the whole body, which its pose absorbs.
 #[test]
 fn markers_are_found_with_the_arm() {
     let made = photographed(3, usual());
@@ -169,7 +169,7 @@ fn clean_sessions_free_nothing() {
     }
 }
 
-/// What the pictures leave open is named, and nothing of clean ones.
+/// Unknowns that the pictures do not determine are named, and none for clean pictures.
 #[test]
 fn what_pictures_cannot_determine_is_named() {
     type Views = (
@@ -208,7 +208,7 @@ fn what_pictures_cannot_determine_is_named() {
     ];
     let all = trials(8);
     for seed in all.seeds() {
-        // Of few trials each kind has one.
+        // With few trials, each kind has one.
         let own = kinds.iter().skip(if all.count == 2 { seed as usize } else { 0 });
         for (name, free, expected, change) in own.step_by(if all.count == 2 { 2 } else { 1 }) {
             let usual = PictureSimulation::usual(session(300 + seed), seed.is_multiple_of(2));
@@ -218,13 +218,13 @@ fn what_pictures_cannot_determine_is_named() {
             let said = calibration.warnings.join("\n");
             println!("{name}: {said}");
             assert!(expected.iter().all(|it| said.contains(it)), "{name}: {said}");
-            // Of clean pictures nothing; of others nothing that they show.
+            // Clean pictures name nothing; others name only unknowns that they do not determine.
             assert!(!expected.is_empty() || said.is_empty(), "{said}");
         }
     }
 }
 
-/// Squares of how far off pixels of a grid are predicted, and of what the map says, at the middle and at the corners of the image.
+/// Squared errors of predicted pixels of a grid, and those that the map states, in the middle and at the corners of the image.
 fn projection_squares(seed: u64, free: &[&str]) -> [[f64; 2]; 2] {
     let made = photographed(seed, usual());
     let (calibration, data) = calibrated(&made, &read_with(&made, |_| ()), free);
@@ -267,7 +267,7 @@ fn pixels_are_predicted_as_well_as_the_map_says() {
             let sum = |k: usize| all.iter().map(|it| it[part][k]).sum::<f64>() / all.len() as f64;
             let ([found, said], count) = ([sum(0), sum(1)].map(f64::sqrt), all.len());
             println!("{name}: {found:.3} px at {place}, the map says {said:.3}, of {count} sessions");
-            // One or two directions of a free lens are most of it: a session shows the root to 60 %.
+            // One or two directions of a free lens are most of it: a session determines the root to 60 %.
             assert!((found / said).ln().abs() < 0.25 + sessions.more(0.6), "{found} {said}");
         }
     }

@@ -67,7 +67,7 @@ fn lenses_are_those_of_opencv() {
     assert!(worst < 1e-9, "{worst:e}");
 }
 
-/// A board as OpenCV was shown it, and the poses that it gives: rotation vector, translation, root mean square distance in pixels.
+/// A board as OpenCV saw it, and the poses that it returns: rotation vector, translation, root mean square distance in pixels.
 struct Seen {
     pixels: [[f64; 2]; 24],
     poses: [([f64; 3], [f64; 3], f64); 2],
@@ -104,7 +104,7 @@ fn a_flat_board_has_both_poses_of_opencv() {
             assert!((rms - expected).abs() < 1e-4);
         }
     }
-    // Pixels are given to 1e-4, which is 4e-5 of their noise; a minimum is as flat as that.
+    // Pixels are stated to 1e-4, which is 4e-5 of their noise; a minimum is as flat as that.
     assert!(turned < 2e-5 && shifted < 2e-5, "{turned:e} rad, {shifted:e} m");
 }
 
@@ -209,12 +209,12 @@ fn seen() -> [Seen; 3] {
     ]
 }
 
-/// 60 configurations of an arm that is off by milliradians and millimetres.
+/// 60 configurations of an arm with errors of milliradians and millimetres.
 pub(crate) fn session(seed: u64) -> Simulation {
     Simulation { count: 60, seed, error_rotation_rad: 3e-3, error_position_m: 1e-3, ..Simulation::default() }
 }
 
-/// Held-out figures of simulated sessions, 60 pictures each: the error of the tip in other configurations, and of the verdict's promise.
+/// Held-out figures of simulated sessions, 60 pictures each: the error of the tip in other configurations, and that predicted by the verdict.
 fn judged(in_hand: bool, common: CommonError, seed: u64) -> (f64, f64, usize) {
     let session = session(seed);
     let simulated = PictureSimulation { common, ..PictureSimulation::usual(session, in_hand) };
@@ -241,7 +241,7 @@ fn an_arm_is_calibrated_from_pictures_wherever_the_camera_is() {
     for in_hand in [true, false] {
         for seed in 1..4 {
             let (px, mm, pictures) = judged(in_hand, still, seed);
-            // Corners of 0.3 px a coordinate are 0.42 px off by themselves.
+            // Corners of 0.3 px for each coordinate have an error of 0.42 px by themselves.
             assert!(pictures == 18 && px < 0.55 && mm < 0.35, "{px} px, {mm} mm");
         }
     }
@@ -259,7 +259,7 @@ fn the_error_of_the_configuration_is_found_and_weighs_pictures() {
     }
 }
 
-/// Bounds of 95 % on pictures that were held out, with corners alone and with an error of each configuration beside.
+/// Bounds of 95 % on pictures that were held out, with corners alone and with an additional error of each configuration.
 #[test]
 fn bounds_hold_on_pictures_that_were_not_fitted() {
     let sessions = trials(16);

@@ -1,4 +1,4 @@
-//! What a calibration promises of rows from which device frame and tool are found anew holds in a Monte Carlo.
+//! The uncertainty that a calibration predicts for rows with device frame and tool refitted holds in a Monte Carlo simulation.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -13,14 +13,14 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 use rayon::prelude::*;
 
-/// Fits of each robot and kind, each judged by one session of so many rows: few, so that what is found anew takes a large part of the errors.
+/// Fits of each robot and kind, each judged by one session of few rows, so that the refitted frames absorb a large part of the errors.
 const FITS: usize = 60;
-/// What scatters from fit to fit: the share inside the bounds, and the error over the expected one.
+/// Scatter between fits: of the share inside the bounds, and of the error over the expected one.
 const OF_ONE_SHARE: f64 = 0.12;
 const OF_ONE_RATIO: f64 = 0.25;
 const ROWS: usize = 14;
 
-/// A calibration with stated noise, judged by a session with the device elsewhere and, where that is found anew, another tool.
+/// A calibration with stated noise, judged by a session with the device elsewhere and, if it is refitted, another tool.
 fn judged(robot: &Robot, kind: Kind, seed: u64, refit_tool: bool) -> Judgement {
     let simulation = Simulation { count: 60, seed, ..Simulation::default() };
     let made = simulation.run(robot, kind).unwrap();
@@ -71,8 +71,8 @@ fn a_promise_after_a_refit_is_kept_as_often_as_it_says() {
                 );
                 let near = 0.04 + fits.more(OF_ONE_SHARE);
                 assert!((share - 0.94).abs() < near && (turns - 0.94).abs() < near);
-                // A normal error of some thousand components is known to a few per cent. Another tool shows what a point on the last axis
-                // did not: there the error is that of a few sessions in which the drawing was far off.
+                // A normal error of some thousand components is known to a few per cent. Another tool shows effects that a point on the last axis did
+                // not: there the error is that of a few sessions in which the drawing was far off.
                 let tolerance = if refit_tool && kind == Kind::POINT { 0.4 } else { 0.07 };
                 assert!((ratio - 1.0).abs() < tolerance + fits.more(OF_ONE_RATIO));
             }
@@ -97,7 +97,7 @@ fn another_robot_breaks_the_promise_after_a_refit_too() {
     let own = file.judge(&made.data, true, true).unwrap();
     assert_eq!(own.falls_short(Level::Good), None);
     assert_eq!(own.falls_short(Level::InsideSampledRange), None);
-    // One row inside the sampled range is no reason for anything, several are one against all.
+    // One row inside the sampled range is no evidence, several are evidence against all.
     let with_inside = |count: usize| {
         let mut judgement = own.clone();
         let some = judgement.in_sampled_range.as_mut().unwrap();

@@ -1,4 +1,4 @@
-//! Grossly wrong rows: what they do to a fit, whether they are found, and that clean data are left alone.
+//! Rows with gross errors: their effect on a fit, their detection, and clean data left alone.
 
 use nalgebra::Vector3;
 use poecal_calibrate::{
@@ -23,7 +23,7 @@ use rand_core::SeedableRng;
 use rayon::prelude::*;
 
 const KINDS: [Kind; 2] = [Kind::POSE, Kind::POINT];
-/// What the ratio of two errors scatters by from session to session.
+/// Scatter of the ratio of two errors between sessions.
 const OF_ONE_SESSION: f64 = 0.2;
 
 fn robots() -> [Robot; 4] {
@@ -58,7 +58,7 @@ fn rms_m(robot: &Robot, data: &Dataset, rows: &[u32], estimate: &Estimate) -> f6
     (errors.iter().map(|e| e.position_m().norm_squared()).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-/// Mean squared held-out error with and without gross errors, and how many rows were gross, found, clean and falsely suspected.
+/// Mean squared held-out error with and without gross errors, and the numbers of gross, found, clean and falsely suspected rows.
 fn compare(robot: &Robot, kind: Kind, share: f64, robust: Robust, seed: u64) -> ([f64; 2], [usize; 4]) {
     let (simulation, made) = session(robot, kind, seed);
     let judging = simulation.held_out(&made, kind, 200).unwrap();
@@ -103,7 +103,7 @@ fn a_tenth_of_the_rows_wrong_costs_less_than_a_fifth_and_is_found() {
     assert!(found as f64 >= 0.99 * gross as f64 && false_alarms as f64 <= 0.01 * clean as f64);
 }
 
-/// Three tenths: the loss of these rows alone makes 1.2, more where unknowns are many for the rest.
+/// Three tenths: the loss of these rows alone makes 1.2, more if there are many unknowns for the rest.
 #[test]
 fn three_tenths_of_the_rows_wrong_cost_less_than_a_half_and_are_found() {
     let sessions = trials(20);
@@ -112,7 +112,7 @@ fn three_tenths_of_the_rows_wrong_cost_less_than_a_half_and_are_found() {
     assert!(found as f64 >= 0.99 * gross as f64 && false_alarms as f64 <= 0.01 * clean as f64);
 }
 
-/// Huber's loss keeps pulling, so it lets some of the error through.
+/// Huber's loss keeps a constant influence of large residuals, so it lets some of the error through.
 #[test]
 fn every_loss_bounds_what_a_tenth_of_the_rows_can_do() {
     let off = over_sessions(0.1, Robust::Off, trials(3)).0;
@@ -334,7 +334,7 @@ fn robust_results_do_not_depend_on_the_number_of_threads() {
     }
 }
 
-/// A link that gives moves all targets of a configuration alike: that is the robot, and no row is named for it.
+/// A compliant link moves all targets of a configuration alike: that is the robot, and no row is named for it.
 #[test]
 fn what_all_targets_of_a_configuration_show_is_the_robot() {
     let robot = elbow();
@@ -372,7 +372,7 @@ fn what_all_targets_of_a_configuration_show_is_the_robot() {
     assert!(named as f64 <= (0.05 + sessions.more_of_a_share(0.05)) * sessions.count as f64);
 }
 
-/// The rows that alone tell something are not thrown out on their own word: with them thrown out the others are predicted no better.
+/// Rows that alone determine something are not rejected by their own residuals: without them the others are predicted no better.
 #[test]
 fn rows_that_alone_tell_something_are_kept() {
     let robot = elbow();
@@ -391,7 +391,7 @@ fn rows_that_alone_tell_something_are_kept() {
                 let mut data = Dataset::new(robot.reading_names());
                 for row in 0..37 {
                     let far = random_configuration(&robot, &mut generator);
-                    // All but two configurations lie near each other.
+                    // All but two configurations are near each other.
                     let share = if row < 35 { 0.3 } else { 1.0 };
                     let readings: Vec<f64> =
                         middle.iter().zip(&far).map(|(here, there)| here + share * (there - here)).collect();
@@ -425,8 +425,8 @@ fn rows_that_alone_tell_something_are_kept() {
     assert!(errors[0] < (1.05 + sessions.more(0.2)) * errors[1]);
 }
 
-/// A value of the row before, metres off, in a session of so few rows that it draws the start along: it is left out and named, and the verdict is
-/// of the others.
+/// A value of the row before, metres off, in a session of so few rows that it biases the start: it is left out and named, and the verdict is of the
+/// others.
 #[test]
 fn a_row_that_ruins_the_start_of_few_is_left_out() {
     for seed in [5, 6, 7] {

@@ -52,7 +52,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     let found = Shapes::read(&file, &cell.join("out/calibration.json"));
     let of: Vec<(&str, Option<usize>, Form)> =
         found.shapes.iter().map(|it| (it.link.as_str(), it.body.joint(), it.form)).collect();
-    // The same mesh twice is there once.
+    // The same mesh twice is stored once.
     let expected =
         [("base", None, Form::Mesh(0)), ("upper", Some(0), Form::Mesh(1)), ("lower", Some(1), Form::Mesh(0))];
     assert_eq!(of, expected);
@@ -72,7 +72,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     let longest = found.meshes[1].step * 65535.0;
     assert!((longest - 0.1).abs() < 1e-6, "{longest} m, of 100 by 0.001");
     assert_eq!(found, Shapes::read(&file, &cell.join("out/calibration.json")));
-    // Of links that move, shapes stay with the frames of their joints.
+    // Shapes of moving links stay with the frames of their joints.
     let shape = &found.shapes[2];
     let (nominal, calibrated) = (&calibration.nominal.joints[1].frame, &calibration.robot.joints[1].frame);
     let apart = (nominal.inverse() * shape.nominal_pose).apart(&(calibrated.inverse() * shape.pose));
@@ -82,7 +82,7 @@ fn meshes_are_found_beside_the_urdf_and_others_are_named() {
     assert!(apart.0 < 1e-12 && apart.1 < 1e-7 && moved.0 > 1e-6, "{apart:?}, {moved:?}");
     assert_eq!((Shapes::from_calibration(&file).shapes.len(), Shapes::from_calibration(&file).notes.len()), (0, 0));
 
-    // Beside the calibration, where the URDF is no more.
+    // Beside the calibration, in the absence of the URDF.
     fs::rename(cell.join("robot"), cell.join("out")).unwrap();
     let again = Shapes::read(&file, &cell.join("out/calibration.json"));
     assert_eq!(again.shapes.len(), 2, "the package's folder has another name now: {:?}", again.notes);
@@ -106,7 +106,7 @@ fn a_box_is_drawn_without_any_file() {
         (1, "upper", Form::Box([0.4, 0.05, 0.05]))
     );
 
-    // Of a robot that is no URDF nothing is known.
+    // A robot that is no URDF has no shapes.
     file.inputs.urdf = None;
     assert_eq!(Shapes::read(&file, Path::new("calibration.json")), Shapes::default());
 }

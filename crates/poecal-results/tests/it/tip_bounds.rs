@@ -15,7 +15,7 @@ use poecal_testing::trials::trials;
 /// From the tip to the reflector.
 const REFLECTOR: [f64; 3] = [0.03, 0.11, -0.06];
 
-/// A robot whose axes are off, with the links beyond its last joint as in the model.
+/// A robot with errors of its axes, with the links beyond its last joint as in the model.
 fn made(nominal: &Robot, seed: u64) -> Robot {
     let errors = Simulation { error_rotation_rad: 0.005, error_position_m: 1e-3, ..Simulation::default() };
     let off = errors.perturbed(nominal, &mut ChaCha8Rng::seed_from_u64(seed));
@@ -35,7 +35,7 @@ fn bounds_of_a_tip_beside_the_reflector_hold() {
         for seed in trials.seeds() {
             let actual = made(&nominal, seed);
             let at_reflector = |robot: &Robot| Robot { home: robot.home * reflector, ..robot.clone() };
-            // In the base frame: where the device is anywhere, the zero of the last joint is as that of a base that the axes choose.
+            // In the base frame: with the device at an unknown pose, the zero of the last joint is as that of a base that the axes determine.
             let simulation = Simulation { count: 60, device_anywhere: false, ..Simulation::default() };
             let mut generator = ChaCha8Rng::seed_from_u64(500 + seed);
             let seen = simulation
@@ -72,7 +72,7 @@ fn bounds_of_a_tip_beside_the_reflector_hold() {
             100.0 * share,
             1e3 * f64::sqrt(off / f64::from(all))
         );
-        // The residual counts as the robot's, so that bounds are wide; errors of one session are alike.
+        // The residual counts as the robot's, so that bounds are wide; errors of one session are similar.
         assert!(share > 0.9 && ratio > 0.2 && ratio < 1.3, "{share} {ratio}");
     }
 }

@@ -1,4 +1,4 @@
-//! Whether a robot has drifted: what is found of shifts of known size, and what is said of unchanged robots.
+//! Detection of drift: estimates for shifts of known size, and statements about unchanged robots.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::Pose;
@@ -30,7 +30,7 @@ impl Cell {
         Cell::spoilt(robot, seed, 0.0)
     }
 
-    /// The same with gross errors in a share of the rows of the first visit.
+    /// The cell with gross errors in a share of the rows of the first visit.
     fn spoilt(robot: &Robot, seed: u64, share: f64) -> Self {
         let mut robot = robot.clone();
         // A reflector 100 mm beside the tip, so that the last joint moves it.
@@ -49,7 +49,7 @@ impl Cell {
         TrackOptions { device_is_known, repeatability_m: Some(NOISE_M), ..TrackOptions::default() }
     }
 
-    /// A visit to configurations of the first one, by another robot, from anywhere or from where the device was.
+    /// A visit to configurations of the first one, by another robot, with the device anywhere or where it was.
     fn visit(
         &self,
         actual: &Robot,
@@ -75,7 +75,7 @@ impl Cell {
         into_screws(&self.actual, &offsets).unwrap()
     }
 
-    /// What a visit shows: its state, and whether the joint is the explanation, or among those that are named.
+    /// Result of a visit: its state, and whether the joint is the explanation, or among those that are named.
     fn found(&self, data: &Dataset, joint: usize, options: &TrackOptions) -> (bool, bool, bool) {
         let earlier = Earlier { data: &self.first, is_own: true };
         let found = track(&self.file, data, Some(earlier), options).unwrap();
@@ -88,7 +88,7 @@ impl Cell {
     }
 }
 
-/// What visits show of the shift of one joint, by its stated smallest size and by twice it.
+/// Results of visits for the shift of one joint, by its stated smallest size and by twice it.
 #[derive(Clone, Default)]
 struct Seen {
     joint: String,
@@ -104,8 +104,8 @@ struct Seen {
     among_at_twice: usize,
 }
 
-/// The stated smallest shift of each joint is found in 93 to 98 % of visits, the right joint is named, and an unchanged robot is unchanged in
-/// 99 %. Each first visit has its own noise, which all later ones are compared with: so there are many first visits, with ten later ones each.
+/// The stated smallest shift of each joint is detected in 93 to 98 % of visits, and the right joint is named. An unchanged robot is unchanged in 99
+/// %. Each first visit has its own noise, with which all later ones are compared: so there are many first visits, with ten later ones each.
 #[test]
 fn the_smallest_shift_is_found_as_often_as_stated() {
     const VISITS: usize = 10;
@@ -162,7 +162,7 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
                 percent(seen.right_at_twice),
                 percent(seen.among_at_twice)
             );
-            // Three standard errors of the numbers drawn beside the 93 to 98 % that are asked for.
+            // Three standard errors of the numbers drawn beside the required 93 to 98 %.
             let (found, count) = (seen.found as f64 / seen.visits as f64, seen.visits as f64);
             let error = |share: f64| 3.0 * (share * (1.0 - share) / count).sqrt();
             assert!(
@@ -198,11 +198,11 @@ fn the_smallest_shift_is_found_as_often_as_stated() {
     assert!(share(false_alarms, unchanged) <= 0.015 + 3.0 * (0.015 / unchanged as f64).sqrt());
 }
 
-/// Of a joint that moved the shift is found, and of the others none beside it.
+/// The shift of a moved joint is found, and none of the others beside it.
 #[test]
 fn the_shift_of_each_joint_is_stated_beside_the_explanation() {
     const BY: f64 = 3e-3;
-    // A fraction of visits in which one of five shifts is farther off: 3e-6 each.
+    // A fraction of visits in which one of five shifts deviates more: 3e-6 each.
     const SIGMAS: f64 = 4.5;
     let cell = Cell::new(&elbow(), 5);
     let options = cell.options(true);
@@ -237,7 +237,7 @@ fn the_first_joint_is_not_seen_from_a_device_that_was_set_up_anew() {
     println!("device known: joint 1 from {:.4} deg", known.joints[0].smallest.to_degrees());
 }
 
-/// A joint that was repaired predicts the robot as it is now, and the repaired calibration finds nothing else.
+/// A joint that was recalibrated predicts the robot as it is now, and the new calibration finds nothing else.
 #[test]
 fn one_joint_is_calibrated_anew() {
     let cell = Cell::new(&elbow(), 5);
@@ -269,7 +269,7 @@ fn one_joint_is_calibrated_anew() {
     assert_eq!(again.state, State::Unchanged);
     let text = repaired.file.to_text().unwrap();
     assert_eq!(CalibrationFile::parse(&text, "calibration.json").unwrap(), repaired.file);
-    // The covariance counts what is not known of the shift.
+    // The covariance includes the uncertainty of the shift.
     let trace = |file: &CalibrationFile| -> f64 {
         let (found, _) = file.uncertainty(&[]).unwrap();
         let n = found.layout.dim();
@@ -278,7 +278,7 @@ fn one_joint_is_calibrated_anew() {
     assert!(trace(&repaired.file) > trace(&cell.file));
 }
 
-/// Rows that repeat nothing are judged by the model, and said to be.
+/// Rows that repeat nothing are judged by the model, and a note states that.
 #[test]
 fn other_configurations_are_judged_by_the_model() {
     let made = Simulation { count: 90, seed: 2, noise_position_m: NOISE_M, ..Simulation::default() };
@@ -305,7 +305,7 @@ fn other_configurations_are_judged_by_the_model() {
     assert!(found.notes.iter().any(|note| note.contains("none of the rows repeats")), "{:?}", found.notes);
 }
 
-/// Rows that the calibration suspects are none that a visit is compared with, and no part of what its errors are taken to be.
+/// No visit is compared with rows that the calibration suspects, and they do not enter its assumed errors.
 #[test]
 fn suspected_rows_of_the_calibration_do_not_count() {
     let [clean, spoilt] = [0.0, 0.1].map(|share| Cell::spoilt(&elbow(), 5, share));
@@ -330,7 +330,7 @@ fn suspected_rows_of_the_calibration_do_not_count() {
     assert!(spoilt.state == State::Unchanged && spoilt.noise_m < 1.5 * clean.noise_m);
 }
 
-/// Places of a visit are compared with the places of poses.
+/// Positions of a visit are compared with the positions of poses.
 #[test]
 fn points_repeat_the_places_of_poses() {
     let robot = elbow();
@@ -361,7 +361,7 @@ fn points_repeat_the_places_of_poses() {
     }
 }
 
-/// Axes that were mastered by eye: all zeros that are seen are named, with the stated repeatability; what zeros do not explain is said.
+/// Axes that were mastered by eye: all zeros that are seen are named, with the stated repeatability; a note states what zeros do not explain.
 #[test]
 fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so() {
     let cell = Cell::new(&elbow(), 9);
@@ -384,7 +384,7 @@ fn several_zeros_are_all_named_and_an_explanation_that_is_not_complete_says_so()
     // The noise of a difference of two visits, as it is stated.
     assert!((found.noise_m / (NOISE_M * 2f64.sqrt()) - 1.0).abs() < 0.05, "{}", found.noise_m);
     assert!(found.notes.is_empty(), "{:?}", found.notes);
-    // An axis that is bent beside a zero that slipped is no set of zeros.
+    // A bent axis beside a shifted zero is no set of zeros.
     let mut bent = cell.with_zero(2, 0.2f64.to_radians());
     let frame = Pose::from_xyz_rpy([1e-3, -5e-4, 8e-4], [2e-3, -1e-3, 1.5e-3]);
     bent = bent.with_screws(

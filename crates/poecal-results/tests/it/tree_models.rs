@@ -37,7 +37,7 @@ fn refused(selection: &ChainSelection) -> String {
     UrdfDocument::parse(TORSO, "torso.urdf", selection).unwrap_err().to_string()
 }
 
-/// Every named frame is where it is when its chain alone is read.
+/// Every named frame has the pose that its chain alone has.
 #[test]
 fn the_tree_of_named_links_moves_as_each_chain_does() {
     let document = torso();
@@ -246,7 +246,7 @@ fn a_calibration_of_two_hands_keeps_its_branches() {
     // Noise of 0.05 mm of each component.
     println!("held out: {held_out:.4} mm");
     assert!(held_out < 1.3 * 0.05 * 3f64.sqrt(), "{held_out}");
-    // What a pair sees is as in the actual robot.
+    // The observations of a pair are as in the actual robot.
     let exact = simulation.held_out(&made, Kind::POSE, 40).unwrap();
     let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
     let judgement = file.judge(&exact, false, false).unwrap();

@@ -1,18 +1,18 @@
-//! Numbers of bytes, little endian, one after the other.
+//! Numbers in a sequence of bytes, little endian.
 
-/// The bytes that are left.
+/// The remaining bytes.
 #[derive(Clone, Copy)]
 pub struct Fields<'b>(pub &'b [u8]);
 
 impl<'b> Fields<'b> {
-    /// So many bytes.
+    /// The next `count` bytes.
     pub fn bytes(&mut self, count: usize) -> Option<&'b [u8]> {
         let (found, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(found)
     }
 
-    /// Bytes with their number before them.
+    /// Bytes preceded by their number.
     #[cfg(feature = "bags")]
     pub fn counted(&mut self) -> Option<&'b [u8]> {
         let count = self.u64()?;
@@ -43,7 +43,7 @@ impl<'b> Fields<'b> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// A number and its place.
+    /// A number of four bytes, as an index.
     pub fn index(&mut self) -> Option<usize> {
         usize::try_from(self.u32()?).ok()
     }

@@ -6,18 +6,18 @@ use super::fields::Fields;
 use super::unpack::unpack;
 use crate::limits::{Limit, amount};
 
-/// Bytes that files begin with.
+/// Bytes at the beginning of a file.
 pub const MAGIC: &[u8] = &[0x89, b'M', b'C', b'A', b'P', 0x30, b'\r', b'\n'];
-/// Longest name, bytes: those of topics and types are held.
+/// Length of the longest name, bytes: names of topics and types are held.
 pub const LONGEST_NAME: usize = 4096;
-/// Bytes that are read at a time.
+/// Number of bytes that are read at a time.
 const STEP: usize = 1 << 18;
-/// Bytes of a record before what it holds: its kind, and its length.
+/// Bytes of a record before its content: its kind, and its length.
 const HEAD: usize = 9;
 
 /// Kinds of records, <https://mcap.dev/spec#opcodes>.
 pub mod op {
-    /// The last record: where the summary is.
+    /// The last record: the position of the summary.
     pub const FOOTER: u8 = 0x02;
     /// A type of messages.
     pub const SCHEMA: u8 = 0x03;
@@ -25,7 +25,7 @@ pub mod op {
     pub const CHANNEL: u8 = 0x04;
     /// A message.
     pub const MESSAGE: u8 = 0x05;
-    /// Records, maybe packed.
+    /// Records, possibly compressed.
     pub const CHUNK: u8 = 0x06;
     /// The end of the messages.
     pub const DATA_END: u8 = 0x0F;
@@ -39,29 +39,29 @@ pub trait Records {
     fn channel(&mut self, id: u16, schema: u16, name: &str, encoding: &str);
     /// A message of a topic, with its time in the log, nanoseconds.
     fn message(&mut self, channel: u16, log_ns: u64, data: &[u8]);
-    /// True if no more is taken.
+    /// True if no more records are accepted.
     fn is_full(&self) -> bool;
 }
 
-/// Why a file ends.
+/// Reason why a file ends.
 const CUT: &str = "it is cut off";
 
-/// What is wrong with a file.
+/// Damage of a file.
 #[derive(Clone, Debug, Default)]
 pub struct Damage {
-    /// Where it ends before its end, or from where on nothing can be read, and why.
+    /// Position of a premature end, or from which nothing can be read, and the reason.
     pub end: Option<(u64, String)>,
-    /// The first chunks that were left out: where each begins, why, and the times of its messages.
+    /// The first chunks that were left out: their positions, the reasons, and the times of their messages.
     pub chunks: Vec<(u64, String, (u64, u64))>,
-    /// Number of the others.
+    /// Number of further damaged chunks.
     pub others: usize,
 }
 
-/// Most damaged places that are named.
+/// Largest number of damaged chunks that are listed.
 const NAMED: usize = 5;
 
 impl Damage {
-    /// Something is left out.
+    /// Records a chunk that is left out.
     fn add(&mut self, at: u64, why: String, times: (u64, u64)) {
         if self.chunks.len() < NAMED {
             self.chunks.push((at, why, times));
@@ -71,7 +71,8 @@ impl Damage {
     }
 }
 
-/// Bytes that the records of a file have after they are unpacked, as their heads state, or those up to the first beyond the limit: nothing is unpacked, and a chunk is held to it later.
+/// Unpacked size of the records of a file in bytes, as their heads state it, or up to the first record beyond the limit. Nothing is unpacked here;
+/// later a chunk must not exceed its stated size.
 pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
     let mut input = BufReader::with_capacity(STEP, input);
     let mut data = Vec::new();
@@ -103,7 +104,7 @@ pub fn stated_size(input: &mut impl Read) -> io::Result<u64> {
     Ok(sum)
 }
 
-/// Reads a file up to the end of its messages, or as far as that goes.
+/// Reads a file up to the end of its messages, or up to the damage.
 pub fn read(input: &mut impl Read, taker: &mut impl Records) -> io::Result<Damage> {
     let mut input = BufReader::with_capacity(STEP, input);
     let (mut damage, mut data, mut unpacked) = (Damage::default(), Vec::new(), Vec::new());
@@ -133,7 +134,7 @@ pub fn read(input: &mut impl Read, taker: &mut impl Records) -> io::Result<Damag
     Ok(damage)
 }
 
-/// Reads the next record: its kind, and into `data` what it holds. The error within says why there is none.
+/// Reads the next record: returns its kind, and puts its content into `data`. The inner error is the reason why there is none.
 fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, String>> {
     if !fill(input, HEAD, data)? {
         return Ok(Err(CUT.to_owned()));
@@ -146,7 +147,7 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
     if !fill(input, size, data)? {
         return Ok(Err(CUT.to_owned()));
     }
-    // The least that these hold.
+    // The smallest sizes of these records.
     let least = match opcode {
         op::DATA_END => 4,
         op::FOOTER => 20,
@@ -155,19 +156,19 @@ fn next(input: &mut impl Read, data: &mut Vec<u8>) -> io::Result<Result<u8, Stri
     Ok(if size < least { Err("Record parse failed".to_owned()) } else { Ok(opcode) })
 }
 
-/// What is found where a record or chunk is beyond the limit.
+/// Message on a record or chunk beyond the limit.
 fn too_large(what: &str, bytes: u64) -> String {
     Limit::Chunk.sentence(&format!("{what} of {}", amount(bytes, Limit::Chunk.row().unit)))
 }
 
-/// Reads so many bytes, and takes memory for no more than there are; false if there are fewer.
+/// Reads `size` bytes, and takes memory for no more than exist; false if there are fewer.
 fn fill(input: &mut impl Read, size: usize, into: &mut Vec<u8>) -> io::Result<bool> {
     into.clear();
     into.reserve(size.min(STEP));
     Ok(input.take(size as u64).read_to_end(into)? == size)
 }
 
-/// Takes the records of a chunk, or says why not; puts the times of its messages into `times`.
+/// Takes the records of a chunk, and puts the times of its messages into `times`. The error is the reason why it is left out.
 fn chunk(
     data: &[u8],
     unpacked: &mut Vec<u8>,
@@ -222,7 +223,7 @@ fn record(opcode: u8, data: &[u8], taker: &mut impl Records) -> Result<(), Strin
     Ok(take().ok_or(SHORT)?)
 }
 
-/// What is found in place of a record that ends too soon.
+/// Message on a record that ends too soon.
 const SHORT: &str = "a record that is shorter than what it holds";
 
 /// A text.

@@ -2,13 +2,13 @@
 
 use super::fields::Fields;
 
-/// How a container begins.
+/// Beginning of a container.
 pub const MAGIC: &[u8] = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1";
-/// Names of the stream that is a workbook.
+/// Names of the stream of a workbook.
 const WORKBOOK: [&str; 4] = ["Workbook", "Book", "WORKBOOK", "BOOK"];
-/// Sectors from here on are marks.
+/// Smallest number of a sector that is a mark.
 const MARKS: u32 = 0xFFFF_FFFA;
-/// Streams of fewer bytes lie in small sectors.
+/// Size below which a stream is in small sectors, bytes.
 const SMALL: u64 = 4096;
 const SMALL_SECTOR: usize = 64;
 /// Sectors of the table of sectors that the head lists.
@@ -23,7 +23,7 @@ struct Container<'b> {
     next: Vec<u32>,
 }
 
-/// The stream of the workbook; `None` of a container that is damaged or has none.
+/// The stream of the workbook; `None` if the container is damaged or has none.
 pub fn workbook(bytes: &[u8]) -> Option<Vec<u8>> {
     let shift = Fields(bytes.get(30..)?).u16()?;
     if !bytes.starts_with(MAGIC) || !matches!(shift, 9 | 12) {
@@ -57,15 +57,15 @@ fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
     Fields(bytes.get(at..)?).u32()
 }
 
-/// The numbers of sectors that bytes are.
+/// The numbers of sectors in a sequence of bytes.
 fn numbers(bytes: &[u8]) -> impl Iterator<Item = u32> {
     bytes.chunks_exact(4).filter_map(|it| Fields(it).u32())
 }
 
 impl<'b> Container<'b> {
-    /// A sector, of which the last one may be cut off.
+    /// A sector; the last one may be cut off.
     fn sector(&self, number: u32) -> Option<&'b [u8]> {
-        // The head takes the place of a sector.
+        // The head occupies one sector.
         let start = usize::try_from(number).ok()?.checked_add(1)?.checked_mul(self.sector)?;
         let end = start.checked_add(self.sector)?.min(self.bytes.len());
         self.bytes.get(start..end).filter(|it| !it.is_empty())
@@ -93,13 +93,13 @@ impl<'b> Container<'b> {
         Some(next)
     }
 
-    /// The bytes of a chain, at most so many.
+    /// The bytes of a chain, at most `size`.
     fn chain(&self, start: u32, size: u64) -> Option<Vec<u8>> {
         followed(&self.next, start, size, |sector| self.sector(sector))
     }
 }
 
-/// The bytes of a chain of sectors, at most so many; `None` if a sector is missing, or the chain is longer than there are sectors.
+/// The bytes of a chain of sectors, up to a size; `None` if a sector is missing, or the chain is longer than the number of sectors.
 fn followed<'s>(
     next: &[u32],
     start: u32,

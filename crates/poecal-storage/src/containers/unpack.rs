@@ -1,17 +1,17 @@
-//! Unpacks chunks, and the messages or the whole files that rosbag2 compresses.
+//! Unpacks chunks, and messages or whole files that rosbag2 compresses.
 
 use std::io::{self, BufRead, BufReader, Read};
 
 use lz4_flex::frame::FrameDecoder as Lz4;
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder as Zstd};
 
-/// The beginning of a frame of zstd; no message has it.
+/// The beginning of a frame of zstd; no message begins so.
 pub const ZSTD: &[u8] = b"\x28\xb5\x2f\xfd";
 
-/// The bytes of a file; up to so many of one that is compressed as a whole.
+/// The bytes of a file; at most `most` if it is compressed as a whole.
 ///
 /// # Errors
-/// A compressed file that is no zstd.
+/// The compressed file is no zstd.
 pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Result<Box<dyn Read + 'r>> {
     if !is_packed {
         return Ok(Box::new(file));
@@ -21,7 +21,7 @@ pub fn stream<'r>(file: impl Read + 'r, is_packed: bool, most: u64) -> io::Resul
     Ok(Box::new(Frames { frame: Some(frame) }.take(most)))
 }
 
-/// The bytes of all frames of a file; one that is cut off ends where its bytes end, as the same file does unpacked.
+/// The bytes of all frames of a file; a file that is cut off ends with its last bytes, like the unpacked file.
 struct Frames<R: Read> {
     frame: Option<Zstd<BufReader<R>, FrameDecoder>>,
 }
@@ -44,16 +44,16 @@ impl<R: Read> Read for Frames<R> {
     }
 }
 
-/// Puts the bytes of a message that is compressed by itself into `into`, up to so many.
+/// Puts the bytes of a message that is compressed by itself into `into`, at most `most`.
 ///
 /// # Errors
-/// The damage that was found.
+/// The damage of the message.
 pub fn message(packed: &[u8], most: u64, into: &mut Vec<u8>) -> Result<(), String> {
     into.clear();
     frames(packed, most, into)
 }
 
-/// Puts the bytes of a chunk that is packed in this way into `into`, up to one beyond the size that it states; an error says what was found.
+/// Puts the bytes of a chunk with the compression `how` into `into`, up to one beyond the stated size. An error states the damage.
 pub(super) fn unpack(packed: &[u8], how: &str, stated: u64, into: &mut Vec<u8>) -> Result<(), String> {
     into.clear();
     let most = stated.saturating_add(1);

@@ -1,4 +1,4 @@
-//! A disk that is only read: files whose bytes are given, and those of another disk.
+//! A disk for reading only: files whose bytes are supplied, and those of another disk.
 
 use std::ffi::OsString;
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::{Disk, Lock, Object, ObjectKind, Output};
 
-/// Files by their paths, before those of another disk, if there is one.
+/// Files by their paths, which precede those of another disk, if there is one.
 pub struct GivenFiles {
     files: Vec<(PathBuf, Vec<u8>)>,
     others: Option<Arc<dyn Disk>>,
@@ -24,7 +24,7 @@ impl GivenFiles {
         self.files.iter().find(|it| it.0 == path).map(|it| it.1.as_slice())
     }
 
-    /// The answer for a file that is given, else that of the other disk.
+    /// The answer for a supplied file, else that of the other disk.
     fn answer<T>(
         &self,
         path: &Path,
@@ -39,7 +39,7 @@ impl GivenFiles {
     }
 }
 
-/// An object that is a given file.
+/// Object of a supplied file.
 const FILE: Object = Object { kind: ObjectKind::File, identity: None, is_mine: true };
 
 fn refused<T>() -> io::Result<T> {

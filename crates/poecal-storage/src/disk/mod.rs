@@ -1,10 +1,11 @@
 //! File operations behind one small trait, so that whole commands can run on a simulated disk.
 //!
-//! [`SystemDisk`] is the machine's. [`on`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no
-//! space, and loss of unsynced data.
+//! [`SystemDisk`] is the machine's. [`on`] replaces it for the work of one thread; `tests/it/simulated_disk` has one with short writes, no space,
+//! and loss of unsynced data.
 //!
-//! [`Disk`] has some twenty operations, each one step. [`here`] is the disk of the thread: the machine's, unless [`on`] names another; in WebAssembly a
-//! disk in memory (`crates/poecal-wasm`). It is not an argument of the public functions because only that and tests need another disk.
+//! [`Disk`] has some twenty operations of one step each. [`here`] is the disk of the thread: the machine's, unless [`on`] names another; in
+//! WebAssembly a disk in memory (`crates/poecal-wasm`). It is not an argument of the public functions because only WebAssembly and tests need
+//! another disk.
 
 mod given;
 mod system;
@@ -35,33 +36,33 @@ pub enum ObjectKind {
 /// Object at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Object {
-    /// What it is.
+    /// Kind of the object.
     pub kind: ObjectKind,
     /// Device and file number, the same for every path to the file; `None` if the system has none.
     pub identity: Option<(u64, u64)>,
-    /// Whether it belongs to the user of this process; true where files have no owners.
+    /// True if it belongs to the user of this process, or if files have no owners.
     pub is_mine: bool,
 }
 
 /// Holds a lock until it is dropped.
 pub type Lock = Box<dyn Any + Send>;
 
-/// What became of a lock that was asked for.
+/// Result of a request for a lock.
 pub enum Held {
-    /// It is held until it is dropped. `before` names a run that held it and was killed.
+    /// It is held until dropped. `before` names a run that held it and was killed.
     Mine {
         /// The lock.
         lock: Lock,
-        /// Who held it, as it was named.
+        /// Name of the earlier holder.
         before: Option<String>,
     },
-    /// Another run holds it: as it was named, or empty where the system does not let others read that.
+    /// Another run holds it: its name, or empty if the system does not let others read it.
     Other(String),
 }
 
 /// A file being written.
 pub trait Output: Write + Send {
-    /// Waits until what was written is on the disk.
+    /// Waits until the written bytes are on the disk.
     ///
     /// # Errors
     /// Errors of the system.
@@ -71,12 +72,12 @@ pub trait Output: Write + Send {
 /// Atomic operations on files.
 ///
 /// # Errors
-/// Each gives the system's error.
+/// Each returns the system's error.
 #[expect(clippy::missing_errors_doc, reason = "said once, above")]
 pub trait Disk: Send + Sync {
     /// The object at a path; a link itself.
     fn look(&self, path: &Path) -> io::Result<Object>;
-    /// The object that a path leads to.
+    /// The object to which a path leads.
     fn follow(&self, path: &Path) -> io::Result<Object>;
     /// Path without links.
     fn actual(&self, path: &Path) -> io::Result<PathBuf>;
@@ -102,9 +103,9 @@ pub trait Disk: Send + Sync {
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Moves a file or folder without replacing another one.
     fn rename_new(&self, from: &Path, to: &Path) -> io::Result<()>;
-    /// Exchanges two folders atomically; [`io::ErrorKind::Unsupported`] where the system cannot.
+    /// Exchanges two folders atomically; [`io::ErrorKind::Unsupported`] if the system cannot.
     fn exchange(&self, one: &Path, other: &Path) -> io::Result<()>;
-    /// Gives a file a second name (hard link).
+    /// Adds a second name of a file (hard link).
     fn link(&self, from: &Path, to: &Path) -> io::Result<()>;
     /// Copies owner and permissions of a folder to another one; [`io::ErrorKind::Unsupported`] if that is impossible.
     fn copy_access(&self, from: &Path, to: &Path) -> io::Result<()>;
@@ -112,13 +113,13 @@ pub trait Disk: Send + Sync {
     fn sync_folder(&self, path: &Path) -> io::Result<()>;
     /// Locks a file, creating it if necessary; `None` if another process holds it. [`io::ErrorKind::Unsupported`] without locks.
     fn lock(&self, path: &Path) -> io::Result<Option<Lock>>;
-    /// Locks a file that is there for this alone, for a run that is named by a line. The file is gone when the lock is dropped.
+    /// Locks an existing file for this run alone, which `holder` names in a line. The file is removed when the lock is dropped.
     /// [`io::ErrorKind::Unsupported`] without locks. A disk of one process needs none.
     fn hold(&self, path: &Path, holder: &str) -> io::Result<Held> {
         let _ = (path, holder);
         Ok(Held::Mine { lock: Box::new(()), before: None })
     }
-    /// Locks a folder, waiting some seconds for another holder; without a lock where there are none.
+    /// Locks a folder, waiting some seconds for another holder; returns without a lock if the disk has none.
     fn lock_folder(&self, path: &Path) -> io::Result<Lock>;
 }
 
@@ -132,13 +133,13 @@ pub fn here() -> Arc<dyn Disk> {
     HERE.with_borrow(Arc::clone)
 }
 
-/// Whether a path leads to a regular file.
+/// True if a path leads to a regular file.
 #[must_use]
 pub fn is_file(path: &Path) -> bool {
     here().follow(path).is_ok_and(|object| object.kind == ObjectKind::File)
 }
 
-/// Creates a folder with all those above it that are missing.
+/// Creates a folder with all missing folders above it.
 ///
 /// # Errors
 /// Errors of the system.
@@ -156,9 +157,9 @@ pub fn create_folders(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Runs some work on another disk, as far as this thread does it.
+/// Runs `work` on another disk, on this thread only.
 pub fn on<T>(disk: Arc<dyn Disk>, work: impl FnOnce() -> T) -> T {
-    /// Restores the disk before, also after a panic.
+    /// Restores the previous disk, also after a panic.
     struct Back(Option<Arc<dyn Disk>>);
     impl Drop for Back {
         fn drop(&mut self) {

@@ -62,13 +62,13 @@ const PATIENCE: Duration = Duration::from_secs(20);
 #[cfg(unix)]
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Whether the file system does not support the operation.
+/// True if the file system does not support the operation.
 #[cfg(unix)]
 fn is_unknown(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
 }
 
-/// Whether the file system has no locks.
+/// True if the file system has no locks.
 fn has_no_locks(error: &io::Error) -> bool {
     #[cfg(unix)]
     if error.raw_os_error() == Some(rustix::io::Errno::NOLCK.raw_os_error()) {
@@ -101,7 +101,7 @@ fn attributes(path: &Path) -> io::Result<Vec<(Vec<u8>, Vec<u8>)>> {
     Ok(valued)
 }
 
-/// Rename without replacement where the system has no such call: a hard link, or a folder rename, which replaces only an empty folder.
+/// Rename without replacement on systems without such a call: a hard link, or a folder rename, which replaces only an empty folder.
 fn rename_new_in_steps(from: &Path, to: &Path) -> io::Result<()> {
     if fs::symlink_metadata(from)?.is_dir() {
         return fs::rename(from, to);
@@ -110,8 +110,7 @@ fn rename_new_in_steps(from: &Path, to: &Path) -> io::Result<()> {
     fs::remove_file(from)
 }
 
-/// Exchanges two files or folders, or moves one to where nothing is, in one step; [`io::ErrorKind::Unsupported`] where the system
-/// cannot.
+/// Exchanges two files or folders, or moves one to a free path, in one step; [`io::ErrorKind::Unsupported`] if the system cannot.
 #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
 fn rename_in_one_step(from: &Path, to: &Path, is_exchange: bool) -> io::Result<()> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
@@ -127,7 +126,7 @@ fn rename_in_one_step(_: &Path, _: &Path, _: bool) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// A file that is locked, and removed before the lock is given back.
+/// A file that is locked, and removed before the lock is released.
 struct HeldFile {
     file: File,
     path: PathBuf,
@@ -135,7 +134,7 @@ struct HeldFile {
 
 impl Drop for HeldFile {
     fn drop(&mut self) {
-        // Where an open file cannot be removed, it is empty: nobody was killed.
+        // If an open file cannot be removed, it is emptied: an empty file means no killed run.
         let _ = self.file.set_len(0);
         if is_at(&self.file, &self.path) {
             let _ = fs::remove_file(&self.path);
@@ -143,7 +142,7 @@ impl Drop for HeldFile {
     }
 }
 
-/// Whether an open file is the one at a path.
+/// True if an open file is the one at a path.
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {
@@ -159,7 +158,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Most attempts to lock a file that others remove, and longest name of a holder, bytes.
+/// Largest number of attempts to lock a file that others remove, and largest length of a holder's name, bytes.
 const ATTEMPTS: usize = 100;
 const LONGEST_HOLDER: u64 = 500;
 
@@ -205,7 +204,7 @@ impl Disk for SystemDisk {
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Output>> {
-        // Reopening a file that standard output goes to would overwrite it from its beginning.
+        // Reopening the file of standard output would overwrite it from its beginning.
         if ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|name| path == Path::new(name)) {
             return Ok(Box::new(Standard(io::stdout())));
         }
@@ -274,7 +273,7 @@ impl Disk for SystemDisk {
     #[cfg(unix)]
     fn sync_folder(&self, path: &Path) -> io::Result<()> {
         match File::open(path)?.sync_all() {
-            // Some file systems have nothing to sync in a folder.
+            // Some file systems cannot sync a folder.
             Err(error) if is_unknown(&error) => Ok(()),
             synced => synced,
         }
@@ -311,7 +310,7 @@ impl Disk for SystemDisk {
                 }
                 Err(TryLockError::Error(error)) => return Err(error),
             }
-            // Its holder may have removed it in between.
+            // Its holder may have removed it in the meantime.
             if !is_at(&file, path) {
                 continue;
             }

@@ -1,7 +1,7 @@
-//! Limits of what a file may take: the one table of them, and their sentence.
+//! Limits of the sizes of files: their only table, and their sentence.
 //!
-//! A limit is asked before memory is taken, by [`Limit::refuse`] or [`Limit::most`]. [`on`] replaces the limits for some work of one thread, as the
-//! program does for `--limit`; work on other threads takes them along. [`set`] replaces one of the process.
+//! A limit is checked before memory is taken, by [`Limit::refuse`] or [`Limit::most`]. [`on`] replaces the limits for some work of one thread, as
+//! the program does for `--limit`; work on other threads inherits them. [`set`] replaces one of the process.
 
 mod table;
 
@@ -27,13 +27,13 @@ impl Limit {
         here().0[self as usize]
     }
 
-    /// The same, as a number of things in memory.
+    /// The limit on this thread, as a number of things in memory.
     #[must_use]
     pub fn most_held(self) -> usize {
         usize::try_from(self.most()).unwrap_or(usize::MAX)
     }
 
-    /// The sentence of a file that exceeds the limit: what was found, the limit, and how to do with it or without it.
+    /// The sentence of a file that exceeds the limit: the size that was found, the limit, and the remedies with and without a higher limit.
     #[must_use]
     pub fn sentence(self, found: &str) -> String {
         let row = self.row();
@@ -46,17 +46,17 @@ impl Limit {
         format!("found {found}, expected at most {most} (limit `{}`): {}{higher}", row.name, row.advice)
     }
 
-    /// The same, where so many were found.
+    /// The sentence for a number above the limit.
     #[must_use]
     pub fn exceeded(self, of: &str) -> String {
         let most = amount(self.most(), self.row().unit);
         self.sentence(&format!("more than {most} in {of}"))
     }
 
-    /// Refuses a number beyond the limit; `found` are words for what has it.
+    /// Refuses a number beyond the limit; `found` describes the thing that has it.
     ///
     /// # Errors
-    /// The [`sentence`](Limit::sentence) as an error of [`ErrorKind::File`] without a place.
+    /// The [`sentence`](Limit::sentence) as an error of [`ErrorKind::File`] without a position.
     pub fn refuse(self, count: u64, found: impl Display) -> Result<()> {
         if count <= self.most() {
             Ok(())
@@ -71,7 +71,7 @@ impl Limit {
     }
 }
 
-/// A number with its unit, as people read it: `64 MiB`, `1,000,000 rows`.
+/// A number with its unit, for people: `64 MiB`, `1,000,000 rows`.
 #[must_use]
 pub fn amount(count: u64, unit: &str) -> String {
     if unit != BYTES {
@@ -116,7 +116,7 @@ impl Limits {
         Limits(all)
     };
 
-    /// The same with another number of one.
+    /// Replaces one limit.
     #[must_use]
     pub fn with(mut self, limit: Limit, most: u64) -> Self {
         self.0[limit as usize] = most;
@@ -128,7 +128,7 @@ thread_local! {
     static HERE: Cell<Option<Limits>> = const { Cell::new(None) };
 }
 
-/// The limits of threads that have none of their own.
+/// The limits of threads without limits of their own.
 static OF_PROCESS: [AtomicU64; COUNT] = {
     let (mut all, mut at) = ([const { AtomicU64::new(0) }; COUNT], 0);
     while at < COUNT {
@@ -144,21 +144,21 @@ pub fn here() -> Limits {
     HERE.get().unwrap_or_else(|| Limits(std::array::from_fn(|at| OF_PROCESS[at].load(Ordering::Relaxed))))
 }
 
-/// Sets a limit of the whole process, but for threads at work under others ([`on`]).
+/// Sets a limit of the whole process, except for threads at work under others ([`on`]).
 pub fn set(limit: Limit, most: u64) {
     OF_PROCESS[limit as usize].store(most, Ordering::Relaxed);
 }
 
-/// The limits that differ from the usual ones, as [`parse`] reads them.
+/// The limits that differ from the usual ones, in the form of [`parse`].
 #[must_use]
 pub fn stated() -> Vec<String> {
     let all = LIMITS.iter().zip(here().0).filter(|(row, most)| row.usual != *most);
     all.map(|(row, most)| format!("{}={most}", row.name)).collect()
 }
 
-/// Does some work under other limits, as far as this thread does it.
+/// Runs `work` under other limits, on this thread only.
 pub fn on<T>(limits: Limits, work: impl FnOnce() -> T) -> T {
-    /// Restores the limits before, also after a panic.
+    /// Restores the previous limits, also after a panic.
     struct Back(Option<Limits>);
     impl Drop for Back {
         fn drop(&mut self) {
@@ -169,7 +169,7 @@ pub fn on<T>(limits: Limits, work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// A limit as it is typed: `rows=5000000`, `text=1GiB`.
+/// Parses a limit in its typed form: `rows=5000000`, `text=1GiB`.
 ///
 /// # Errors
 /// One sentence with found and expected, of [`ErrorKind::Option`].
@@ -241,7 +241,7 @@ mod tests {
         });
         assert_eq!(here(), Limits::default());
         assert_eq!(on(lower, stated), ["rows=3"]);
-        // The stack is not longer where more is asked for.
+        // The stack does not grow with a higher limit.
         assert!(!Limit::Nesting.exceeded("a line").contains("--limit"));
     }
 

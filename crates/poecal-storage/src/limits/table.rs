@@ -1,6 +1,6 @@
 //! The table of limits.
 
-/// A limit of what a file may take. Its number is its place in [`LIMITS`].
+/// A limit of the size of a file. Its number is its index in [`LIMITS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// Bytes of a text that is held whole.
@@ -21,7 +21,7 @@ pub enum Limit {
     Columns,
     /// Elements, attributes and texts of an XML file.
     Elements,
-    /// Brackets, elements or blocks in each other.
+    /// Nested brackets, elements or blocks.
     Nesting,
     /// Bytes of a workbook.
     Workbook,
@@ -57,19 +57,19 @@ pub struct LimitRow {
     pub limit: Limit,
     /// Its name on the command line.
     pub name: &'static str,
-    /// How many there may be, if nothing else is asked for.
+    /// The usual limit.
     pub usual: u64,
-    /// The largest number that can be asked for.
+    /// The largest limit that can be set.
     pub highest: u64,
     /// The unit of the number.
     pub unit: &'static str,
     /// The things that are limited, in words.
     pub of: &'static str,
-    /// How to do without a higher limit.
+    /// Remedy without a higher limit.
     pub advice: &'static str,
 }
 
-/// Bytes are written in larger units.
+/// Unit of bytes, which are written in larger units.
 pub(crate) const BYTES: &str = "bytes";
 const MIB: u64 = 1 << 20;
 const ANY: u64 = 1 << 50;

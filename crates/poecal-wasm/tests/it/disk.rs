@@ -1,4 +1,4 @@
-//! Each operation with what is there, and with what is in its way.
+//! Each operation with existing names, and with obstructed ones.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::Path;
@@ -82,7 +82,7 @@ fn files_are_written_read_and_locked() {
     let disk = disk();
     let mut out = disk.create(Path::new("new")).unwrap();
     out.write_all(b"some ").unwrap();
-    // Who reads has what was there when the file was opened.
+    // A reader has the content at the time of opening.
     let mut early = disk.open(Path::new("new")).unwrap();
     out.write_all(b"text").unwrap();
     out.sync().unwrap();

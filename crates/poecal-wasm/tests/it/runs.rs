@@ -66,7 +66,7 @@ fn bytes_that_are_cut_anywhere_are_no_request() {
     }
     bytes.push(0);
     assert_eq!(decode(&bytes), None, "a byte too many");
-    // A length beyond the end, and a text that is none.
+    // A length beyond the end, and a text that is not valid.
     assert_eq!(decode(&[1, 0, 0, 0, 255, 255, 255, 255, b'a']), None);
     assert_eq!(decode(&[1, 0, 0, 0, 1, 0, 0, 0, 0xff, 0, 0, 0, 0, 0, 0, 0, 0]), None);
 }

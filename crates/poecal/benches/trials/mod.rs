@@ -1,11 +1,11 @@
-//! What the benchmarks of Monte Carlo share: noise, and measurements with it.
+//! Common parts of the Monte Carlo benchmarks: noise, and measurements with it.
 
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::measurement::{Dataset, Measurement, Noise, Quantity};
 use poecal_model::simulate::random;
 use rand_chacha::ChaCha8Rng;
 
-/// Of the workload: 0.05 mm and 0.0005 rad.
+/// Noise of the workload: 0.05 mm and 0.0005 rad.
 pub(crate) const NOISE: Noise = Noise::new(5e-5, 5e-4);
 
 /// Measurements with further noise.

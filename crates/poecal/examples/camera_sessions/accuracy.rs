@@ -1,4 +1,4 @@
-//! Errors of calibrated poses, beside the least that is possible.
+//! Errors of calibrated poses, compared with the least possible.
 
 use poecal_calibrate::CalibrationOptions;
 use poecal_calibrate::Corrections;
@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::information::Information;
 use crate::session::{all_rows, judged, places, registered, rms, session};
 
-/// Both places of the camera, with the noise of corners alone and with an error of each configuration.
+/// Both positions of the camera, with the noise of corners alone and with an error of each configuration.
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut lines = Vec::new();
     for in_hand in [true, false] {

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use crate::information::Information;
 use crate::session::{Session, calibrated, delivered, deviations, rms, session, true_pose};
 
-/// One place of the camera for each seed, with three errors of the configurations; each again by the rule of independent corners.
+/// One position of the camera for each seed, with three errors of the configurations; each again by the rule of independent corners.
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     let mut lines = Vec::new();
     for millis in [0.0, 0.1, 0.5] {
@@ -38,7 +38,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
 fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
     let (calibration, data) = calibrated(&session.made.nominal, data, &CalibrationOptions::default())?;
     let (poses, bounds) = delivered(&calibration, &data, session.others.all_readings())?;
-    // The arm is where its configuration has it, as it was in the pictures.
+    // The arm is in its actual configuration, as in the pictures.
     let mut generator = ChaCha8Rng::seed_from_u64(session.simulation.session.seed ^ 0x0b0e);
     let errors = deviations_with_own(session, &poses, &mut generator);
     let mut within = [0usize; 2];
@@ -74,7 +74,7 @@ fn inside(session: &Session, data: &Dataset) -> Result<Value, Error> {
     }))
 }
 
-/// Shares of the errors of exact poses inside the 95 % bounds that independent corners promise.
+/// Shares of the errors of exact poses inside the 95 % bounds that independent corners imply.
 fn by_rule(session: &Session, deviations: &[Vector6<f64>]) -> [f64; 2] {
     let none = CommonError { shift_m: 0.0, turn_rad: 0.0, ..session.simulation.common };
     let spreads = Information::from_session(session, none).spreads();
@@ -100,7 +100,7 @@ fn deviations_with_own(session: &Session, poses: &[Pose], generator: &mut ChaCha
     poses.iter().enumerate().map(of).collect()
 }
 
-/// The same poses as if nothing were common to the corners of a picture: each with the noise of its corners alone, as measurements of their own.
+/// The same poses without common errors of a picture's corners: each with the noise of its corners alone, as measurements of their own.
 fn of_independent_corners(data: &Dataset) -> Dataset {
     let mut found = data.clone();
     found.pictures.common.shift_m = 0.0;

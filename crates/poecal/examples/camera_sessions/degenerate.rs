@@ -1,4 +1,4 @@
-//! Sessions whose pictures leave something undetermined, which must be named, and clean ones, where nothing must be.
+//! Sessions whose pictures leave something undetermined, which must be named, and clean ones, which must raise no warning.
 
 use poecal_calibrate::BlockChoice;
 use poecal_calibrate::CalibrationOptions;
@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 
 use crate::session::{calibrated, rebuilt, simulation};
 
-/// A kind of session: its name, what its pictures are like, and whether the lens is free.
+/// A kind of session: its name, the form of its pictures, and true if the lens is free.
 struct Kind {
     name: &'static str,
     is_free: bool,
     of: fn(PictureSimulation) -> PictureSimulation,
 }
 
-/// A lens of so many pixels of focal length, whose picture has a size.
+/// A lens of this focal length in pixels, whose picture has a size.
 fn lens(focal_px: f64, size_px: [u32; 2]) -> Lens {
     let centre = size_px.map(|size| 0.5 * f64::from(size) - 0.5);
     Lens { size_px: Some(size_px), ..Lens::pinhole([focal_px; 2], centre) }

@@ -1,4 +1,4 @@
-//! The bound of Cramér and Rao of predicted poses, from differences of the kinematics: nothing of the calibration is used.
+//! Cramér-Rao bound of predicted poses, from differences of the kinematics: no part of the calibration is used.
 
 use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
 use poecal_arm::lie::Pose;
@@ -11,21 +11,21 @@ use crate::session::{Session, places, registered, true_pose, whitenings};
 
 /// Step of the differences, rad and m.
 const STEP: f64 = 1e-6;
-/// Share of the largest eigenvalue below which a direction is another way to write the same arm.
+/// Share of the largest eigenvalue below which a direction is another parameterisation of the same arm.
 const SAME: f64 = 1e-9;
 
-/// Motions of each axis, of what is held and of what stays, of the largest robot here.
+/// Motions of each axis, of the held object and of the fixed one, for the largest robot here.
 const UNKNOWNS: usize = 6 * (6 + 2);
 type Derivative = SMatrix<f64, 6, UNKNOWNS>;
 
-/// What the pictures of a session say at best of poses in the further configurations.
+/// Best information of a session's pictures about poses in the further configurations.
 pub(crate) struct Information {
     covariance: DMatrix<f64>,
     derivatives: Vec<Derivative>,
 }
 
 impl Information {
-    /// By the known noise of the corners, and an error that those of a picture have in common.
+    /// Information by the known noise of the corners, and a common error of those of a picture.
     pub(crate) fn from_session(session: &Session, common: CommonError) -> Self {
         let Session { made, data, others, .. } = session;
         let unknowns = 0..6 * (made.actual.joints.len() + 2);
@@ -52,7 +52,7 @@ impl Information {
         self.derivatives.iter().map(|by| by * &self.covariance * by.transpose()).collect()
     }
 
-    /// Root mean squares of shift (m) and turn (rad) that no unbiased estimate falls below.
+    /// Root mean squares of shift (m) and turn (rad): lower bound for any unbiased estimate.
     pub(crate) fn least(&self) -> [f64; 2] {
         let spreads = self.spreads();
         let mean = |first: usize| {
@@ -62,14 +62,14 @@ impl Information {
         [mean(0), mean(3)]
     }
 
-    /// The same with the device's frame registered in the further configurations.
+    /// The information with the device's frame registered in the further configurations.
     pub(crate) fn registered(&self, session: &Session) -> Self {
         let derivatives = registered(&places(session), &self.derivatives);
         Information { covariance: self.covariance.clone(), derivatives }
     }
 }
 
-/// How the pose of what is held, seen from what stays, moves with motions of each axis, of what is held and of what stays.
+/// Derivative of the pose of the held object relative to the fixed one, by motions of each axis, of the held object and of the fixed one.
 fn derivative(changed: &[[Photographed; 2]], readings: &[f64]) -> Derivative {
     let mut found = Derivative::zeros();
     for (unknown, sides) in changed.iter().enumerate() {
@@ -93,7 +93,7 @@ fn changed(made: &Photographed, unknown: usize, step: f64) -> Photographed {
     found
 }
 
-/// The robot with an axis moved about its own point, and the tip where it was.
+/// The robot with an axis moved about its own point, and the tip unchanged.
 fn with_moved_axis(robot: &Robot, joint: usize, motion: &Vector6<f64>) -> Robot {
     let mut found = robot.clone();
     let point = Pose::from_translation(robot.joints[joint].frame.translation);

@@ -1,4 +1,4 @@
-//! Sessions whose joints are held, with all that another program needs to find the same frames.
+//! Sessions with held joints, with all inputs by which another program finds the same frames.
 
 use poecal_calibrate::BlockChoice;
 use poecal_calibrate::CalibrationOptions;

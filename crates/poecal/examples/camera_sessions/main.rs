@@ -17,7 +17,7 @@ mod setups;
 use rayon::prelude::*;
 use serde_json::Value;
 
-/// What one seed shows.
+/// Results of one seed.
 type Task = fn(u64) -> Result<Vec<Value>, poecal_numerics::error::Error>;
 
 fn main() {

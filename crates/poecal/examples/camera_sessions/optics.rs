@@ -1,4 +1,4 @@
-//! Lenses, boards and markers that are not what they are said to be.
+//! Lenses, boards and markers that differ from their statement.
 
 use nalgebra::Vector6;
 use poecal_calibrate::BlockChoice;
@@ -17,7 +17,7 @@ use crate::session::{
 
 /// The stretch of a board along x.
 const STRETCH: f64 = 1.004;
-/// How far each marker is off along each direction, metres.
+/// Displacement of each marker along each direction, metres.
 const MOVED_M: f64 = 0.5e-3;
 
 pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
@@ -50,7 +50,7 @@ pub(crate) fn run(seed: u64) -> Result<Vec<Value>, Error> {
     }
     let cameras = session.data.pictures.cameras.clone();
     let board = session.data.pictures.boards[0].clone();
-    // What was printed is larger than what is said: the truth is the session's board.
+    // The print is larger than stated: the truth is the session's board.
     let said = with_points(&board, |point| point[0] /= STRETCH);
     let truth = |number: &PictureNumber| match number.name.as_str() {
         "board.board.scale_x" => STRETCH,
@@ -82,7 +82,7 @@ fn with_points(board: &Board, mut change: impl FnMut(&mut nalgebra::Vector3<f64>
     found
 }
 
-/// A calibration with these cameras and boards, of which some words are free.
+/// A calibration with these cameras and boards; some words are free.
 fn line(
     seed: u64,
     (name, free): (&str, &[&str]),

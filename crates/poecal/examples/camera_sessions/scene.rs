@@ -11,7 +11,7 @@ use poecal_numerics::error::{Error, ErrorKind};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
-/// Where a camera is.
+/// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
     Hand,
@@ -34,7 +34,7 @@ const TRIES: usize = 600;
 const DISTANCE_M: [f64; 2] = [0.4, 1.3];
 const TILT_RAD: f64 = 1.1;
 
-/// What a scene is drawn with.
+/// Random parts of a scene.
 struct Drawn {
     place: Place,
     generator: ChaCha8Rng,
@@ -44,20 +44,20 @@ struct Drawn {
     arm: Robot,
     nominal: Robot,
     actual: Robot,
-    /// What is held in the frame of the actual tip.
+    /// Pose of the held object in the frame of the actual tip.
     tip_from_held: Pose,
-    /// What stays in the base: board or camera; of a camera in a head at zero of its joints.
+    /// Pose of the fixed object in the base: board or camera; for a camera in a head at zero of its joints.
     base_from_other: Pose,
 }
 
 impl Scene {
-    /// The scene of a seed: 5, 6 or 7 joints, one of three places, 12 to 40 pictures.
+    /// The scene of a seed: 5, 6 or 7 joints, one of three positions of the camera, 12 to 40 pictures.
     pub(crate) fn random(seed: u64) -> Result<Self, Error> {
         let place = [Place::Hand, Place::Beside, Place::Head][(seed % 3) as usize];
         let joints = 5 + ((seed / 3) % 3) as usize;
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0x00ca_3e2a);
         let count = 12 + (29.0 * random::uniform(&mut generator)) as usize;
-        // A robot that cannot be moved so that the camera sees the board is another one.
+        // A robot that cannot be moved so that the camera sees the board is replaced by another one.
         (0..20)
             .find_map(|attempt| {
                 let arm = random_chain(joints, seed + 1_000_000 * attempt);
@@ -152,7 +152,7 @@ impl Drawn {
         } * self.tip_from_held.inverse();
         let (arm, readings) = self.arm.arm(&[]).ok()?;
         let mut q: Vec<f64> = readings.iter().map(|&at| near[at]).collect();
-        // An arm of five joints comes only near.
+        // An arm of five joints comes only near the pose.
         arm.nearest(&wanted, &mut q);
         let mut all = near.to_vec();
         readings.iter().zip(&q).for_each(|(&at, value)| all[at] = *value);
@@ -164,7 +164,7 @@ impl Drawn {
         Some((all, corners))
     }
 
-    /// What stays, or the camera in its head, in the base.
+    /// Pose of the fixed object, or of the camera in its head, in the base.
     fn other(&self, robot: &Robot, readings: &[f64]) -> Pose {
         match self.place {
             Place::Hand | Place::Beside => self.base_from_other,
@@ -201,7 +201,7 @@ impl Drawn {
     }
 }
 
-/// The arm with a head of two joints beside it, whose camera is named by its link alone, as the board in the hand is.
+/// The arm with a head of two joints beside it, whose camera is named by its link alone, like the board in the hand.
 fn with_head(arm: &Robot, base_from_camera: &Pose, generator: &mut ChaCha8Rng) -> Robot {
     let mut robot = Robot { tip: Some(arm.tip_body()), ..arm.clone() };
     let limits = Some(Limits { lower: -1.0, upper: 1.0 });

@@ -1,4 +1,4 @@
-//! Sessions with their truth, and what a calibration says of configurations that were not measured.
+//! Sessions with their truth, and predictions of a calibration for configurations that were not measured.
 
 use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 use poecal_arm::lie::{Pose, hat};
@@ -18,7 +18,7 @@ use poecal_results::predictions::{PredictionFrame, predicted};
 
 /// Pictures of a session.
 pub(crate) const COUNT: usize = 60;
-/// Further configurations by which it is judged.
+/// Further configurations that judge it.
 pub(crate) const FURTHER: usize = 200;
 /// Errors of a usual robot: turn (rad) and shift (m) of each axis.
 const ERRORS: (f64, f64) = (3e-3, 1e-3);
@@ -33,7 +33,7 @@ pub(crate) struct Session {
     pub(crate) others: Dataset,
 }
 
-/// An error of each configuration, of what is on the tip and about it.
+/// An error of each configuration, of the object on the tip and about it.
 pub(crate) fn common(millis: f64, in_hand: bool) -> CommonError {
     let about = if in_hand { Centre::Camera } else { Centre::Board };
     CommonError { shift_m: 1e-3 * millis, turn_rad: 1e-3 * millis, about, corners: 1.0 }
@@ -72,7 +72,7 @@ pub(crate) fn simulate_session(simulation: PictureSimulation) -> Result<Session,
     Ok(Session { simulation, made, data, others })
 }
 
-/// Some pictures as they are read by someone who has these cameras and boards.
+/// Some pictures as read by a user with these cameras and boards.
 pub(crate) fn rebuilt(
     data: &Dataset,
     rows: std::ops::Range<usize>,
@@ -102,12 +102,12 @@ pub(crate) fn hold_out_thirds(data: &mut Dataset) {
     }
 }
 
-/// The pose of what is held in the frame of what stays.
+/// The pose of the held object in the frame of the fixed one.
 pub(crate) fn true_pose(made: &Photographed, robot: &Robot, readings: &[f64]) -> Pose {
     made.base_from_other.inverse() * robot.forward_kinematics(readings) * made.tip_from_held
 }
 
-/// What a calibration says of configurations: poses of what the device sees in the device's frame, with their uncertainty.
+/// Predictions of a calibration for configurations: poses of the device's object in the device's frame, with their uncertainty.
 pub(crate) fn delivered(
     calibration: &Calibration,
     data: &Dataset,
@@ -129,7 +129,7 @@ pub(crate) fn deviations(session: &Session, poses: &[Pose]) -> Vec<Vector6<f64>>
     truth.zip(poses).map(|(truth, pose)| deviation(pose, &truth)).collect()
 }
 
-/// Deviations with the device's frame put where it makes the shifts smallest: what is left of the arm. Linear, since they are small.
+/// Deviations with the device's frame registered for the smallest shifts: the remaining errors of the arm. Linear, since they are small.
 pub(crate) fn registered<const N: usize>(
     places: &[Vector3<f64>],
     deviations: &[SMatrix<f64, 6, N>],
@@ -149,8 +149,8 @@ pub(crate) fn registered<const N: usize>(
     places.iter().zip(deviations).map(|(place, deviation)| deviation - by_frame(place) * motion).collect()
 }
 
-/// What is left of shifts with the device's frame, the tool and the size of all put where they are least: a board that is free is known to no
-/// better size than the robot, and its frame is where its points are on the whole.
+/// Remaining shifts with the device's frame, the tool and the common size fitted. The size of a free board is determined no better than that of the
+/// robot, and its frame is that of its points as a whole.
 pub(crate) fn shape(session: &Session, deviations: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
     let Session { made, others, .. } = session;
     let columns = |row: usize| {
@@ -178,7 +178,7 @@ pub(crate) fn shape(session: &Session, deviations: &[Vector6<f64>]) -> Vec<Vecto
     deviations.iter().enumerate().map(of).collect()
 }
 
-/// The places of the further true poses.
+/// Positions of the further true poses.
 pub(crate) fn places(session: &Session) -> Vec<Vector3<f64>> {
     let Session { made, others, .. } = session;
     let place = |row| true_pose(made, &made.actual, others.readings(row)).translation;
@@ -199,7 +199,7 @@ pub(crate) fn all_rows() -> CalibrationOptions {
     CalibrationOptions { held_out: Some(0.0), ..CalibrationOptions::default() }
 }
 
-/// A calibration, as the program makes it, with the data as they were fitted.
+/// A calibration, by the procedure of the program, with the data as they were fitted.
 pub(crate) fn calibrated(
     robot: &Robot,
     data: &Dataset,
@@ -220,7 +220,7 @@ pub(crate) fn judged(
     Ok((calibration, data, deviations(session, &poses)))
 }
 
-/// What whitens the rows of a session by the known noise of corners at the true poses, with an error in common.
+/// Whitening matrices of the rows of a session by the known noise of corners at the true poses, with a common error.
 pub(crate) fn whitenings(session: &Session, common: CommonError) -> Vec<Matrix6<f64>> {
     let Session { simulation, made, data, .. } = session;
     let of = |picture: &Picture| {

@@ -1,12 +1,12 @@
-//! What the library shows of itself: the names that it hands on from its parts, and few types, each with an example that runs.
+//! Public interface of the library: the names that it re-exports from its parts, and few types, each with an example that runs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Types that a reader of the documentation meets, at most.
+/// Most types that a reader of the documentation meets.
 const MOST: usize = 70;
 
-/// All that is public at the root. A name that comes or goes is a change for users: a line in CHANGELOG.md.
+/// All public names at the root. An added or removed name is a change for users: a line in CHANGELOG.md.
 const ROOT: &[(&str, &[&str])] = &[
     ("poecal_arm", &["AllBranches", "Arm", "Branches", "HeldBranches", "lie"]),
     (
@@ -50,7 +50,7 @@ const ROOT: &[(&str, &[&str])] = &[
     ("poecal_results::residuals", &["Residuals"]),
 ];
 
-/// The modules among them, whose own names are shown too.
+/// Modules among them, whose own names are shown too.
 const MODULES: [&str; 3] = ["poecal_arm::lie", "poecal_model::simulate", "poecal_numerics::solve"];
 
 fn crates() -> PathBuf {
@@ -64,7 +64,7 @@ fn place(module: &str) -> PathBuf {
     if folder.is_dir() { folder } else { folder.with_extension("rs") }
 }
 
-/// The names that a file hands on by `pub use`, but for hidden ones, with the module that each comes from.
+/// The names that a file re-exports by `pub use`, except hidden ones, with the module of each.
 fn handed_on(file: &Path) -> Vec<(String, String)> {
     let text = fs::read_to_string(file).unwrap();
     let mut found = Vec::new();
@@ -106,7 +106,7 @@ fn documentation(place: &Path, name: &str) -> Option<String> {
     Some(lines[first..=last].join("\n"))
 }
 
-/// A path as a module says it, with the crate that it is of.
+/// A path in a module's form, completed with its crate.
 fn whole(module: &str, from: &str) -> String {
     let own = module.split("::").next().unwrap_or_default();
     match from.split_once("::").unwrap_or((from, "")) {

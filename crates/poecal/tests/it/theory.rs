@@ -1,4 +1,4 @@
-//! docs/theory.md: identities that no code uses in just that form, and whether the equations that the code cites exist.
+//! docs/theory.md: identities that no code uses in just that form, and a check that the equations cited by the code exist.
 
 use nalgebra::{Matrix6, Vector3};
 use poecal_arm::lie::{Pose, Screw, Twist};
@@ -9,7 +9,7 @@ fn project_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// (4a): what the two coefficients of the inverse left Jacobian are.
+/// (4a): the two coefficients of the inverse left Jacobian.
 #[test]
 fn inverse_left_jacobian_has_the_stated_coefficients() {
     for angle in [0.3, 1.0, 3.0, 3.13, 5.5] {
@@ -53,7 +53,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The section in which each equation of theory.md stands: `("(22a)", "5")`.
+/// Section of each equation of theory.md: `("(22a)", "5")`.
 fn equations(theory: &str) -> Vec<(String, String)> {
     let mut section = String::new();
     let mut equations = Vec::new();
@@ -67,7 +67,7 @@ fn equations(theory: &str) -> Vec<(String, String)> {
     equations
 }
 
-/// What follows "theory.md §" in a line: the section, and the equations named after it.
+/// Citations after "theory.md §" in a line: the section, and the equations named after it.
 fn citations(line: &str) -> Vec<(String, Vec<String>)> {
     line.split("theory.md §")
         .skip(1)

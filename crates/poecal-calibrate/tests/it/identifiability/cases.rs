@@ -1,4 +1,4 @@
-//! Robots and motions that leave something open, and what is to be said of them.
+//! Robots and motions that leave directions undetermined, and the expected statements.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,10 +11,10 @@ use rand_core::SeedableRng;
 
 const DEG: f64 = PI / 180.0;
 
-/// What becomes of random readings.
+/// Transformation of random readings.
 pub(crate) type Motion = fn(&Robot, &mut [f64], &mut ChaCha8Rng);
 
-/// A robot, how it is measured, what becomes of random readings, how many there are, and what is to be said.
+/// A robot, its measurements, the transformation of random readings, their number, and the expected statement.
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) robot: fn() -> Robot,
@@ -24,18 +24,18 @@ pub(crate) struct Case {
     pub(crate) words: &'static str,
 }
 
-/// Joint 3 of the elbow stands still but for its encoder.
+/// Joint 3 of the elbow stays still except for encoder jitter.
 fn jitter(_: &Robot, q: &mut [f64], generator: &mut ChaCha8Rng) {
     q[2] = 0.5 + 3e-4 * (2.0 * random::uniform(generator) - 1.0);
 }
 
-/// The elbow's axis 6 stands vertical, and the tool turns about it.
+/// The elbow's axis 6 is vertical, and the tool turns about it.
 fn upright(_: &Robot, q: &mut [f64], _: &mut ChaCha8Rng) {
     q[3] = 0.0;
     q[4] = FRAC_PI_2 - q[1] + q[2];
 }
 
-/// The tip goes anywhere near, in one orientation: readings by Newton's method from a configuration.
+/// The tip moves anywhere near, in one orientation: readings by Newton's method from a configuration.
 fn one_orientation(robot: &Robot, q: &mut [f64], generator: &mut ChaCha8Rng) {
     let middle = [0.1, -0.3, 0.4, 0.5, 1.2, 0.3];
     let turn = robot.forward_kinematics(&middle).rotation;

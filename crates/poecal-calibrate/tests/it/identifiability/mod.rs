@@ -1,4 +1,5 @@
-//! What configurations leave open is said in words, and changes no prediction: constructed cases, with the sentences expected.
+//! Directions that the configurations leave undetermined are reported in words, and change no prediction: constructed cases, with the expected
+//! sentences.
 
 mod cases;
 
@@ -51,7 +52,7 @@ fn what_is_left_open_is_said_in_words() {
         let found = case.foreseen();
         let told = words(&found);
         println!("{}\n{told}\n", case.name);
-        // The directions told are those that are open, no more and no fewer.
+        // The reported directions are the undetermined ones, no more and no fewer.
         let directions: usize = found.unidentifiable.iter().map(|it| it.directions).sum();
         assert_eq!(directions, found.parameters - found.rank, "{}", case.name);
         assert_eq!(told, case.words, "{}", case.name);
@@ -59,7 +60,7 @@ fn what_is_left_open_is_said_in_words() {
     println!("{} cases", CASES.len());
 }
 
-/// Measurements of a case's robot, off by 1° and 2 mm a joint, by a device anywhere.
+/// Measurements of a case's robot, with errors of 1° and 2 mm in each joint, by a device anywhere.
 fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
     let nominal = (case.robot)();
     let mut generator = ChaCha8Rng::seed_from_u64(11);
@@ -83,7 +84,7 @@ fn measured(case: &Case, noise: f64) -> (Robot, Dataset) {
     (nominal, data)
 }
 
-/// Cases that a calibration takes.
+/// Cases that a calibration accepts.
 fn fitted_cases() -> impl ParallelIterator<Item = &'static Case> {
     CASES.par_iter().filter(|case| !case.words.contains("too few"))
 }
@@ -93,7 +94,7 @@ fn what_is_left_open_changes_no_prediction() {
     let worst: Vec<(f64, &str)> = fitted_cases()
         .map(|case| {
             let (nominal, data) = measured(case, 0.0);
-            // Without a belief, which data without noise do not need.
+            // Data without noise need no prior.
             let options = CalibrationOptions { tolerance: None, ..geometry() };
             let result = calibrate(&nominal, &data, &options).unwrap();
             let held_out_m = result.accuracy.held_out.unwrap().calibrated.position_mm().max * 1e-3;
@@ -106,8 +107,8 @@ fn what_is_left_open_changes_no_prediction() {
     assert!(worst.iter().all(|(error_m, _)| *error_m < EXACT_M));
 }
 
-/// What is seen at the nominal model is seen in a fit to noisy measurements as well, unless the real robot's own errors (1° and 2 mm
-/// here) undo it: a point beside its axis, an orientation that is not quite kept.
+/// Undetermined directions of the nominal model appear in a fit to noisy measurements as well, unless the real robot's own errors (1° and 2 mm here)
+/// determine them: a point beside its axis, an orientation that is not quite constant.
 #[test]
 fn a_calibration_says_the_same_as_what_was_foreseen() {
     let told: Vec<(&str, Identifiability, Identifiability)> = fitted_cases()
@@ -129,7 +130,7 @@ fn a_calibration_says_the_same_as_what_was_foreseen() {
             foreseen.parameters,
             words(found)
         );
-        // What is at the edge of being told may fall on either side, as the noise has it.
+        // A direction at the limit of being determined may fall on either side, depending on the noise.
         assert!(found.rank + 1 >= foreseen.rank);
         if found.rank == foreseen.rank {
             same += 1;
@@ -146,7 +147,7 @@ fn an_unknown_that_is_open_is_not_determined() {
     let found = case.foreseen();
     let determined = found.spectrum.determined();
     println!("{determined:?}");
-    // At zero a joint's axis is open and nothing else is.
+    // At zero a joint's axis is undetermined, and nothing else is.
     assert_eq!(determined.iter().filter(|&&known| !known).count(), 4);
     assert_eq!(
         found.structural.iter().map(|it| it.cause).collect::<Vec<_>>(),
@@ -199,7 +200,7 @@ fn a_target_seen_once_is_named() {
     assert_eq!(told, format!("33 of 33\n{once}"));
 }
 
-/// Any robot, any joints that stand still or jitter: these are named, and nothing else.
+/// For any robot with any joints that stand still or jitter, these are named, and nothing else.
 #[test]
 fn joints_that_stand_still_are_named_and_no_others() {
     let mut misses = Vec::new();

@@ -1,4 +1,4 @@
-//! `poecal completions`: what a shell needs to complete the program's words.
+//! `poecal completions`: scripts by which a shell completes the program's words.
 
 use poecal_numerics::error::Result;
 

@@ -8,7 +8,7 @@ use crate::args::Man;
 use crate::console::Console;
 use crate::help::command_line;
 
-/// What the pages belong to.
+/// Collection to which the pages belong.
 const SOURCE: &str = concat!("poecal ", env!("CARGO_PKG_VERSION"));
 
 pub(crate) fn man(arguments: &Man, console: &Console) -> Result<u8> {

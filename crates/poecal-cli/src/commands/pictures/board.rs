@@ -1,4 +1,4 @@
-//! `poecal detect --print`: a board on paper, to scale, and what a ruler says of the print.
+//! `poecal detect --print`: a board on paper, to scale, and its correction by ruler measurements.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::args::Detect;
 use crate::console::Console;
 use crate::style::{labelled, shown};
 
-/// What a drawing is written as.
+/// File form of a drawing.
 enum Form {
     Svg,
     Pdf,
@@ -32,11 +32,11 @@ pub(super) fn board(arguments: &Detect, spec: &Spec, console: &Console) -> Resul
     Ok(code)
 }
 
-/// Writes the page, and says what is on it.
+/// Writes the page, and states its contents.
 fn drawn(arguments: &Detect, (spec, out): (&Spec, &Path), console: &Console) -> Result<u8> {
     let form = form(out)?;
     if let Some(measured) = &arguments.measured {
-        // What cannot be corrected is refused before anything is written.
+        // Measurements that cannot be corrected are refused before anything is written.
         measured.correct(spec).map_err(|error| refused("--measured", &error))?;
     }
     let sheet = Sheet::new(spec, &arguments.paper).map_err(|error| refused("--print", &error))?;
@@ -60,7 +60,7 @@ fn drawn(arguments: &Detect, (spec, out): (&Spec, &Path), console: &Console) -> 
     Ok(console.say_of(&words, out))
 }
 
-/// How a board may be turned that nothing tells from itself, and what to take instead.
+/// Rotation under which a board is identical to itself, and an unambiguous alternative.
 fn looks_alike(spec: &Spec) -> Option<(&'static str, &'static str)> {
     const ODD: &str = "an even number of squares one way and an odd one the other tell both apart";
     const DOTS: &str =
@@ -86,7 +86,7 @@ fn form(out: &Path) -> Result<Form> {
     }
 }
 
-/// Prints the board that was measured, as data: it is to be pasted.
+/// Prints the measured board as data, for pasting.
 fn corrected(spec: &Spec, measured: &Measured, console: &Console) -> Result<()> {
     let found = measured.correct(spec).map_err(|error| refused("--measured", &error))?;
     let [x, y] = found.factors.map(|it| (it - 1.0) * 100.0);

@@ -22,12 +22,12 @@ use crate::console::Console;
 
 /// Endings of the names of pictures in folders.
 const ENDINGS: [&str; 3] = ["png", "jpg", "jpeg"];
-/// Pictures in which another board is looked for.
+/// Pictures in which another board is searched.
 const TRIED: usize = 3;
 /// Pictures that a sentence names at most.
 const NAMED: usize = 6;
 
-/// A picture with what was found in it.
+/// A picture with its detected corners.
 struct Seen {
     /// Its name in the table: that of its file.
     name: String,
@@ -35,7 +35,7 @@ struct Seen {
     size_px: [usize; 2],
     turned: Turned,
     found: std::result::Result<Found, Rejected>,
-    /// Its levels where they are needed again.
+    /// Its levels if they are needed again.
     gray: Option<Gray>,
 }
 
@@ -154,7 +154,7 @@ fn names(paths: &[PathBuf]) -> Result<Vec<String>> {
     Ok(paths.iter().map(|path| name_of(path)).collect())
 }
 
-/// Places of the previews, none if there shall be none.
+/// Places of the previews, empty without previews.
 fn previews(
     arguments: &Detect,
     names: &[String],
@@ -218,7 +218,7 @@ fn first_few(names: &[String]) -> String {
     text
 }
 
-/// Says which pictures were turned, and which are left out and why.
+/// Reports the pictures that were turned, and those that are left out with the reason.
 fn warn(all: &[Seen], console: &Console) {
     let turned: Vec<String> = all
         .iter()
@@ -248,7 +248,7 @@ fn plural(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }
 
-/// The board in no picture: why, and which other one is.
+/// Error for a board in no picture: the reason, and another board that was found.
 fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     let tried: Vec<&Gray> = all.iter().filter_map(|it| it.gray.as_ref()).take(TRIED).collect();
     let why: Vec<String> =
@@ -271,7 +271,7 @@ fn nothing(detector: &Detector, all: &[Seen]) -> Error {
     Error::new(ErrorKind::Option, message)
 }
 
-/// What is tried in place of a board.
+/// Alternatives that are tried in place of a board.
 fn tried_too(spec: &Spec) -> &'static str {
     if matches!(spec, Spec::Circles(_)) {
         "one with columns and rows exchanged, of the other kind, or with one dot more or fewer each way"
@@ -284,7 +284,7 @@ fn tried_too(spec: &Spec) -> &'static str {
     }
 }
 
-/// What the points of a board are.
+/// Name of the points of a board.
 fn points(spec: &Spec) -> &'static str {
     if matches!(spec, Spec::Circles(_)) { "dots" } else { "corners" }
 }
@@ -316,7 +316,7 @@ fn table(spec: &Spec, all: &[Seen]) -> String {
     text
 }
 
-/// What was found, and what comes next.
+/// Prints a summary and the next step.
 fn conclude(spec: &Spec, all: &[Seen], corners: usize, (arguments, console): (&Detect, &Console)) {
     let found: Vec<&Found> = all.iter().filter_map(|it| it.found.as_ref().ok()).collect();
     let mut sigmas: Vec<f64> = found.iter().flat_map(|it| &it.corners).map(|it| it.sigma_px).collect();

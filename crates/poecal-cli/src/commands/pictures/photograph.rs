@@ -59,7 +59,7 @@ pub(crate) fn photograph(
         })
         .collect::<std::result::Result<_, _>>()
         .map_err(|error| ErrorKind::Option.error(error.to_string()))?;
-    // Of the board as calibrate has it.
+    // Pose of the board's axes as calibrate defines them.
     let of_board = if simulation.in_hand { &mut made.base_from_other } else { &mut made.tip_from_held };
     *of_board = *of_board * scene_from_board;
     let session = PhotographedSession {
@@ -99,7 +99,7 @@ fn simulation(arguments: &Simulate, camera: CameraPlace, body: Board) -> Picture
     PictureSimulation { common: noise, ..usual.before(body, lens) }
 }
 
-/// Pose of the axes in which a board has its points in those in which it is drawn, whose y is downwards from the first corner: Kalibr's are upwards.
+/// Pose of the axes in which a board has its points, in the axes of its drawing, whose y is downwards from the first corner: Kalibr's are upwards.
 fn scene_from_board(layout: &Layout) -> Pose {
     let drawn = |id: usize| {
         let at = layout.corner(id);

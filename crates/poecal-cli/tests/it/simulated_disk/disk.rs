@@ -1,8 +1,8 @@
-//! A disk in memory that fails as it is told, and forgets what was not synced when the power goes.
+//! A disk in memory with chosen failures, which forgets unsynced data at a power failure.
 //!
-//! Names are kept as a journaling file system keeps them: in the order in which they changed. A folder that is synced has all its
-//! changes so far kept, with all that came before them; of later ones as many as chance wills are lost, the last ones first. The
-//! bytes of a file that was not synced are anything afterwards: all there, none, some, or zeros.
+//! Names are kept as a journaling file system keeps them: in the order in which they changed. A folder that is synced has all its changes so far
+//! kept, with all that came before them. Of later ones a random number is lost, the last ones first. The bytes of a file that was not synced are
+//! anything afterwards: all there, none, some, or zeros.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, ErrorKind};
@@ -11,10 +11,10 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 /// The folder that relative paths begin in.
 const HERE: &str = "/cell";
-/// What a run gets from then on when the machine has stopped.
+/// Error of every operation after the machine has stopped.
 const STOPPED: &str = "the machine has stopped";
 
-/// Small numbers by chance (splitmix64).
+/// Small pseudorandom numbers (splitmix64).
 #[derive(Clone, Debug)]
 pub(crate) struct Chance(pub(crate) u64);
 
@@ -32,16 +32,16 @@ impl Chance {
     }
 }
 
-/// What goes wrong.
+/// Faults of the disk.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Faults {
-    /// Before this operation, the machine stops.
+    /// The machine stops before this operation.
     pub(crate) stop_before: Option<usize>,
     /// These operations fail.
     pub(crate) fail: BTreeSet<usize>,
     /// Bytes that can be written in all.
     pub(crate) room: Option<usize>,
-    /// No call writes all that it is given.
+    /// No call writes all of its bytes.
     pub(crate) short_writes: bool,
     /// Folders cannot be exchanged.
     pub(crate) no_exchange: bool,
@@ -49,7 +49,7 @@ pub(crate) struct Faults {
     pub(crate) no_links: bool,
     /// The folder `/cell/out` is a disk of its own.
     pub(crate) mounted: bool,
-    /// What else is left to chance.
+    /// Random numbers for all other choices.
     pub(crate) chance: Option<Chance>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) type Tree = BTreeMap<PathBuf, Node>;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Content {
     pub(crate) bytes: Vec<u8>,
-    /// What is on the disk for certain.
+    /// Content that is on the disk for certain.
     pub(crate) synced: Option<Vec<u8>>,
 }
 
@@ -79,7 +79,7 @@ pub(crate) struct State {
     pub(crate) stopped: bool,
     pub(crate) written: usize,
     pub(crate) failures: usize,
-    /// How often each file was opened to be read.
+    /// Number of times that each file was opened for reading.
     pub(crate) opened: BTreeMap<PathBuf, usize>,
 }
 
@@ -211,7 +211,7 @@ impl SimulatedDisk {
         state.tree.insert(path, node);
     }
 
-    /// From now on this goes wrong. Operations are counted from here.
+    /// Sets the faults from now on. Operations are counted from here.
     pub(crate) fn set_faults(&self, faults: Faults) {
         let mut state = self.state();
         state.faults = faults;
@@ -232,7 +232,7 @@ impl SimulatedDisk {
         self.state().stopped
     }
 
-    /// Starts the machine again: locks are gone, nothing fails, and if the power had gone, so is what was not synced.
+    /// Starts the machine again: locks are gone, nothing fails, and after a power failure unsynced data are gone.
     pub(crate) fn restart(&self, power_was_lost: bool, chance: &mut Chance) {
         let mut state = self.state();
         state.locks.clear();

@@ -1,4 +1,4 @@
-//! The ledger of a line of robots on a disk that runs full, and where the machine stops.
+//! The ledger of a line of robots on a disk that becomes full, and on a machine that stops.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ fn row(robot: usize) -> LedgerRow {
     }
 }
 
-/// Appends the rows that the ledger does not have; how many were, and the error that ended it.
+/// Appends the rows that the ledger does not have; returns their number, and the error that ended it.
 fn work_off(disk: &SimulatedDisk) -> (usize, Option<String>) {
     on(Arc::new(disk.clone()), || {
         let mut ledger = match Ledger::open(Path::new("fleet.jsonl")) {
@@ -44,8 +44,8 @@ fn serials(disk: &SimulatedDisk) -> Vec<String> {
     on(Arc::new(disk.clone()), read).into_iter().map(|row| row.serial).collect()
 }
 
-/// With room for any number of bytes, and stopped before any operation: a row that was appended is there, half a row is none, and the next run
-/// adds those that are missing.
+/// With room for any number of bytes, and stopped before any operation: an appended row is there, half a row is none, and the next run adds those
+/// that are missing.
 #[test]
 fn a_ledger_on_a_full_disk_is_completed_by_the_next_run() {
     let whole = SimulatedDisk::new();

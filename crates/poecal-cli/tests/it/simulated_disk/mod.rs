@@ -1,7 +1,7 @@
-//! Whole commands on a disk that writes short, runs full, fails and stops at any moment, and forgets what was not synced: whatever
-//! happens, a place holds what it held before, or all that is new, or the next run completes it. And it never loses a file of others.
+//! Whole commands on a disk that writes short, becomes full, fails and stops at any moment, and forgets unsynced data. In any case, a place holds its
+//! earlier content, or all that is new, or the next run completes it. It never loses a file of others.
 //!
-//! `POECAL_TRIALS` says how many trials, as everywhere.
+//! `POECAL_TRIALS` sets the number of trials, as everywhere.
 
 mod disk;
 mod ledger;
@@ -18,7 +18,7 @@ use poecal_cli::{Said, run_captured};
 use poecal_storage::disk::on;
 use poecal_testing::trials::trials;
 
-/// An arm of two joints: thousands of calibrations run, and what a disk does asks for no more.
+/// An arm of two joints: thousands of calibrations run, and a test of the disk needs no larger one.
 const ROBOT: &str = r#"<robot name="two">
 <link name="base"/><link name="upper"/><link name="fore"/><link name="tip"/>
 <joint name="joint1" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.3"/><axis xyz="0 0 1"/><limit lower="-2" upper="2"/></joint>
@@ -28,7 +28,7 @@ const ROBOT: &str = r#"<robot name="two">
 "#;
 /// Rows that are measured, enough for a good verdict.
 const ROWS: usize = 14;
-/// Marks of what a run has not put in place.
+/// Marks of files that a run has not put in place.
 const UNFINISHED: &str = "poecal-unfinished";
 
 type Listing = BTreeMap<PathBuf, Option<Vec<u8>>>;
@@ -40,7 +40,7 @@ struct Case {
     /// Each is old as a whole or new as a whole.
     places: &'static [&'static str],
     start: SimulatedDisk,
-    /// What the places hold before and after.
+    /// Contents of the places before and after.
     old: Vec<Listing>,
     new: Vec<Listing>,
     operations: usize,
@@ -59,7 +59,7 @@ fn run(disk: &SimulatedDisk, command: &str) -> Said {
     on(Arc::new(disk.clone()), || run_captured(words))
 }
 
-/// A place without what a run has not put in place.
+/// A place without the files that a run has not put in place.
 fn place(disk: &SimulatedDisk, path: &str) -> Listing {
     let mut listing = disk.listing(path);
     listing.retain(|path, _| !path.to_string_lossy().contains(UNFINISHED));
@@ -140,7 +140,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// What goes wrong in a trial.
+/// Faults of a trial.
 fn faults(case: &Case, chance: &mut Chance) -> Faults {
     let mut faults = Faults {
         short_writes: chance.one_in(3),
@@ -149,7 +149,7 @@ fn faults(case: &Case, chance: &mut Chance) -> Faults {
         mounted: chance.one_in(5) && !case.start.listing("out").is_empty(),
         ..Faults::default()
     };
-    // Other ways, and short writes, take more operations than the usual one.
+    // Other paths, and short writes, take more operations than the default one.
     let operations = case.operations + 20;
     match chance.below(4) {
         0 => faults.stop_before = Some(chance.below(operations)),
@@ -166,7 +166,7 @@ fn faults(case: &Case, chance: &mut Chance) -> Faults {
     faults
 }
 
-/// Whether each place is old, or each new; or a mixture.
+/// State of the places: each old, or each new, or a mixture.
 fn state(case: &Case, disk: &SimulatedDisk) -> &'static str {
     let is = |wanted: &[Listing]| {
         case.places.iter().zip(wanted).map(|(path, wanted)| place(disk, path) == *wanted).collect::<Vec<_>>()
@@ -184,7 +184,7 @@ fn state(case: &Case, disk: &SimulatedDisk) -> &'static str {
     }
 }
 
-/// One trial; gives what became of it.
+/// One trial; returns its outcome.
 fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     let disk = case.start.copy();
     disk.set_faults(faults.clone());
@@ -195,7 +195,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     if !stopped {
         match (said.code, state(case, &disk)) {
             (0, "new") | (2, "old") => {}
-            // More than one thing went wrong: what could not be put back is said, and settled by the next run.
+            // With more than one fault: files that could not be put back are reported, and settled by the next run.
             (2, _) if failures > 1 => {
                 let is_said =
                     ["settles it", "could not be taken back"].iter().any(|words| said.err.contains(words));
@@ -205,7 +205,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
         }
     }
     disk.restart(stopped && chance.one_in(2), chance);
-    // Without --force the command is refused where something is, which settles all the same.
+    // Without --force the command is refused if something exists, which settles remains nevertheless.
     let again = case.command.replace(" --force", "");
     let _ = run(&disk, &again);
     let settled = state(case, &disk);
@@ -218,7 +218,7 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
         again
     };
     let last = run(&disk, &forced);
-    // What is made where nothing was has been made by the run before.
+    // A place that was empty has been filled by the run before.
     assert!(last.code == 0 || !case.command.contains("--force"), "{seen}{last:?}");
     assert_eq!(state(case, &disk), "new", "{seen}{last:?}");
     let left: Vec<PathBuf> =
@@ -231,11 +231,10 @@ fn trial(case: &Case, faults: &Faults, chance: &mut Chance) -> &'static str {
     }
 }
 
-/// Trials of a week: `./test` makes a sixth.
+/// Trials of a week: `./test` runs a sixth.
 const WEEKLY: usize = 4000;
 
-/// What is done for each number up to `count`, on two threads. Not by rayon, which would begin one trial while another waits, on
-/// that one's disk.
+/// Work for each number up to `count`, on two threads. Not by rayon, which would begin one trial while another waits, on that one's disk.
 fn on_two_threads<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let some = || {
@@ -288,7 +287,7 @@ fn a_stop_before_every_single_operation() {
     assert!(stops > 500 / apart);
 }
 
-/// However many questions a command has about an input: what it is, what it is joined with, whether its header is shifted.
+/// Each input is opened once, for any number of questions about it: its kind, its partner in a join, a shifted header.
 #[test]
 fn each_input_is_opened_once() {
     let inputs: [(&str, &[u8]); 9] = [

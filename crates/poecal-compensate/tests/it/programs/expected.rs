@@ -1,7 +1,7 @@
-//! Programs in files, each beside a file that says what becomes of its targets.
+//! Programs in files, each beside a file with the expected outcome of its targets.
 //!
-//! A line of that file is a target that is corrected, with the configuration that it means (degrees), its tool and its frame
-//! (millimetres, quaternion with the real part first), or one that is left as it is, with the reason:
+//! A line of that file is a corrected target, with its intended configuration (degrees), its tool and its frame (millimetres, quaternion with the
+//! real part first), or an unchanged one, with the reason:
 //!
 //! ```text
 //! pose | LINE | NAME | JOINTS | TOOL | FRAME
@@ -9,7 +9,7 @@
 //! listed | LINE | NAME | REASON
 //! ```
 //!
-//! What is written is read by the readers of these tests alone, and its configuration is found from the nominal robot.
+//! The written program is read by the readers of these tests alone, and its configuration is found from the nominal robot.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -22,17 +22,17 @@ use poecal_model::robot::{Joint, JointTerm, Limits, Robot, Term, TermKind};
 /// Numbers of a target that the test has read: their bytes and values.
 pub(super) type Numbers = Vec<(Range<usize>, f64)>;
 
-/// How a language's targets are read.
+/// Reader of a language's targets.
 pub(super) struct Reader {
-    /// Numbers of the target with this name that begins on a line, the n-th of that line, of so many numbers.
+    /// Numbers of the target with this name that begins on a line, the n-th of that line.
     pub(super) read: fn(text: &[u8], line: usize, nth: usize, is_joints: bool) -> Numbers,
     /// The pose of its numbers.
     pub(super) pose: fn(&[f64]) -> Pose,
-    /// Whether the words of its configuration are those of a configuration (degrees).
+    /// True if the words of its configuration are those of a configuration (degrees).
     pub(super) says: fn(numbers: &[f64], q: &[f64]) -> bool,
 }
 
-/// What is expected of a target.
+/// Expected outcome of a target.
 enum Row {
     Pose { q: Vec<f64>, tool: Pose, frame: Pose },
     Joints { q: Vec<f64> },
@@ -59,7 +59,7 @@ pub(super) fn robot(
     Robot::new(name, joints.collect(), home).unwrap()
 }
 
-/// The same as it is: axes off by tenths of a millimetre and some 0.5 mrad, encoders by up to 3 mrad, gears by waves.
+/// The actual robot: axes off by tenths of a millimetre and some 0.5 mrad, encoders by up to 3 mrad, gears by waves.
 pub(super) fn actual(nominal: &Robot) -> Robot {
     let mut out = nominal.clone();
     for (index, joint) in out.joints.iter_mut().enumerate() {
@@ -109,7 +109,7 @@ fn rows(text: &str) -> Vec<(usize, String, Row)> {
     text.lines().map(row).collect()
 }
 
-/// Numbers in a text wherever they stand, words with digits left out.
+/// Numbers anywhere in a text, except words with digits.
 fn all_numbers(text: &[u8]) -> Vec<Range<usize>> {
     let is_digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
     let is_word =
@@ -158,7 +158,7 @@ fn between(text: &[u8], cuts: &[Range<usize>]) -> Vec<Vec<u8>> {
     out
 }
 
-/// The files of a folder with an end of their names, in order.
+/// The files of a folder with these extensions, in order.
 pub(super) fn files(folder: &str, ends: &[&str]) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/programs").join(folder);
     let mut out: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|it| it.unwrap().path()).collect();
@@ -167,7 +167,7 @@ pub(super) fn files(folder: &str, ends: &[&str]) -> Vec<PathBuf> {
     out
 }
 
-/// Compensates a program and compares all of it with what is expected; largest remainders (m, rad), and targets that were corrected.
+/// Compensates a program and compares all of it with the expectation; returns the largest remainders (m, rad), and the corrected targets.
 pub(super) fn check(
     path: &Path,
     nominal: &Robot,
@@ -229,7 +229,7 @@ pub(super) fn check(
                 let commanded =
                     inverse.nearest(&told, &q, false).unwrap_or_else(|| panic!("{name} {target}"));
                 let degrees: Vec<f64> = commanded.iter().map(|it| it.to_degrees()).collect();
-                // Where the program's words are not followed, they stay as they are.
+                // Targets whose words are not followed are unchanged.
                 let stated: Vec<f64> = q.iter().map(|it| it.to_degrees()).collect();
                 assert!(
                     !(reader.says)(&before, &stated) || (reader.says)(&after, &degrees),
@@ -254,7 +254,7 @@ pub(super) fn check(
         metres = metres.max(left.0);
         radians = radians.max(left.1);
     }
-    // Beside the numbers of corrected targets, nothing is different.
+    // Beside the numbers of corrected targets, nothing differs.
     let (old, new) = (all_numbers(&text), all_numbers(&out));
     assert_eq!(between(&text, &old), between(&out, &new), "{name}: other bytes");
     for (old, new) in old.iter().zip(&new) {

@@ -7,7 +7,7 @@ use poecal_model::robot::Robot;
 
 use super::expected::{Numbers, Reader, check, files, robot};
 
-/// An arm as FANUC builds them: its base is where the second axis is high, its third and fifth joints turn up.
+/// An arm of FANUC's kind: its base is at the height of the second axis, its third and fifth joints turn up.
 fn nominal() -> Robot {
     let axes = [
         ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),

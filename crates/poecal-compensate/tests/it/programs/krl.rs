@@ -95,7 +95,7 @@ const ABSENT: &str = "its values are in another file: correct the one that state
 const PLACE: &str =
     "its tool or base is not known: state them by --tool-data NUMBER= and --work-object NUMBER=";
 
-/// Twenty programs; what each has is its name.
+/// Twenty programs; each is named by its content.
 const CASES: [Case; 20] = [
     Case {
         name: "axes alone, with comments, folds and CRLF",

@@ -9,7 +9,7 @@ use poecal_model::robot::Robot;
 
 use super::expected::{Numbers, Reader, actual, check, files, pose_of, robot};
 
-/// An arm as ABB builds them.
+/// An arm of ABB's kind.
 fn nominal() -> Robot {
     let axes = [
         ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
@@ -82,7 +82,7 @@ fn programs_in_rapid_are_corrected_in_place() {
     assert!(metres < 1e-8 && radians < 4e-9);
 }
 
-/// A module of targets alone: the user says which tool and work object its moves have.
+/// A module of targets alone: the user states the tool and work object of its moves.
 #[test]
 fn targets_without_moves_have_what_the_user_states() {
     let nominal = nominal();

@@ -1,41 +1,41 @@
-//! Programs with slots for targets. The test fills the slots from configurations, so that it knows what they mean, and reads them again
-//! between the bytes around, which must be the same.
+//! Programs with slots for targets. The test fills the slots from configurations, so that it knows their meaning, and reads them again between the
+//! surrounding bytes, which must be the same.
 //!
-//! A slot is `@J{q}` (joints), `@P{q}` or `@P{q|tool|frame}` (a pose, by the names of the case's poses), with the configuration in degrees.
-//! `@j` and `@p` are such that stay as they are. Letters behind are the language's own.
+//! A slot is `@J{q}` (joints), `@P{q}` or `@P{q|tool|frame}` (a pose, by the names of the case's poses), with the configuration in degrees. `@j` and
+//! `@p` mark slots that are unchanged. Letters behind are specific to the language.
 
 use nalgebra::Vector3;
 use poecal_arm::lie::{Pose, Screw, Twist, rotation};
 use poecal_compensate::{Inverse, Language, ProgramOptions, compensate_program};
 use poecal_model::robot::{Joint, JointTerm, Limits, Robot, Term, TermKind};
 
-/// A program, and what is expected of it.
+/// A program, and its expected outcome.
 pub(super) struct Case {
     pub(super) name: &'static str,
     pub(super) text: &'static str,
     /// Options as words: `tool 1=0,0,…`, `frame …`, `base …`, `flange …`.
     pub(super) options: &'static [&'static str],
-    /// Lines, names and reasons of what stays.
+    /// Lines, names and reasons of unchanged targets.
     pub(super) listed: &'static [(usize, &'static str, &'static str)],
 }
 
-/// How the test writes and reads a language.
+/// Writer and reader of a language in the test.
 pub(super) struct Form {
     /// Text of joints, of a configuration in radians.
     pub(super) joints: fn(&[f64]) -> String,
-    /// Text of a pose, of the nominal robot's configuration (rad), as the letter of the slot says.
+    /// Text of a pose, of the nominal robot's configuration (rad), in the form of the slot's letter.
     pub(super) pose: fn(char, &Pose, &[f64]) -> String,
     /// The configuration (rad) of the numbers in a text of joints.
     pub(super) to_joints: fn(&[f64]) -> Vec<f64>,
     /// The pose of the numbers in a text.
     pub(super) to_pose: fn(&[f64]) -> Pose,
-    /// Checks what else the numbers say of the configuration that the controller finds for them.
+    /// Checks the words in the numbers about the configuration that the controller finds for them.
     pub(super) words: fn(&[f64], &[f64]),
     /// A tool, a frame, the controller's base or its flange by name.
     pub(super) named: fn(&str) -> Pose,
 }
 
-/// What a slot is.
+/// Content of a slot.
 struct Slot {
     letter: char,
     q: Vec<f64>,
@@ -87,7 +87,7 @@ fn latin(text: &str) -> Vec<u8> {
     text.chars().map(|it| u8::try_from(u32::from(it)).unwrap()).collect()
 }
 
-/// The texts that stand in the slots of a written program, between the same pieces.
+/// Texts in the slots of a written program, between the same pieces.
 fn between(written: &[u8], pieces: &[String]) -> Vec<String> {
     let first = latin(&pieces[0]);
     assert!(written.starts_with(&first), "the beginning has changed");
@@ -119,13 +119,13 @@ fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
     ((one.translation - other.translation).norm(), turn.norm())
 }
 
-/// Metres and radians that are left where lengths are written to 1e-9 m and angles to 1e-7 degrees or 1e-9 rad: six numbers of half of that,
-/// and arms of a metre.
+/// Remaining metres and radians if lengths are written to 1e-9 m and angles to 1e-7 degrees or 1e-9 rad: six numbers with half of that, and arms of a
+/// metre.
 const ROUNDING: f64 = 2e-8;
-/// A correction that is none of rounding: metres or radians.
+/// Least correction that is not rounding: metres or radians.
 const LEAST_MOVED: f64 = 1e-4;
 
-/// Compensates a case and checks every slot; the largest distance and angle that are left, and the number of corrected slots.
+/// Compensates a case and checks every slot; returns the largest remaining distance and angle, and the number of corrected slots.
 pub(super) fn check(
     case: &Case,
     options: &ProgramOptions,
@@ -161,7 +161,7 @@ pub(super) fn check(
         } else {
             let place = |it: &[f64]| slot.frame * (form.to_pose)(it) * slot.tool.inverse();
             let told = place(&commanded);
-            // The controller believes the nominal robot.
+            // The controller computes with the nominal robot.
             let q = inverse.nearest(&told, &slot.q, true).unwrap();
             (form.words)(&commanded, &q);
             (place(&meant), q)
@@ -187,7 +187,7 @@ pub(super) fn robot(axes: [([f64; 3], [f64; 3]); 6], limits: [(f64, f64); 6], ho
     Robot::new("arm", (0..6).map(joint).collect(), home).unwrap()
 }
 
-/// The robot as it is: axes some tenths of a millimetre and of a milliradian off, offsets, and a gear that is out of round.
+/// The actual robot: axes some tenths of a millimetre and of a milliradian off, offsets, and an eccentric gear.
 pub(super) fn actual(nominal: &Robot) -> Robot {
     let mut out = nominal.clone();
     for (at, joint) in out.joints.iter_mut().enumerate() {

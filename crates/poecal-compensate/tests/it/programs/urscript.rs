@@ -7,7 +7,7 @@ use poecal_model::robot::Robot;
 
 use super::slots::{Case, Form, actual, check, options, robot};
 
-/// The geometry of a UR5, with its joints at zero as its maker has them: lying along -x.
+/// The geometry of a UR5, with its joints at zero as its maker defines them: lying along -x.
 fn nominal() -> Robot {
     let (z, y, d1, a2, a3, d4, d5, d6) =
         ([0.0, 0.0, 1.0], [0.0, -1.0, 0.0], 0.0892, 0.425, 0.392, 0.1092, 0.0947, 0.0823);
@@ -36,7 +36,7 @@ fn named(name: &str) -> Pose {
         "ff" => named("f") * vector_pose(&[0.1, 0.0, 0.0, 0.3, 0.0, 0.0]),
         "base" => vector_pose(&[0.0, 0.0, 0.0, 0.0, 0.0, std::f64::consts::PI]),
         "flange" => vector_pose(&[0.0, 0.0, -0.05, 0.0, 0.0, 0.5]),
-        // Frame and tool of the case in which the model's base and tip are others than the controller's.
+        // Frame and tool of the case in which the model's base and tip differ from the controller's.
         "tf" => named("flange") * named("t"),
         "bf" => named("base"),
         _ => Pose::identity(),
@@ -63,7 +63,7 @@ const FORM: Form = Form {
 const COMPUTED: &str = "it is computed while the program runs";
 const SEVERAL: &str = "it is assigned several times";
 
-/// Twenty programs; what each has is its name.
+/// Twenty programs; each is named by its content.
 const CASES: [Case; 20] = [
     Case {
         name: "joints alone, with other numbers around",
@@ -279,7 +279,7 @@ fn degrees_signs_and_spaces_are_those_of_the_program() {
     assert!(left < 2e-8, "{left}");
 }
 
-/// Configurations in which a way of 0.3 m is followed at a row of programs: as long as they are, in time.
+/// Configurations in which a path of 0.3 m is followed in a series of programs: the time is proportional to their length.
 #[test]
 fn a_long_program_takes_time_by_its_length() {
     let nominal = nominal();
@@ -299,6 +299,6 @@ fn a_long_program_takes_time_by_its_length() {
     };
     let (short, long) = (time(2_000), time(40_000));
     println!("{:.1} µs a target of 2,000, {:.1} of 40,000", short * 1e6, long * 1e6);
-    // Twenty times as many: what grows by the square would take twenty times as long each.
+    // Twenty times as many: quadratic growth would take twenty times as long each.
     assert!(long < 8.0 * short, "{short} {long}");
 }

@@ -1,58 +1,58 @@
-//! Whether pairs are evidently right, wrong, or no better than others.
+//! Comparison of pairs with other orders: evidently right, wrong, or no better.
 
 use super::{EVIDENT, FEWEST_PAIRS, Pair, Unpaired};
 
 /// Rows by which one file may begin later.
 const SHIFTS: usize = 3;
-/// Orders by chance with which pairs are compared.
+/// Number of random orders with which pairs are compared.
 const BY_CHANCE: usize = 3;
 
 /// Another order of joint readings and measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// The measurements begin so many rows later than the joint readings.
+    /// The measurements begin this many rows later than the joint readings.
     MeasuredLater(usize),
-    /// The joint readings begin so many rows later than the measurements.
+    /// The joint readings begin this many rows later than the measurements.
     JointsLater(usize),
     /// One of them is in reverse order.
     Reversed,
 }
 
-/// How pairs agree with the nominal robot; errors are medians, metres.
+/// Agreement of pairs with the nominal robot; errors are medians, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Agreement {
-    /// Evidently, and no other order does.
+    /// The pairs agree evidently, and no other order does.
     Right {
-        /// Their error.
+        /// Error of the pairs.
         missed_m: f64,
     },
     /// Another order evidently agrees better.
     Other {
-        /// Their error.
+        /// Error of the pairs.
         missed_m: f64,
-        /// The order.
+        /// The other order.
         order: Order,
-        /// Its error.
+        /// Error of the other order.
         other_m: f64,
     },
     /// Another order agrees as well.
     Alike {
-        /// Their error.
+        /// Error of the pairs.
         missed_m: f64,
-        /// The order.
+        /// The other order.
         order: Order,
-        /// Its error.
+        /// Error of the other order.
         other_m: f64,
     },
-    /// No better than chance.
+    /// The pairs agree no better than by chance.
     None {
-        /// Their error.
+        /// Error of the pairs.
         missed_m: f64,
     },
 }
 
 impl Agreement {
-    /// The error of the pairs, metres.
+    /// Error of the pairs, metres.
     #[must_use]
     pub fn missed_m(&self) -> f64 {
         match *self {
@@ -65,7 +65,7 @@ impl Agreement {
 }
 
 impl Unpaired<'_> {
-    /// How pairs agree with the nominal robot, beside their other orders; `None` if nothing can be compared, as of few pairs.
+    /// Agreement of pairs with the nominal robot, compared with their other orders; `None` if no comparison is possible, as with few pairs.
     #[must_use]
     pub fn agreement(&self, pairs: &[Pair]) -> Option<Agreement> {
         if pairs.len() < FEWEST_PAIRS {
@@ -95,12 +95,13 @@ impl Unpaired<'_> {
     }
 }
 
-/// Times the usual error beyond which a pair is wrong, and up to which one is right.
+/// Multiple of the usual error beyond which a pair is wrong, and up to which one is right.
 const WRONG: f64 = 8.0;
 const RIGHT: f64 = 3.0;
 
 impl Unpaired<'_> {
-    /// Pairs that the nominal robot misses by far more than the others: indices into the pairs, with the error of each, metres, and the median of all.
+    /// Pairs on which the nominal robot's error is far larger than on the others: indices into the pairs, with the error of each, metres,
+    /// and the median of all.
     #[must_use]
     pub fn wrong(&self, pairs: &[Pair]) -> (Vec<(usize, f64)>, f64) {
         let Some((estimate, usual)) = self.registered(pairs) else { return (Vec::new(), f64::NAN) };
@@ -115,7 +116,7 @@ impl Unpaired<'_> {
         let errors = self.errors_of(pairs, &estimate);
         let wrong: Vec<usize> =
             errors.iter().enumerate().filter(|it| *it.1 > WRONG * usual).map(|it| it.0).collect();
-        // More than some are no exchange.
+        // A larger number of wrong pairs is no exchange.
         if wrong.len() > pairs.len() / 4 {
             return Vec::new();
         }
@@ -147,7 +148,7 @@ fn reordered(pairs: &[Pair], order: Order) -> Vec<Pair> {
     }
 }
 
-/// Pairs in an order by chance, the same in every run.
+/// Pairs in a random order, the same in every run.
 fn shuffled(pairs: &[Pair], seed: usize) -> Vec<Pair> {
     let mut joints: Vec<usize> = pairs.iter().map(|it| it.0).collect();
     // A step that has no divisor in common with the number of pairs takes every one once.

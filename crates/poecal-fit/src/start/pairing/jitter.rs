@@ -1,4 +1,4 @@
-//! How far single stamps of a recording in motion are off.
+//! Errors of single time stamps of a recording in motion.
 
 use nalgebra::Vector3;
 
@@ -6,10 +6,10 @@ use crate::parameters::{ClockUnknown, Columns as _};
 use crate::state::{Chain, ClockTerm, Estimate, Linkage, Session};
 use poecal_model::measurement::Quantity;
 
-/// Fewest rows that show it.
+/// Fewest rows for an estimate.
 const FEWEST: usize = 30;
 
-/// Standard deviation of single stamps that errors along the motion show beside those across it, seconds; 0 if they show none.
+/// Standard deviation of single stamps, seconds, by the excess of errors along the motion over those across it; 0 without an excess.
 pub(crate) fn jitter(session: &Session<'_>, rows: &[u32], estimate: &Estimate) -> f64 {
     let (linkage, mut chain) = (Linkage::new(estimate), Chain::default());
     let (mut along, mut across, mut squares, mut count) = (0.0, 0.0, 0.0, 0.0);
@@ -37,5 +37,5 @@ pub(crate) fn jitter(session: &Session<'_>, rows: &[u32], estimate: &Estimate) -
     }
 }
 
-/// Speed below which a row says nothing of its stamp, m/s.
+/// Speed below which a row has no information on its stamp, m/s.
 const SLOW_M_PER_S: f64 = 0.05;

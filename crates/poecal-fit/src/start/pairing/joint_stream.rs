@@ -1,13 +1,14 @@
-//! Joint readings in time, and what they are between two of their rows.
+//! Joint readings in time, interpolated between two of their rows.
 
 use poecal_numerics::distributions::median;
 
-/// Rows that are so many usual steps apart, or so many seconds, have a gap between them in which readings are unknown.
+/// Multiple of the usual step, and number of seconds, between two rows from which on there is a gap with unknown readings.
 const GAP_STEPS: f64 = 4.5;
 const GAP_S: f64 = 0.05;
-/// Rows on each side of one whose stamps say together when it was, where stamps are late irregularly.
+/// Number of rows on each side of one whose stamps together determine its time, if stamps are late irregularly.
 const BESIDE: usize = 25;
-/// Share of the usual step that stamps scatter by where they are no clock of the rows, and so many seconds at least, more than their digits.
+/// Scatter of stamps, as a share of the usual step and in seconds at least, from which on they are no clock of the rows. It exceeds the
+/// rounding of their digits.
 const IRREGULAR: f64 = 0.04;
 const IRREGULAR_S: f64 = 5e-4;
 
@@ -21,8 +22,8 @@ pub struct JointStream {
 }
 
 impl JointStream {
-    /// Of times (seconds) and readings (rad, m), one row of so many after the other; rows in the order of their times, one of each. `None` without
-    /// times.
+    /// Stream of times (seconds) and readings (rad, m), one row of `width` after the other; rows in the order of their times, one for each time.
+    /// `None` without times.
     #[must_use]
     pub fn new(times: &[f64], readings: &[f64], width: usize) -> Option<Self> {
         let mut order: Vec<usize> =
@@ -47,27 +48,27 @@ impl JointStream {
         })
     }
 
-    /// The same with each of a row's readings by a function of its place and value.
+    /// The same stream with each reading replaced by a function of its index and value.
     #[must_use]
     pub fn map(&self, each: impl Fn(usize, f64) -> f64) -> Self {
         let readings = self.readings.iter().enumerate().map(|(at, &value)| each(at % self.width, value));
         JointStream { readings: readings.collect(), ..self.clone() }
     }
 
-    /// The times, seconds.
+    /// Times, seconds.
     #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The readings of a row.
+    /// Readings of a row.
     #[must_use]
     pub fn row(&self, at: usize) -> &[f64] {
         self.readings.get(at * self.width..(at + 1) * self.width).unwrap_or_default()
     }
 
-    /// Writes readings at a time and how fast they change, by the cubic through the rows around it with their mean slopes; `false` outside of the
-    /// stream and in its gaps.
+    /// Writes readings at a time, and their rates, by the cubic through the rows around it with their mean slopes; `false` outside of the stream
+    /// and in its gaps.
     pub fn at(&self, time_s: f64, readings: &mut [f64], rates: &mut [f64]) -> bool {
         let after = self.times.partition_point(|it| *it <= time_s);
         if after < 2 || after + 1 >= self.times.len() {
@@ -101,8 +102,8 @@ impl JointStream {
     }
 }
 
-/// Times of rows that come at equal steps, where their stamps are late irregularly: each by the stamps around it. `None` where stamps are regular, or
-/// the rows are not.
+/// Times of rows that come at equal steps, if their stamps are late irregularly: each by the stamps around it. `None` if stamps are regular, or the
+/// rows are not.
 #[must_use]
 pub fn smoothed(times: &[f64]) -> Option<Vec<f64>> {
     let count = times.len();
@@ -110,7 +111,7 @@ pub fn smoothed(times: &[f64]) -> Option<Vec<f64>> {
         return None;
     }
     let step = (times[count - 1] - times[0]) / (count - 1) as f64;
-    // What is left of second differences of white noise of one unit is √6.
+    // Second differences of white noise with σ = 1 have the standard deviation √6.
     let scatter =
         median(times.windows(3).map(|it| (it[0] - 2.0 * it[1] + it[2]).abs()))? / (0.6745 * 6f64.sqrt());
     if step <= 0.0 || scatter < IRREGULAR_S.max(IRREGULAR * step) {

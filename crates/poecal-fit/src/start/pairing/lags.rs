@@ -1,40 +1,40 @@
-//! Which stands of two streams are the same, where each has a clock of its own.
+//! Pairs of equal static intervals of two streams, each with a clock of its own.
 
 use super::{FEWEST_PAIRS, Pair, Unpaired};
 use poecal_numerics::distributions::median;
 
-/// Largest difference of the begins of two stands that are the same, seconds.
+/// Largest difference between the begins of two static intervals that are the same, seconds.
 const NEAR_S: f64 = 0.3;
 /// Distance of two lags that are different, seconds.
 const APART_S: f64 = 0.6;
-/// Most lags that are compared by the nominal robot.
+/// Largest number of lags that are compared by the nominal robot.
 const MOST: usize = 80;
-/// Share of the pairs of the lag with most that another lag has at least.
+/// Least share of the pairs of the best lag that another lag has.
 const SHARE: f64 = 0.4;
 
-/// When a stand begins and ends, seconds; both the same of a point.
+/// Begin and end of a static interval, seconds; both are equal for a point.
 pub type Span = (f64, f64);
 
-/// Pairs of stands at a lag.
+/// Pairs of static intervals at a lag.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lagged {
     /// Time of the measurements less that of the joint readings, seconds.
     pub lag_s: f64,
-    /// The pairs.
+    /// Pairs.
     pub pairs: Vec<Pair>,
     /// Median error of the nominal robot, metres.
     pub missed_m: f64,
 }
 
 impl Unpaired<'_> {
-    /// Pairs at the lags at which most stands are the same, the one with the smallest error first; with lags near one that is stated (lag and how far
-    /// it may be off, seconds), only these.
+    /// Pairs at the lags at which most static intervals coincide, the one with the smallest error first. With a stated lag (and its largest error,
+    /// seconds), only lags near it count.
     #[must_use]
     pub fn lagged(&self, joints: &[Span], shots: &[Span], stated: Option<(f64, f64)>) -> Vec<Lagged> {
         let is_allowed = |lag: f64| stated.is_none_or(|(middle, off)| (lag - middle).abs() <= off + NEAR_S);
         let differences = joints.iter().flat_map(|joint| {
             shots.iter().map(move |shot| {
-                // A point lies somewhere in its stand.
+                // A point lies somewhere in its static interval.
                 if shot.0 < shot.1 { shot.0 - joint.0 } else { shot.0 - 0.5 * (joint.0 + joint.1) }
             })
         });
@@ -66,7 +66,7 @@ impl Unpaired<'_> {
     }
 }
 
-/// A lag, by the middle of what the begins of its pairs differ by.
+/// A lag, refined by the median difference between the begins of its pairs.
 fn refined(joints: &[Span], shots: &[Span], lag: f64) -> f64 {
     let pairs = paired(joints, shots, lag);
     let of = |&(joint, shot): &Pair| {
@@ -77,7 +77,8 @@ fn refined(joints: &[Span], shots: &[Span], lag: f64) -> f64 {
     median(pairs.iter().filter_map(of)).unwrap_or(lag)
 }
 
-/// Stands that are at the same time, each once: those that begin together, or where one was interrupted, that overlap; points in their stand.
+/// Static intervals at the same time, each once: those that begin together, or that overlap if one was interrupted; points in their
+/// interval.
 fn paired(joints: &[Span], shots: &[Span], lag: f64) -> Vec<Pair> {
     let mut pairs = Vec::new();
     let mut first = 0;

@@ -1,4 +1,4 @@
-//! Streams of joint readings and of measurements: their stands.
+//! Static intervals of streams of joint readings and of measurements.
 
 use std::collections::BTreeMap;
 
@@ -12,17 +12,17 @@ use super::words::numbered;
 use poecal_arm::lie::{Pose, rotation};
 use poecal_model::measurement::{Dataset, Measurement, Observation};
 
-/// Changes that are none: of a joint (rad, m), of a position (m), and of an orientation (rad).
+/// Changes that count as no motion: of a joint (rad, m), of a position (m), and of an orientation (rad).
 const STILL_JOINT: f64 = 5e-5;
 /// Largest last digit of readings that counts as no change (rad, m).
 const COARSEST_JOINT: f64 = 1e-3;
 const STILL_PLACE_M: f64 = 3e-5;
 const STILL_TURN: f64 = 1e-4;
 
-/// Stands of a stream of joint readings, of `width` numbers a row, each with the means of its rows.
+/// Static intervals of a stream of joint readings, of `width` numbers a row, each with the means of its rows.
 ///
 /// # Errors
-/// Why they are none; nothing of rows that do not follow each other as in a recording.
+/// Reason why there are none; `None` if rows do not follow each other as in a recording.
 pub fn stands_of_readings(
     times: &[f64],
     readings: &[f64],
@@ -49,13 +49,13 @@ pub fn stands_of_readings(
     Ok(stream.stands().into_iter().map(mean).collect())
 }
 
-/// The last digit of readings: the smallest change that is one.
+/// Last digit of readings: the smallest change above rounding.
 fn digit(values: &[f64]) -> f64 {
     let changes = values.windows(2).map(|it| (it[1] - it[0]).abs()).filter(|it| *it > 1e-9);
     changes.min_by(f64::total_cmp).unwrap_or_default()
 }
 
-/// A stream, if so many rows are one.
+/// A stream, if the rows are dense enough.
 fn dense(times: &[f64], rows: usize, channels: Vec<Channels>) -> Result<Stream, Option<NoStream>> {
     let own = if times.len() == rows { times.to_vec() } else { vec![f64::NAN; rows] };
     let stream = Stream::new(own, channels);
@@ -68,8 +68,8 @@ fn dense(times: &[f64], rows: usize, channels: Vec<Channels>) -> Result<Stream, 
     }
 }
 
-/// The sum of the small turns from one orientation to the next, rad. Its parts have the same noise at every orientation, which those of a matrix
-/// do not have.
+/// Sum of the small rotations from one orientation to the next, rad. Its components have the same noise at every orientation, unlike those of a
+/// matrix.
 #[derive(Clone, Debug, Default)]
 struct Turned {
     last: Option<Matrix3<f64>>,
@@ -77,7 +77,7 @@ struct Turned {
 }
 
 impl Turned {
-    /// The sum up to the next orientation.
+    /// Sum up to the next orientation.
     fn after(&mut self, next: &Matrix3<f64>) -> Vector3<f64> {
         if let Some(last) = self.last.replace(*next) {
             self.sum += rotation::log(&(next * last.transpose()));
@@ -86,27 +86,27 @@ impl Turned {
     }
 }
 
-/// Stands of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
+/// Static intervals of a stream of measurements: a row each, with the mean of each target, at the line of their first row.
 #[derive(Clone, Debug, Default)]
 pub struct MeasuredStands {
-    /// The stands, as a file of measurements would have them.
+    /// Static intervals, as a file of measurements would have them.
     pub data: Dataset,
-    /// When each begins and ends, seconds.
+    /// Begin and end of each, seconds.
     pub spans: Vec<Span>,
-    /// Of each line, what was measured on an average, in the order of the file.
+    /// Mean measurements of each line, in the order of the file.
     pub means: BTreeMap<usize, Vec<Measurement>>,
-    /// Root mean square of how single rows scatter about these, metres.
+    /// Root mean square scatter of single rows about these means, metres.
     pub scatter_m: f64,
-    /// What should be looked at, a sentence each.
+    /// Warnings, a sentence each.
     pub warnings: Vec<String>,
 }
 
-/// The stands of measurements with these times.
+/// Static intervals of measurements with these times.
 ///
 /// # Errors
-/// Why they are none, by numbers of rows of the data; nothing of rows that do not follow each other as in a recording.
+/// Reason why there are none, by numbers of rows of the data; `None` if rows do not follow each other as in a recording.
 pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStands, Option<NoStream>> {
-    // The target that was seen most says when nothing moves.
+    // The target that was seen most determines the static intervals.
     let most = data.most_seen_target().ok_or(None)?;
     let rows: Vec<usize> =
         (0..data.len()).filter(|at| data.observations.get(*at).is_some_and(|it| it.target == most)).collect();
@@ -125,7 +125,7 @@ pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStand
         };
         let seen: Vec<&Observation> =
             data.observations.get(first..=last).unwrap_or_default().iter().collect();
-        // The line that has most targets stands for all.
+        // The line with the most targets represents all.
         let mut by_line: BTreeMap<u32, Vec<&Observation>> = BTreeMap::new();
         for it in &seen {
             by_line.entry(it.source.line).or_default().push(it);
@@ -160,7 +160,7 @@ pub fn stands_of_measured(data: &Dataset, times: &[f64]) -> Result<MeasuredStand
     Ok(found)
 }
 
-/// The stream of a target's places and, where all rows have one, its orientation.
+/// Stream of a target's positions and, if all rows have one, its orientation.
 fn stream_of_places(
     own: &[&Observation],
     (rows, times): (&[usize], &[f64]),
@@ -186,7 +186,7 @@ fn stream_of_places(
     dense(&own_times, own.len(), channels)
 }
 
-/// The mean of measurements of one target, without those that are far from the others.
+/// Mean of measurements of one target, without those that are far from the others.
 fn mean_of(all: &[&Measurement], spread: &mut Spread) -> Measurement {
     let all: Vec<(Vector3<f64>, Option<Matrix3<f64>>)> =
         all.iter().filter_map(|it| Some((it.position()?, it.orientation()))).collect();

@@ -1,8 +1,7 @@
-//! Which joint readings belong to which measurements, where two files have them: the nominal robot, registered, misses what was measured by least
-//! where they are paired rightly.
+//! Assignment of joint readings to measurements if two files have them: the error of the registered nominal robot is least for right pairs.
 //!
-//! The robot decides whether pairs are right: the same rows are registered in other orders, lists of unequal length are aligned, stands of recordings
-//! found (`stands.rs`), and those of two clocks paired by their lag (`lags.rs`).
+//! The robot decides whether pairs are right. The same rows are registered in other orders, and lists of unequal length are aligned. Static intervals
+//! of recordings are detected (`stands.rs`), and those of two clocks are paired by their lag (`lags.rs`).
 
 mod agreement;
 mod jitter;
@@ -36,40 +35,41 @@ use poecal_model::measurement::{Dataset, Noise};
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::median;
 
-/// Noise of a registration, which the nominal robot misses by more than measurements do: m and rad.
+/// Noise of a registration, which covers the errors of the nominal robot: m and rad.
 const NOISE: Noise = Noise::new(2e-3, 5e-3);
-/// Most pairs of a registration that only compares.
+/// Largest number of pairs of a registration that only compares.
 const SOME: usize = 150;
-/// Times the usual error beyond which a pair does not count in a registration.
+/// Multiple of the usual error beyond which a pair does not count in a registration.
 const ODD: f64 = 4.0;
-/// How many times smaller the error of what is right is at least than that of anything else.
+/// Least factor by which the error of the right alternative is smaller than that of any other.
 pub const EVIDENT: f64 = 2.0;
-/// Fewest pairs that show anything: five points determine device and target, and leave no error.
+/// Fewest pairs for a comparison: five points determine device and target, and leave no error.
 pub const FEWEST_PAIRS: usize = 7;
 
-/// A row of joint readings, and a configuration in which was measured; both from 0.
+/// A row of joint readings, and a measured configuration; both from 0.
 pub type Pair = (usize, usize);
 
-/// Joint readings, and what was measured, with nothing that says what belongs to what.
+/// Joint readings and measurements, without an assignment of one to the other.
 #[derive(Clone, Debug)]
 pub struct Unpaired<'a> {
     robot: &'a Robot,
     /// Joint readings, one row after the other.
     joints: &'a [f64],
-    /// The measurements; their own readings mean nothing.
+    /// Measurements; their own readings have no meaning.
     data: &'a Dataset,
-    /// The rows of each configuration in which was measured.
+    /// Rows of each measured configuration.
     shots: Vec<Vec<u32>>,
 }
 
 impl<'a> Unpaired<'a> {
-    /// Rows of a file that are one below the other are of one configuration as long as none of their targets comes again.
+    /// Joint readings and measurements of a robot. Consecutive rows of a file belong to one configuration as long as none of their targets
+    /// occurs again.
     #[must_use]
     pub fn new(robot: &'a Robot, joints: &'a [f64], data: &'a Dataset) -> Self {
         Unpaired { robot, joints, data, shots: Self::shots_of(data) }
     }
 
-    /// The rows of each configuration of measurements, as [`Unpaired::new`] finds them.
+    /// Rows of each configuration of measurements, as [`Unpaired::new`] finds them.
     #[must_use]
     pub fn shots_of(data: &Dataset) -> Vec<Vec<u32>> {
         let mut shots: Vec<Vec<u32>> = Vec::new();
@@ -93,7 +93,7 @@ impl<'a> Unpaired<'a> {
         shots
     }
 
-    /// The rows of each configuration in which was measured.
+    /// Rows of each measured configuration.
     #[must_use]
     pub fn shots(&self) -> &[Vec<u32>] {
         &self.shots
@@ -109,20 +109,20 @@ impl<'a> Unpaired<'a> {
         self.data.reading_names().len().max(1)
     }
 
-    /// The readings of a row.
+    /// Readings of a row.
     #[must_use]
     pub fn readings(&self, row: usize) -> &'a [f64] {
         let width = self.width();
         self.joints.get(row * width..(row + 1) * width).unwrap_or_default()
     }
 
-    /// The measurements of pairs, with their readings.
+    /// Measurements of pairs, with their readings.
     #[must_use]
     pub fn session_of(&self, pairs: &[Pair]) -> Dataset {
         self.paired(pairs).0
     }
 
-    /// The same with the pair of each row.
+    /// The same measurements with the pair of each row.
     fn paired(&self, pairs: &[Pair]) -> (Dataset, Vec<usize>) {
         let mut data =
             Dataset::new(self.data.reading_names().to_vec()).with_factors(self.robot.factors.len());
@@ -140,7 +140,7 @@ impl<'a> Unpaired<'a> {
         (data, of)
     }
 
-    /// Registers pairs, twice, the second time without those that fit badly, and gives the estimate with the median error, metres.
+    /// Registers pairs twice, the second time without those that fit badly, and returns the estimate with the median error, metres.
     fn registered(&self, pairs: &[Pair]) -> Option<(Estimate, f64)> {
         let (data, _) = self.paired(pairs);
         if data.is_empty() {
@@ -168,7 +168,7 @@ impl<'a> Unpaired<'a> {
         best
     }
 
-    /// Median error of pairs, metres; of many, of some.
+    /// Median error of pairs, metres; of a subsample if there are many.
     fn missed(&self, pairs: &[Pair]) -> Option<f64> {
         let step = pairs.len().div_ceil(SOME).max(1);
         let some: Vec<Pair> = pairs.iter().step_by(step).copied().collect();
@@ -192,7 +192,7 @@ impl<'a> Unpaired<'a> {
     }
 }
 
-/// Size of a row's error: of its position or distance, metres; of others, of what is measured first.
+/// Size of a row's error: of its position or distance, metres; for others, of the first measured quantity.
 fn size(error: &RowError) -> f64 {
     error.leading().and_then(|quantity| error.length(quantity)).unwrap_or_default()
 }

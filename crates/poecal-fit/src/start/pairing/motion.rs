@@ -18,28 +18,29 @@ use poecal_numerics::distributions::median;
 use poecal_numerics::error::{ErrorKind, Result, first_few};
 use poecal_numerics::solve::{Options, minimize};
 
-/// Shortest time from one row that is fitted to the next, seconds: rows that are nearer say hardly more of the robot.
+/// Shortest time between two rows that are fitted, seconds: closer rows add hardly any information.
 const STEP_S: f64 = 0.1;
-/// How far stamps of rows at equal steps may be off, seconds.
+/// Largest error of stamps of rows at equal steps, seconds.
 const STAMP_S: f64 = 2e-3;
-/// Most rows of a fit.
+/// Largest number of rows of a fit.
 const MOST: usize = 3000;
-/// Rows that compare lags.
+/// Number of rows that compare lags.
 const SOME: usize = 150;
-/// Lags that are refined, and the shortest distance of two, seconds.
+/// Number of lags that are refined, and the shortest distance of two, seconds.
 const CANDIDATES: usize = 10;
 const APART_S: f64 = 0.15;
-/// A change of the lag below which it is found, seconds, and most rounds until then.
+/// Change of the lag below which it has converged, seconds, and largest number of rounds until then.
 const FOUND_S: f64 = 1e-5;
 const ROUNDS: usize = 8;
-/// Most rounds of a lag that is compared with others.
+/// Largest number of rounds of a lag that is compared with others.
 const ROUNDS_OF_EACH: usize = 4;
 /// Shortest overlap of two streams, seconds, and its share of the shorter one.
 const OVERLAP_S: f64 = 5.0;
 const OVERLAP: f64 = 0.25;
 /// Fewest rows.
 const FEWEST: usize = 30;
-/// A recording that is no shorter is compared with itself by some seconds later, a shorter one by less.
+/// Length of a recording, seconds, from which on it is compared with itself at fixed wrong lags; those of a shorter one are proportionally
+/// less.
 const LONG_S: f64 = 30.0;
 
 /// Measurements in motion with a lag.
@@ -54,7 +55,7 @@ pub struct AtLag {
 /// Measurements in motion with the readings that belong to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InMotion {
-    /// The clock of the instrument.
+    /// Clock of the instrument.
     pub clock: Clock,
     /// Rows of the measurements that have readings, with these, their rates and their times from the middle.
     pub rows: Vec<MovingRow>,
@@ -62,7 +63,7 @@ pub struct InMotion {
     pub missed_m: f64,
     /// Median error of the robot whose axes are fitted too, metres.
     pub fitted_m: f64,
-    /// Standard deviation of single stamps that the errors along the motion show, seconds; 0 if none.
+    /// Standard deviation of single stamps by the errors along the motion, seconds; 0 if there is none.
     pub jitter_s: f64,
 }
 
@@ -73,20 +74,20 @@ pub struct MovingRow {
     pub row: u32,
     /// Readings at that time (rad, m).
     pub readings: Vec<f64>,
-    /// How fast these change (rad/s, m/s).
+    /// Rates of these (rad/s, m/s).
     pub rates: Vec<f64>,
     /// Time from the middle of all, by the clock of the instrument, seconds.
     pub time_s: f64,
 }
 
-/// What the search says where it finds no lag, or more than one.
+/// Result of a search without a unique lag.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoLag {
     /// The streams hardly overlap, or nothing moves.
     NoMotion,
-    /// Several lags fit alike, the best first.
+    /// Several lags fit equally well, the best first.
     Alike(Vec<AtLag>),
-    /// None fits better than by chance.
+    /// No lag fits better than by chance.
     None(AtLag),
 }
 
@@ -100,7 +101,7 @@ pub struct Motion<'a> {
     times: &'a [f64],
 }
 
-/// The clock of a search, with the middle of the measurements.
+/// Clock of a search, with the middle of the measurements.
 #[derive(Clone, Copy)]
 struct Guess {
     lag_s: f64,
@@ -109,17 +110,17 @@ struct Guess {
 }
 
 impl Guess {
-    /// The time of the joint readings at a time of the instrument.
+    /// Time of the joint readings at a time of the instrument.
     fn joint_time(&self, time_s: f64) -> f64 {
         time_s - self.lag_s - self.drift * (time_s - self.middle_s)
     }
 }
 
 impl<'a> Motion<'a> {
-    /// Of measurements that have a time each.
+    /// Search for measurements that have a time each.
     ///
     /// # Errors
-    /// [`ErrorKind::Measurement`] of rows without a place, or without times, and of several instruments.
+    /// [`ErrorKind::Measurement`] for rows without a position, or without times, and for several instruments.
     pub fn new(
         robot: &'a Robot,
         joints: &'a JointStream,
@@ -144,7 +145,7 @@ impl<'a> Motion<'a> {
         Ok(Motion { robot, joints, data, times })
     }
 
-    /// The lag and the drift at which the measurements fit, near a stated lag (and how far it may be off, seconds) if there is one.
+    /// Lag and drift at which the measurements fit, near a stated lag (with its largest error, seconds) if there is one.
     ///
     /// # Errors
     /// [`NoLag`].
@@ -173,12 +174,12 @@ impl<'a> Motion<'a> {
             .ok_or(NoLag::None(best))
     }
 
-    /// The first of the times, seconds.
+    /// First of the times, seconds.
     fn first(&self) -> f64 {
         self.times.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// The middle of the times, seconds.
+    /// Middle of the times, seconds.
     fn middle(&self) -> f64 {
         0.5 * (self.first() + self.times.iter().copied().fold(f64::NEG_INFINITY, f64::max))
     }
@@ -192,12 +193,12 @@ impl<'a> Motion<'a> {
         Some(data)
     }
 
-    /// Whether lags that are certainly wrong fit nearly as well, or cannot be compared.
+    /// True if lags that are certainly wrong fit nearly as well, or cannot be compared.
     fn is_chance(&self, best: AtLag, middle_s: f64) -> bool {
         let span = |first: Option<&f64>, last: Option<&f64>| first.zip(last).map_or(0.0, |it| it.1 - it.0);
         let own = self.joints.times();
         let shorter = span(own.first(), own.last()).min(2.0 * (middle_s - self.first()));
-        // Of a short recording a part overlaps at a lag that is wrong by less.
+        // For a short recording the wrong lags are smaller, so that a part overlaps.
         let scale = (shorter / LONG_S).min(1.0);
         let others = [-7.3, 5.9, -2.1, 3.4, -13.7, 11.2].map(|by| best.lag_s + scale * by);
         let missed = others
@@ -206,7 +207,7 @@ impl<'a> Motion<'a> {
         median(missed).is_none_or(|usual| best.missed_m * EVIDENT > usual)
     }
 
-    /// Rows that are fitted, at most so many, at this clock: with the readings at their times.
+    /// Rows that are fitted, at most `most`, at this clock, with the readings at their times.
     fn session(&self, guess: &Guess, most: usize) -> Option<(Dataset, Vec<u32>)> {
         let width = self.data.reading_names().len();
         let mut data =
@@ -231,7 +232,7 @@ impl<'a> Motion<'a> {
         (data.len() >= FEWEST.min(most)).then_some((data, own))
     }
 
-    /// Rows that are no nearer in time than so, each time with all its targets.
+    /// Rows with a least distance in time, each time with all its targets.
     fn spread(&self) -> Vec<u32> {
         let mut rows: Vec<u32> = Vec::new();
         let mut last = f64::NEG_INFINITY;
@@ -244,7 +245,7 @@ impl<'a> Motion<'a> {
         rows
     }
 
-    /// The nominal robot registered at a clock, with the median error, metres.
+    /// Registration of the nominal robot at a clock, with the median error, metres.
     fn registered(&self, guess: &Guess, most: usize) -> Option<(Estimate, f64)> {
         let (data, _) = self.session(guess, most)?;
         let packed = Packed::from_dataset(self.robot, &data);
@@ -258,7 +259,7 @@ impl<'a> Motion<'a> {
         Some((estimate, missed))
     }
 
-    /// The lag near a guess at which the nominal robot fits best.
+    /// Lag near a guess at which the nominal robot fits best.
     fn refined(&self, guess: Guess) -> Option<AtLag> {
         let (mut guess, mut missed_m) = (guess, f64::INFINITY);
         let begun = guess.lag_s;
@@ -289,7 +290,7 @@ impl<'a> Motion<'a> {
         Some(AtLag { lag_s: guess.lag_s, missed_m })
     }
 
-    /// Lag and drift beside the axes of the robot, all unknown.
+    /// Lag and drift together with the axes of the robot, all unknown.
     fn with_geometry(&self, guess: Guess, missed_m: f64) -> Option<InMotion> {
         let mut guess = guess;
         let (mut jitter_s, mut fitted_m) = (0.0, f64::INFINITY);
@@ -344,7 +345,7 @@ impl<'a> Motion<'a> {
 }
 
 impl Motion<'_> {
-    /// Lags at which the nominal robot and what was measured are fast and slow together.
+    /// Lags at which the speeds of the nominal robot and of the measured target are correlated.
     fn by_speed(&self, stated: Option<(f64, f64)>) -> Vec<f64> {
         let mut own = Vec::new();
         let step = self.joints.times().len().div_ceil(TRACK).max(1);
@@ -354,7 +355,7 @@ impl Motion<'_> {
         }
         let times = self.joints.times().iter().step_by(step).copied().collect();
         let joints = Track::new(times, own);
-        // The target that was seen most.
+        // The target that was seen most is used.
         let most = self.data.most_seen_target().unwrap_or_default();
         let mut seen: Vec<(f64, Vector3<f64>)> = (self.data.observations.iter().zip(self.times))
             .filter(|(it, _)| it.target == most)
@@ -369,10 +370,10 @@ impl Motion<'_> {
     }
 }
 
-/// Most rows of joint readings whose tip is computed.
+/// Largest number of rows of joint readings whose tip is computed.
 const TRACK: usize = 40_000;
 
-/// What is held where a robot is only registered: drifts, and the lag too where it is held.
+/// Held clock terms if a robot is only registered: drifts, and the lag too if `is_held`.
 fn unknowns(data: &Dataset, is_held: bool) -> Unknowns {
     let terms = if is_held { &ClockTerm::ALL[..] } else { &[ClockTerm::Drift][..] };
     let clocks = (0..data.station_count()).flat_map(|station| terms.iter().map(move |&term| (station, term)));
@@ -384,10 +385,10 @@ fn registration(session: Session<'_>) -> Registration<'_> {
     Registration { session, rows: &[], noise: NOISE, targets_free: true, prior: None }
 }
 
-/// Rows whose errors are no more than some times the usual one.
+/// Rows whose errors are at most a multiple of the usual one.
 fn near(rows: &[u32], errors: &[RowError], usual: f64) -> Vec<u32> {
     rows.iter().zip(errors).filter(|(_, error)| size(error) <= FAR * usual).map(|(row, _)| *row).collect()
 }
 
-/// Times the usual error beyond which a row does not count: of stamps that are late, few are.
+/// Multiple of the usual error beyond which a row does not count: few stamps are late.
 const FAR: f64 = 8.0;

@@ -1,4 +1,4 @@
-//! Motion in streams, for pictures of how they were joined: places at times of equal distance, and the speeds between them.
+//! Motion in streams, for charts of the joining: positions at times of equal distance, and the speeds between them.
 
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -9,18 +9,18 @@ use poecal_model::measurement::Dataset;
 use poecal_model::robot::Robot;
 use poecal_numerics::distributions::median;
 
-/// Most times without a row that are listed.
+/// Largest number of times without a row that are listed.
 const MOST_GAPS: usize = 1000;
-/// Most speeds of a stream, and shortest time from one to the next, seconds.
+/// Largest number of speeds of a stream, and shortest time from one to the next, seconds.
 const MOST: f64 = 600.0;
 const SHORTEST_S: f64 = 0.1;
-/// A time without a row is one of as many steps from row to row.
+/// Number of steps from row to row from which on a time without a row is a gap.
 const GAP_STEPS: f64 = 2.5;
 
 /// Motion in a stream, by its own clock.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionEntry {
-    /// Its rows.
+    /// Rows.
     pub rows: usize,
     /// Time of the first row, seconds; all other times are after it.
     pub begin_s: f64,
@@ -28,11 +28,11 @@ pub struct MotionEntry {
     pub end_s: f64,
     /// Seconds from one speed to the next; zero without speeds.
     pub step_s: f64,
-    /// Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null where no row is near.
+    /// Speed of the nominal robot's tip, or of the target that was seen most, over each step, mm/s; null if no row is near.
     pub speeds_mm_s: Vec<Option<f64>>,
-    /// Begin and end of each stand, seconds; both the same of a single point.
+    /// Begin and end of each static interval, seconds; both are equal for a single point.
     pub stands_s: Vec<[f64; 2]>,
-    /// Begin and end of the times without a row, as of lost frames, seconds; the longest 1,000.
+    /// Begin and end of the times without a row, such as lost frames, seconds; the longest 1,000.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gaps_s: Vec<[f64; 2]>,
 }
@@ -40,7 +40,7 @@ pub struct MotionEntry {
 /// Numbers of a stream at times of equal distance.
 #[derive(Clone, Debug, Default)]
 pub struct Sampled {
-    /// The numbers at a time, one time after the other; none where no row is near.
+    /// Numbers at a time, one time after the other; `None` if no row is near.
     values: Vec<Option<Vec<f64>>>,
     step_s: f64,
     /// Rows, begin and end of the stream, and times without a row.
@@ -50,7 +50,7 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// Of rows with these times, `width` numbers each.
+    /// Samples of rows with these times, `width` numbers each.
     #[must_use]
     pub fn new(times: &[f64], rows: &[f64], width: usize) -> Option<Self> {
         let (&begin, &end) = times.first().zip(times.last())?;
@@ -70,7 +70,7 @@ impl Sampled {
             while after + 1 < times.len() && times.get(after).is_some_and(|it| *it < time) {
                 after += 1;
             }
-            // A time that is short beside the steps of the picture is none.
+            // A gap that is short compared with the steps of the chart does not count.
             let (from, to) = (*times.get(after - 1)?, *times.get(after)?);
             if is_gap(after - 1) && to - from > step_s {
                 return None;
@@ -85,14 +85,14 @@ impl Sampled {
         Some(Sampled { values, step_s, rows: times.len(), span: (begin, end), gaps })
     }
 
-    /// The same with other numbers.
+    /// The same samples with other numbers.
     #[must_use]
     pub fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         let values = self.values.iter().map(|it| it.as_deref().map(&of)).collect();
         Sampled { values, ..self.clone() }
     }
 
-    /// The motion, of the place of each row of numbers, metres.
+    /// Motion, by the position of each row of numbers, metres.
     fn motion(&self, place: impl Fn(&[f64]) -> Vector3<f64>, stands: &[Span]) -> MotionEntry {
         let places: Vec<Option<Vector3<f64>>> =
             self.values.iter().map(|it| it.as_deref().map(&place)).collect();
@@ -109,7 +109,7 @@ impl Sampled {
         }
     }
 
-    /// The motion of the nominal robot's tip.
+    /// Motion of the nominal robot's tip.
     #[must_use]
     pub fn of_robot(&self, robot: &Robot, stands: &[Span]) -> MotionEntry {
         let tip = |readings: &[f64]| robot.forward_kinematics(&robot.joint_values(readings)).translation;
@@ -117,14 +117,14 @@ impl Sampled {
     }
 }
 
-/// The motion of single points.
+/// Motion of single points.
 #[must_use]
 pub fn motion_of_points(points: &[Span]) -> Option<MotionEntry> {
     let (first, last) = points.first().zip(points.last())?;
     Some(MotionEntry { rows: points.len(), ..motion_of_stands((first.0, last.1), points) })
 }
 
-/// The motion of the target that was seen most, by the times of all rows.
+/// Motion of the target that was seen most, by the times of all rows.
 #[must_use]
 pub fn motion_of_target(data: &Dataset, times: &[f64], stands: &[Span]) -> Option<MotionEntry> {
     let most = data.most_seen_target()?;
@@ -151,7 +151,7 @@ fn after(spans: &[Span], begin: f64) -> Vec<[f64; 2]> {
     spans.iter().map(|it| [rounded(it.0 - begin, 1e6), rounded(it.1 - begin, 1e6)]).collect()
 }
 
-/// With so many steps in a unit.
+/// A value rounded to a number of steps in a unit.
 fn rounded(value: f64, steps: f64) -> f64 {
     (value * steps).round() / steps
 }
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn speeds_are_those_between_places_and_none_without_rows() {
-        // 1 m/s for 1 s, a stand of 1 s, and a second without rows; times of a clock far from zero.
+        // The motion is 1 m/s for 1 s, a static interval of 1 s, and a second without rows; times of a clock far from zero.
         let times: Vec<f64> = (0..400)
             .map(|k| 1.7e9 + 0.01 * f64::from(k))
             .filter(|it| !(1.7e9 + 2.2..1.7e9 + 3.2).contains(it))

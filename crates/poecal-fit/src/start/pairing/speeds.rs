@@ -1,13 +1,13 @@
-//! Lags at which two streams are fast and slow together.
+//! Lags at which the speeds of two streams are correlated.
 
 use nalgebra::Vector3;
 
 use poecal_numerics::distributions::median;
 
-/// Step of the times at which speeds are compared, seconds: the fine one, and most of the coarse ones.
+/// Step of the times at which speeds are compared, seconds: the fine one, and the largest number of coarse ones.
 const FINE_S: f64 = 0.05;
 const MOST: usize = 4000;
-/// Share of the best correlation that lags have which are worth a look.
+/// Share of the best correlation above which lags are candidates.
 const SHARE: f64 = 0.5;
 
 /// Speeds at equal steps of time; `NaN` where a stream has a gap.
@@ -17,7 +17,7 @@ struct Speeds {
     values: Vec<f64>,
 }
 
-/// A place at each of some times, in order.
+/// Positions at some times, in order.
 pub(crate) struct Track {
     times: Vec<f64>,
     places: Vec<Vector3<f64>>,
@@ -25,13 +25,13 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Of times in order, and places.
+    /// Track of times in order, and positions.
     pub(crate) fn new(times: Vec<f64>, places: Vec<Vector3<f64>>) -> Self {
         let step = median(times.windows(2).map(|it| it[1] - it[0]).filter(|it| *it > 0.0)).unwrap_or(FINE_S);
         Track { times, places, gap_s: (4.5 * step).max(0.3) }
     }
 
-    /// The length of the track, seconds.
+    /// Length of the track, seconds.
     pub(crate) fn span_s(&self) -> f64 {
         self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
     }
@@ -58,7 +58,7 @@ impl Track {
     }
 }
 
-/// The correlation of two streams of speeds, the first one's row `k` with the second one's row `k + by`; `None` where too few overlap.
+/// Correlation of two streams of speeds, the first one's row `k` with the second one's row `k + by`; `None` if too few overlap.
 fn correlation(one: &Speeds, other: &Speeds, by: isize, fewest: usize) -> Option<f64> {
     let (mut n, mut x, mut y, mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let first = usize::try_from(-by).unwrap_or_default();
@@ -77,8 +77,8 @@ fn correlation(one: &Speeds, other: &Speeds, by: isize, fewest: usize) -> Option
     (of_x > 0.0 && of_y > 0.0).then(|| (n * xy - x * y) / (of_x * of_y).sqrt())
 }
 
-/// Lags (time of the second less that of the first) by correlation, the best first, so many at most and so far apart, with an overlap of so long;
-/// near a stated one (and how far it may be off) if there is one.
+/// Lags (time of the second less that of the first) by correlation, the best first. Their largest number, their least distance and the least
+/// overlap are limited; with a stated lag (and its largest error) only lags near it count.
 pub(crate) fn lags(
     (one, other): (&Track, &Track),
     overlap_s: f64,
@@ -125,7 +125,7 @@ fn other_first(one: &Speeds, other: &Speeds) -> f64 {
     other.first_s - one.first_s
 }
 
-/// The lag near one that was found with coarse steps.
+/// Lag near one that was found with coarse steps.
 fn finer((one, other): (&Track, &Track), lag: f64, coarse: f64, overlap_s: f64) -> f64 {
     if coarse <= FINE_S {
         return lag;

@@ -1,32 +1,32 @@
-//! Means of stands, without rows that are far from the others, as of a beam that was disturbed.
+//! Means of static intervals, without rows that are far from the others, as after a disturbed beam.
 
 use nalgebra::Vector3;
 
 use super::words::mm;
 use poecal_numerics::distributions::{median, median_point};
 
-/// Times the usual distance from the middle beyond which a row is none of its stand.
+/// Multiple of the usual distance from the middle beyond which a row does not belong to its static interval.
 const FAR: f64 = 10.0;
-/// Times the usual scatter beyond which a stand is named.
+/// Multiple of the usual scatter beyond which a static interval is named.
 const WIDE: f64 = 8.0;
-/// Scatter of a stand that is never named, metres.
+/// Scatter of a static interval that is never named, metres.
 const NARROW_M: f64 = 1e-4;
 
-/// Values that are near their median, by their usual distance from it and a change that is none.
+/// Values near their median, by their usual distance from it and a change that counts as none.
 pub(crate) fn kept_values(values: &[f64], floor: f64) -> Vec<f64> {
     let Some(middle) = median(values.iter().copied()) else { return Vec::new() };
     let usual = median(values.iter().map(|it| (it - middle).abs())).unwrap_or_default();
     values.iter().copied().filter(|it| (it - middle).abs() <= FAR * usual + floor).collect()
 }
 
-/// Of each place, whether it is near the middle of all, likewise.
+/// For each position, true if it is near the middle of all, by the same rule.
 pub(crate) fn kept(places: &[Vector3<f64>], floor_m: f64) -> Vec<bool> {
     let middle = median_point(places);
     let usual = median(places.iter().map(|it| (it - middle).norm())).unwrap_or_default();
     places.iter().map(|it| (it - middle).norm() <= FAR * usual + floor_m).collect()
 }
 
-/// How the rows of a stand scatter about their mean.
+/// Scatter of the rows of a static interval about their mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Spread {
     squares: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Adds places about their mean, of which some were kept.
+    /// Adds positions about their mean, of which some were kept.
     pub(crate) fn add(&mut self, places: &[Vector3<f64>], is_kept: &[bool], mean: &Vector3<f64>) {
         for (place, is_kept) in places.iter().zip(is_kept) {
             let off = (place - mean).norm();
@@ -53,7 +53,7 @@ impl Spread {
         (self.squares / self.count.max(1) as f64).sqrt()
     }
 
-    /// The root mean square of all, metres.
+    /// Root mean square of all, metres.
     pub(crate) fn of_all(all: &[Spread]) -> f64 {
         let sum = |it: Spread, other: &Spread| Spread {
             squares: it.squares + other.squares,
@@ -63,7 +63,8 @@ impl Spread {
         all.iter().fold(Spread::default(), sum).root_m()
     }
 
-    /// What should be looked at: stands with rows that were left out, and stands that scatter far more than the others; `lines` names some of them.
+    /// Warnings about static intervals with rows that were left out, and about those with far more scatter than the others; `lines` names
+    /// some of them.
     pub(crate) fn warnings(all: &[Spread], lines: impl Fn(&[usize]) -> String) -> Vec<String> {
         let usual = median(all.iter().map(Spread::root_m)).unwrap_or_default();
         let of = |is: &dyn Fn(&Spread) -> bool| -> Vec<usize> {

@@ -1,55 +1,56 @@
-//! Times in which nothing moves, in a stream of readings or of measurements.
+//! Static intervals in a stream of readings or of measurements.
 
 use std::ops::Range;
 
 use poecal_numerics::distributions::{mean_square_quantile, median};
 
-/// Shortest time of a stand, and what is cut off at both of its ends, seconds.
+/// Shortest static interval, and the time that is cut off at both of its ends, seconds.
 const SHORTEST_S: f64 = 0.3;
 const CUT_S: f64 = 0.1;
 /// Share of the shortest time that is enough for one of these.
 const SHORT: f64 = 0.75;
-/// Share of the time of a stream that short stands alone must be.
+/// Least share of the time of a stream that short static intervals alone must have.
 const MOSTLY_STILL: f64 = 0.8;
-/// Longest time without a row within a window, seconds, and as many steps from row to row where that is more.
+/// Longest time without a row within a window, seconds, and as a number of steps from row to row if that is longer.
 const LONGEST_GAP_S: f64 = 0.15;
 const LONGEST_GAP_STEPS: f64 = 2.5;
 /// Fewest rows of a window.
 const FEWEST: usize = 3;
-/// Share of the windows that stand at least: their scatter is below that of so many shows the noise.
+/// Least share of static windows: the scatter at this quantile is the noise.
 const QUIET: f64 = 0.1;
-/// Standard normal quantiles of that share, and of what a window that stands may reach.
+/// Standard normal quantiles of that share, and of the largest scatter of a static window.
 const QUIET_SCORE: f64 = -1.281_6;
 const STILL_SCORE: f64 = 3.3;
-/// How many times more than in the quietest windows, and than from row to row, a window may scatter: noise is not white, nor the same everywhere.
+/// Largest ratio of a window's scatter to that of the quietest windows, and to that from row to row: noise is neither white nor the same
+/// everywhere.
 const TIMES: f64 = 1.5;
 const TIMES_NOISE: f64 = 4.0;
-/// Two stands whose means differ by less than this many tolerances are one, which was interrupted.
+/// Two static intervals whose means differ by less than this many tolerances are one, which was interrupted.
 const SAME: f64 = 2.0;
-/// Share of the range of a channel beyond which its tolerance shows that nothing stands.
+/// Share of the range of a channel beyond which its tolerance means that there is no static interval.
 const LARGEST: f64 = 0.05;
 
-/// A time in which nothing moves.
+/// A static interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stand {
-    /// Its rows, without those at its ends.
+    /// Rows, without those at its ends.
     pub rows: Range<usize>,
-    /// When it begins and ends, seconds.
+    /// Begin and end, seconds.
     pub span_s: (f64, f64),
 }
 
-/// Numbers of the rows of a stream that move together, as the coordinates of a point.
+/// Numbers of the rows of a stream that move together, such as the coordinates of a point.
 #[derive(Clone, Debug)]
 pub struct Channels {
-    /// The values of each number.
+    /// Values of each number.
     pub values: Vec<Vec<f64>>,
-    /// In how many directions they move.
+    /// Number of directions in which they move.
     pub freedom: usize,
-    /// A change that is none.
+    /// Largest change that counts as no motion.
     pub floor: f64,
 }
 
-/// Why rows that change as those of a recording are none.
+/// Reason why rows that change like those of a recording are no stream.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoStream {
     /// A row has no time.
@@ -61,7 +62,7 @@ pub enum NoStream {
 }
 
 impl NoStream {
-    /// The same, by other numbers of its rows.
+    /// The same reason, by other numbers of its rows.
     #[must_use]
     pub fn of_rows(self, rows: &[usize]) -> Self {
         let of = |row: usize| rows.get(row).copied().unwrap_or(row);
@@ -81,19 +82,20 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Of the times of rows, and of what moves.
+    /// Stream of the times of rows, and of their channels.
     #[must_use]
     pub fn new(times: Vec<f64>, channels: Vec<Channels>) -> Self {
         Stream { times, channels }
     }
 
-    /// Whether it is one: rows in time, at most a quarter of a second from one to the next, and far more of them than places.
+    /// True if it is a stream: rows in time, at most a quarter of a second from one to the next, and far more of them than static
+    /// positions.
     #[must_use]
     pub fn is_dense(&self) -> bool {
         self.is_smooth() && self.no_stream().is_none()
     }
 
-    /// Whether most rows are near the ones before them, as in a recording.
+    /// True if most rows are near the ones before them, as in a recording.
     #[must_use]
     pub fn is_smooth(&self) -> bool {
         const ROWS: usize = 50;
@@ -106,7 +108,7 @@ impl Stream {
             })
     }
 
-    /// What is wrong with the times, if rows are those of a recording.
+    /// Fault of the times, if rows are those of a recording.
     #[must_use]
     pub fn no_stream(&self) -> Option<NoStream> {
         const STEP_S: f64 = 0.25;
@@ -121,14 +123,14 @@ impl Stream {
         self.times.windows(2).position(|it| it[1] < it[0]).map(|at| NoStream::Back(at + 1))
     }
 
-    /// The times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.
+    /// Times of 0.3 s or longer in which no channel moves by more than its own noise, without 0.1 s at both ends.
     #[must_use]
     pub fn stands(&self) -> Vec<Stand> {
         let found = self.stands_by(SHORTEST_S);
         if !found.is_empty() {
             return found;
         }
-        // Nothing but stands one after the other, each as short as may be, is seen by shorter windows.
+        // Only consecutive static intervals, each as short as possible, are detected by shorter windows.
         let step = median(self.times.windows(2).map(|it| it[1] - it[0])).unwrap_or_default();
         let mut found = self.stands_by(0.5 * SHORTEST_S);
         // A row at an end may be lost in the noise.
@@ -139,7 +141,7 @@ impl Stream {
         if still >= MOSTLY_STILL * all { found } else { Vec::new() }
     }
 
-    /// The times in which nothing moves, by windows of this length, seconds.
+    /// Static intervals by windows of this length, seconds.
     fn stands_by(&self, window_s: f64) -> Vec<Stand> {
         let windows = self.windows(window_s);
         if windows.len() < FEWEST {
@@ -194,7 +196,7 @@ impl Stream {
         joined.into_iter().filter_map(|it| self.cut(&it)).collect()
     }
 
-    /// A stand without its ends.
+    /// A static interval without its ends.
     fn cut(&self, rows: &Range<usize>) -> Option<Stand> {
         let (first, last) = (*self.times.get(rows.start)?, *self.times.get(rows.end.checked_sub(1)?)?);
         let cut = CUT_S.min(0.25 * (last - first));
@@ -261,7 +263,7 @@ impl Sums {
         self.middle + Self::between(&self.first, rows) / rows.len().max(1) as f64
     }
 
-    /// The variance of rows.
+    /// Variance of rows.
     fn variance(&self, rows: &Range<usize>) -> f64 {
         let count = rows.len().max(2) as f64;
         let mean = Self::between(&self.first, rows) / count;
@@ -269,7 +271,7 @@ impl Sums {
     }
 }
 
-/// The standard deviation of numbers in a window, of all together.
+/// Standard deviation of numbers in a window, of all together.
 fn deviation(sums: &[Sums], rows: &Range<usize>) -> f64 {
     sums.iter().map(|it| it.variance(rows)).sum::<f64>().sqrt()
 }
@@ -288,14 +290,14 @@ fn bends(values: &[Vec<f64>], rows: usize) -> Vec<f64> {
     std::iter::once(0.0).chain(sums).collect()
 }
 
-/// The noise of numbers in a window, of all together, from row to row: of what is left of second differences.
+/// Noise of numbers in a window, of all together, from row to row, by second differences.
 fn row_noise(bends: &[f64], rows: &Range<usize>) -> f64 {
     let inner = rows.start..rows.end.saturating_sub(2).max(rows.start);
     // White noise of one unit has second differences of √6.
     (Sums::between(bends, &inner).max(0.0) / inner.len().max(1) as f64 / 6.0).sqrt()
 }
 
-/// The value that this share of all is below.
+/// Quantile of values.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut values = values.to_vec();
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };
@@ -314,7 +316,7 @@ fn span(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Five stands of one second between moves of half a second, at 100 rows a second, with noise.
+    /// Five static intervals of one second between moves of half a second, at 100 rows a second, with noise.
     fn stream(noise: f64) -> Stream {
         let mut values = Vec::new();
         for stand in 0..5 {

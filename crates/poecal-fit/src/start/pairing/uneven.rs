@@ -7,37 +7,39 @@ use poecal_numerics::distributions::median;
 /// Configurations of a window, and steps between two windows.
 const WINDOW: usize = 9;
 const STEP: usize = 4;
-/// Rows beyond the difference of the lengths by which a window may be off.
+/// Rows beyond the difference of the lengths by which a window may be shifted.
 const BEYOND: usize = 6;
-/// Times the usual error that a pair may have, and what it costs to leave a row without partner, or to take one twice, in squares of it.
+/// Largest error of a pair in units of the usual one; and the cost of a row without partner, or of one that is taken twice, in squares of
+/// it.
 const MOST: f64 = 6.0;
 const GAP: f64 = 25.0;
 /// Rounds of registration and alignment.
 const ROUNDS: usize = 12;
-/// Most rows of the one times rows of the other that are aligned.
+/// Largest product of the numbers of rows that are aligned.
 const MOST_CELLS: usize = 4_000_000;
-/// Most windows that are registered, and fewest places of them in the measurements: lists whose lengths differ by more have no order.
+/// Largest number of windows that are registered, and fewest positions of them in the measurements: lists whose lengths differ by more have
+/// no order.
 const MOST_WINDOWS: usize = 2400;
 const FEWEST_PLACES: usize = 6;
 
 /// Pairs of lists of unequal length; rows from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Aligned {
-    /// The pairs, in order.
+    /// Pairs, in order.
     pub pairs: Vec<Pair>,
-    /// Rows of joint readings at which nothing was measured.
+    /// Rows of joint readings without a measurement.
     pub unmeasured: Vec<usize>,
-    /// Rows of joint readings at which was measured more than once.
+    /// Rows of joint readings with more than one measurement.
     pub repeated: Vec<usize>,
-    /// Configurations of which no readings were written, or that fit none.
+    /// Configurations without readings, or that fit none.
     pub unread: Vec<usize>,
-    /// Configurations that fit two neighbouring rows of readings alike, and are left out.
+    /// Configurations that fit two neighbouring rows of readings equally well, and are left out.
     pub unclear: Vec<usize>,
     /// Median error of the pairs, metres.
     pub missed_m: f64,
 }
 
-/// What the best way to a cell does last.
+/// Last step of the best path to a cell.
 #[derive(Clone, Copy, PartialEq)]
 enum Step {
     Pair,
@@ -47,7 +49,8 @@ enum Step {
 }
 
 impl Unpaired<'_> {
-    /// Pairs in the order of both lists, by the errors of the registered nominal robot: of the best window first, then of all that is paired.
+    /// Pairs in the order of both lists, by the errors of the registered nominal robot: of the best window first, then of all pairs. The
+    /// alignment is by dynamic programming.
     #[must_use]
     pub fn aligned(&self) -> Option<Aligned> {
         let (joints, shots) = (self.joint_rows(), self.shots.len());
@@ -86,7 +89,7 @@ impl Unpaired<'_> {
         })
     }
 
-    /// The registration of the window that fits best.
+    /// Registration of the window that fits best.
     fn best_window(&self, band: usize) -> Option<(Estimate, f64)> {
         let (joints, shots) = (self.joint_rows(), self.shots.len());
         let size = WINDOW.min(joints).min(shots);
@@ -140,7 +143,7 @@ impl Costs {
         Costs { band, width, errors }
     }
 
-    /// The error of a pair, metres; infinite far from the diagonal.
+    /// Error of a pair, metres; infinite far from the diagonal.
     fn at(&self, joint: usize, shot: usize) -> f64 {
         let at = (joint + self.band).checked_sub(shot).filter(|it| *it < self.width);
         at.and_then(|at| self.errors.get(shot * self.width + at)).copied().unwrap_or(f64::INFINITY)
@@ -175,7 +178,7 @@ impl Costs {
                 if joint > 0 && shot > 0 {
                     let own = pair(joint - 1, shot - 1);
                     consider(costs[cell(joint - 1, shot - 1)] + own, Step::Pair);
-                    // The row of the pair before.
+                    // This is the row of the pair before.
                     if matches!(steps[cell(joint, shot - 1)], Step::Pair | Step::Again) {
                         consider(costs[cell(joint, shot - 1)] + GAP * 0.5 + own, Step::Again);
                     }

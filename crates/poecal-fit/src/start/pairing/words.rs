@@ -14,7 +14,7 @@ pub fn numbered(lines: &[String]) -> String {
     numbered_as("line", lines)
 }
 
-/// The same as rows of a sheet.
+/// The same lines as rows of a sheet.
 #[must_use]
 pub fn numbered_as(word: &str, lines: &[String]) -> String {
     format!("{word}{} {}", if lines.len() == 1 { "" } else { "s" }, first_few(lines))

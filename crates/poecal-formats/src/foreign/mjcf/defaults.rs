@@ -1,4 +1,4 @@
-//! What elements of MuJoCo's models say by themselves, by the defaults of their class, and by the settings of the compiler.
+//! Values of elements in MuJoCo's models: their own, the defaults of their class, and the settings of the compiler.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -11,10 +11,10 @@ use poecal_arm::lie::{Pose, rotation};
 use poecal_numerics::error::Result;
 use poecal_storage::xml::XmlSource;
 
-/// Ways to say a rotation.
+/// Attributes that state a rotation.
 const ROTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// How numbers are to be understood.
+/// Settings for the interpretation of numbers.
 pub(crate) struct Settings<'a> {
     in_degrees: bool,
     pub(crate) limits_alone: bool,
@@ -59,7 +59,7 @@ impl<'a> Settings<'a> {
         if self.in_degrees { angle / 180.0 * PI } else { angle }
     }
 
-    /// Lower case turns about the axes as they move, upper case about those that stay.
+    /// Lower case means intrinsic axes, upper case extrinsic ones.
     fn euler(&self, angles: [f64; 3]) -> Matrix3<f64> {
         let mut turn = Matrix3::identity();
         for (axis, angle) in self.euler.chars().zip(angles) {
@@ -71,18 +71,18 @@ impl<'a> Settings<'a> {
     }
 }
 
-/// An element, and the class of its defaults where it names none.
+/// An element, and the class of its defaults if it names none.
 #[derive(Clone, Copy)]
 pub(crate) struct Stated<'a> {
     pub(crate) node: Node<'a, 'a>,
     pub(crate) class: Option<&'a str>,
 }
 
-/// What elements say.
+/// Attributes of elements, with their defaults.
 pub(crate) struct Defaults<'a> {
     pub(crate) source: XmlSource<'a>,
     pub(crate) settings: Settings<'a>,
-    /// Blocks of defaults: the element, and the block whose defaults it begins with.
+    /// Blocks of defaults: the element, and the block from which it inherits.
     classes: Vec<(Node<'a, 'a>, Option<usize>)>,
     /// The block of each class.
     blocks: BTreeMap<String, usize>,
@@ -110,7 +110,7 @@ impl<'a> Defaults<'a> {
             let class = node.attribute("class").unwrap_or(&self.main).to_owned();
             let index = self.classes.len();
             self.classes.push((node, outer));
-            // Only the outermost may be stated in parts.
+            // Only the outermost class may be stated in parts.
             if self.blocks.insert(class.clone(), index).is_some() && (node != root || class != self.main) {
                 let message = format!("found the class `{class}` a second time, expected each class once");
                 return self.source.refuse(node, message);
@@ -162,7 +162,7 @@ impl<'a> Defaults<'a> {
         self.source.numbers(stating, name, &described(of.node))
     }
 
-    /// A direction of length 1 where one is stated.
+    /// A stated direction, with length 1.
     pub(crate) fn direction(&self, node: Node<'a, 'a>, axis: [f64; 3]) -> Result<Unit<Vector3<f64>>> {
         unit(axis).ok_or_else(|| self.no_length(node, "an axis"))
     }
@@ -171,11 +171,11 @@ impl<'a> Defaults<'a> {
         self.source.error(node, format!("found {what} of no length in {}", described(node)))
     }
 
-    /// The pose of an element: `pos`, and one of five ways to say a rotation.
+    /// The pose of an element: `pos`, and one of five attributes for the rotation.
     pub(crate) fn pose(&self, element: Stated<'a>) -> Result<Pose> {
         let node = element.node;
         let position = self.numbers::<3>(element, "pos")?.unwrap_or_default();
-        // What says the rotation says it alone, whatever farther defaults say.
+        // The element that states the rotation determines it alone, whatever outer defaults state.
         let Some(stating) = self.stating_one(element, node.tag_name().name(), &ROTATIONS)? else {
             return Ok(Pose::from_translation(position.into()));
         };
@@ -201,7 +201,7 @@ impl<'a> Defaults<'a> {
             Matrix3::from_columns(&[*x, *y, x.cross(&y)])
         } else if let Some(z) = self.source.numbers::<3>(stating, "zaxis", &of)? {
             let z = self.direction(node, z)?;
-            // Of a direction against z, MuJoCo turns about x.
+            // For a direction opposite to z, MuJoCo rotates about x.
             match Unit::try_new(Vector3::z().cross(&z), 1e-7) {
                 Some(axis) => rotation::exp(&(axis.into_inner() * Vector3::z().cross(&z).norm().atan2(z.z))),
                 None if z.z < 0.0 => rotation::about(0, PI),

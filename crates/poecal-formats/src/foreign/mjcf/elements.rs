@@ -3,7 +3,7 @@
 use nalgebra::{Unit, Vector3};
 use roxmltree::Node;
 
-/// An element in messages.
+/// Name of an element in messages.
 pub(crate) fn described(node: Node<'_, '_>) -> String {
     let tag = node.tag_name().name();
     match node.attribute("name") {

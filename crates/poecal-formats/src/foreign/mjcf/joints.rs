@@ -19,7 +19,7 @@ const KINDS: [(&str, LinkJointKind); 4] = [
 const LIMITED: [(&str, Option<bool>); 3] = [("true", Some(true)), ("false", Some(false)), ("auto", None)];
 
 impl<'a> Reader<'a, '_> {
-    /// The link of the last joint, made where the joint does not end at its body.
+    /// The link of the last joint, which is added if the joint does not end at its body.
     pub(crate) fn link_of_last(&mut self, parent: &str, body: Node<'a, 'a>) -> String {
         let Some(last) = self.links.joints.last().filter(|it| it.child.is_empty()) else {
             return parent.to_owned();
@@ -35,7 +35,8 @@ impl<'a> Reader<'a, '_> {
         link
     }
 
-    /// A joint of a body: the frame on its axis, whose link is named by what follows (none yet), and the body in it.
+    /// Adds a joint of a body. Returns its link, still without a name, which the next element determines, and the body in the joint's frame on its
+    /// axis.
     pub(crate) fn read_joint(
         &mut self,
         Part { stated, body_from_frame }: Part<'a>,
@@ -80,7 +81,7 @@ impl<'a> Reader<'a, '_> {
         let range = range.filter(|_| counts).map(|range| range.map(angle));
         let limits = range.and_then(|[lower, upper]| Limits::between(lower, upper));
         let body_from_joint = Pose::from_translation(place);
-        // The bodies are stated in the pose in which the joint has its reference.
+        // The poses of bodies are stated for the joint at its reference.
         let back = kind.motion(&axis, -reference).unwrap_or_else(Pose::identity);
         let wanted = format!("{}_joint", body.attribute("name").unwrap_or("body"));
         let name = self.links.joint_name(node.attribute("name"), &wanted);
@@ -120,7 +121,7 @@ impl<'a> Reader<'a, '_> {
                 continue;
             };
             match leader {
-                // No other relation is one of a URDF: a chain over such a joint is refused.
+                // URDF has no other relation: a chain over such a joint is refused.
                 Some(_) if at[2..].iter().any(|it| *it != 0.0) => joint.kind = LinkJointKind::Free,
                 Some((leader, other)) if at[1] != 0.0 => {
                     let offset = own + at[0] - at[1] * other;
@@ -137,7 +138,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// Coefficients of the relation of two joints; what is not stated is as it is without.
+    /// Coefficients of the relation of two joints; missing ones have their defaults.
     fn coefficients(&self, node: Node<'a, 'a>) -> Result<[f64; 5]> {
         let mut at = [0.0, 1.0, 0.0, 0.0, 0.0];
         let words: Vec<&str> = node.attribute("polycoef").unwrap_or_default().split_whitespace().collect();

@@ -1,4 +1,4 @@
-//! MuJoCo's model. A body is a link; between it and the body around it stand its joints, in their order.
+//! MuJoCo's model. A body is a link; its joints, in their order, connect it to the outer body.
 
 mod defaults;
 mod elements;
@@ -20,9 +20,9 @@ use poecal_storage::xml::{XmlSource, parsed, readable};
 
 /// The body around all bodies.
 const WORLD: &str = "world";
-/// What is read.
+/// Expected model, in errors.
 const EXPECTED: &str = "a model of MuJoCo";
-/// Elements that stand for others, which MuJoCo makes when it compiles the model.
+/// Elements that MuJoCo replaces by others when it compiles the model.
 const MADE_BY_MUJOCO: [&str; 4] = ["include", "replicate", "attach", "composite"];
 
 /// The links; sites of these names are links too.
@@ -75,7 +75,7 @@ struct Reader<'a, 'b> {
     references: BTreeMap<String, f64>,
 }
 
-/// Something in a body: where it stands in the link, the class of its defaults, and whether the only site is the tip.
+/// Contents of a body: their pose in the link, the class of their defaults, and whether the only site is the tip.
 #[derive(Clone)]
 struct Inside<'a> {
     link: String,
@@ -122,7 +122,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// A site that is a link: one that is named, or the only one at the end of a chain.
+    /// Reads a site as a link, if it is named or the only one at the end of a chain.
     fn read_site(&mut self, site: Stated<'a>, here: &Inside<'a>) -> Result<()> {
         let name = site.node.attribute("name").unwrap_or_default();
         let is_wanted = self.named.contains(&name) && !self.links.has(name);
@@ -145,7 +145,7 @@ impl<'a> Reader<'a, '_> {
         Ok(())
     }
 
-    /// Elements of a body that count for it, those in frames within it too, in the order of the file.
+    /// Elements of a body that belong to it, also those in frames within it, in the order of the file.
     fn parts(&self, body: Stated<'a>, tags: &[&str]) -> Result<Vec<Part<'a>>> {
         let mut found = Vec::new();
         let own = |of: Stated<'a>, body_from_frame| {
@@ -167,7 +167,7 @@ impl<'a> Reader<'a, '_> {
         Ok(found)
     }
 
-    /// A body with its joints; what is inside stands in its frame.
+    /// Reads a body with its joints; its contents are in its frame.
     fn read_body(&mut self, body: Stated<'a>, outer: &Inside<'a>) -> Result<Inside<'a>> {
         let node = body.node;
         let class = node.attribute("childclass").or(body.class);
@@ -182,7 +182,7 @@ impl<'a> Reader<'a, '_> {
             Some(name) => self.links.add(name, inertial),
             None => self.links.add_unnamed("body", inertial),
         };
-        // A joint that goes through the body's frame ends there.
+        // A joint through the origin of the body's frame ends there.
         let is_there = parent_from_body == Pose::identity();
         match self.links.joints.last_mut() {
             Some(last) if is_there && last.child.is_empty() => last.child.clone_from(&link),

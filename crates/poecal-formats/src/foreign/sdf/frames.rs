@@ -1,4 +1,4 @@
-//! Frames of a model of Gazebo, and where they are.
+//! Frames of a model of Gazebo, and their poses.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -11,16 +11,16 @@ use poecal_numerics::error::Result;
 use poecal_storage::numbers::LARGEST_NUMBER;
 use poecal_storage::xml::XmlSource;
 
-/// Most models in each other: names of what is in them begin with all of theirs.
+/// Largest depth of nested models: names of their contents begin with the names of all of them.
 const DEEPEST: usize = 64;
 
 /// Something with a pose.
 pub(crate) struct Frame<'a> {
     pub(crate) node: Option<Node<'a, 'a>>,
     pose: Pose,
-    /// Name of the frame that the pose is in; empty of the world's.
+    /// Name of the frame in which the pose is stated; empty for the world.
     base: String,
-    /// Name of the frame whose link it is fixed to; itself of a link, none of a joint.
+    /// Name of the frame to whose link it is fixed: its own name for a link, `None` for a joint.
     on: Option<String>,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Frame<'a> {
 pub(crate) struct Frames<'a> {
     pub(crate) source: XmlSource<'a>,
     pub(crate) found: BTreeMap<String, Frame<'a>>,
-    /// Poses in the world that were asked for.
+    /// Poses in the world that were computed so far.
     placed: RefCell<BTreeMap<String, Pose>>,
     /// Names of links and joints, in the order of the file, with their model's prefix.
     pub(crate) links: Vec<String>,
@@ -36,7 +36,7 @@ pub(crate) struct Frames<'a> {
 }
 
 impl<'a> Frames<'a> {
-    /// Those of a model.
+    /// The frames of a model.
     pub(crate) fn from_model(source: XmlSource<'a>, model: Node<'a, 'a>) -> Result<Self> {
         let (found, placed) = (BTreeMap::new(), RefCell::default());
         let mut frames = Frames { source, found, placed, links: Vec::new(), joints: Vec::new() };
@@ -179,7 +179,7 @@ impl<'a> Frames<'a> {
         Ok((pose, base))
     }
 
-    /// A truth value, as readers of SDF take it.
+    /// A truth value, in the forms that readers of SDF accept.
     pub(crate) fn is_true(&self, node: Node<'a, 'a>, word: &str, of: &str) -> Result<bool> {
         match word.trim().to_ascii_lowercase().as_str() {
             "true" | "1" => Ok(true),
@@ -226,10 +226,10 @@ impl<'a> Frames<'a> {
         self.source.error(at.unwrap_or_else(|| self.source.document.root_element()), message)
     }
 
-    /// Where a frame stands in the world, all joints at zero.
+    /// Pose of a frame in the world, all joints at zero.
     pub(crate) fn world_from(&self, name: &str) -> Result<Pose> {
         let (mut at, mut asking) = (name, None);
-        // From the frame to the first whose place is known, and back.
+        // The walk goes from the frame to the first one with a known pose, and back.
         let mut passed: Vec<(&str, &Frame)> = Vec::new();
         while passed.len() <= self.found.len() {
             let known = self.placed.borrow().get(at).copied();
@@ -258,7 +258,7 @@ impl<'a> Frames<'a> {
         ))
     }
 
-    /// The link that a frame is fixed to.
+    /// The link to which a frame is fixed.
     pub(crate) fn link_of(&self, name: &str, asking: Node<'a, 'a>) -> Result<String> {
         let mut at = name.to_owned();
         for _ in 0..=self.found.len() {

@@ -142,7 +142,7 @@ impl<'a> Frames<'a> {
         Ok(Limits::between(lower, upper))
     }
 
-    /// `q = multiplier (q' − reference) + offset`.
+    /// The relation `q = multiplier (q' − reference) + offset`.
     fn mimic(&self, axis: Node<'a, 'a>, (prefix, of): (&str, &str)) -> Result<Option<Mimic>> {
         let Some(node) = self.source.child(axis, "mimic") else { return Ok(None) };
         let (joint, _) = self.source.required(node, "joint", of)?;

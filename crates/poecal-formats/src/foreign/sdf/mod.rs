@@ -1,4 +1,4 @@
-//! Gazebo's model. Links, joints, frames and models within the model each have a pose in another one; where joints stand in links follows.
+//! Gazebo's model. Links, joints, frames and models within the model each have a pose in another one; the poses of joints in links follow.
 
 mod frames;
 mod joints;
@@ -15,7 +15,7 @@ use poecal_numerics::error::Result;
 use poecal_storage::xml::{XmlSource, parsed, readable};
 use words::{MODEL, WORLD, text_of};
 
-/// What is read.
+/// Expected model, in errors.
 const EXPECTED: &str = "a model of Gazebo (SDF)";
 
 /// The links; frames of these names are links too.
@@ -58,7 +58,7 @@ fn the_model<'a>(source: XmlSource<'a>, root: Node<'a, 'a>) -> Result<Node<'a, '
     }
 }
 
-/// Whether an element is one of a plugin, which says what it likes.
+/// True if an element belongs to a plugin, which may have any content.
 fn is_of_plugin(node: Node<'_, '_>) -> bool {
     node.ancestors().any(|it| it.has_tag_name("plugin"))
 }

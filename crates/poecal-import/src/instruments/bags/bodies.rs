@@ -1,4 +1,4 @@
-//! Bodies that the messages of a topic say the poses of.
+//! Bodies whose poses are in the messages of a topic.
 
 use std::collections::HashMap;
 
@@ -7,17 +7,17 @@ use super::super::maker::{Column, Made, Value, place, quaternion};
 use super::clock::{Stamp, Timed};
 use super::messages::{Kind, Pose};
 
-/// Where a body was.
+/// Observed position of a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct Seen {
     position: [f64; 3],
     quaternion: [f64; 4],
 }
 
-/// A body: a frame, or what a topic is about.
+/// A body: a frame, or the subject of a topic.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
-    /// The frame in which it is.
+    /// The frame in which its poses are expressed.
     parent: String,
     /// Its frame; empty if messages do not name it.
     pub(crate) child: String,
@@ -29,24 +29,24 @@ pub(crate) struct Body {
 pub(crate) struct Bodies {
     pub(crate) kind: Kind,
     pub(crate) all: Vec<Body>,
-    /// Places of bodies by their frames.
+    /// Indices of bodies by their frames.
     places: HashMap<(String, String), usize>,
-    /// Number of poses of all.
+    /// Number of poses of all bodies.
     pub(crate) held: usize,
 }
 
 impl Bodies {
-    /// None, of messages of a kind.
+    /// No bodies yet, for messages of this kind.
     pub(crate) fn new(kind: Kind) -> Self {
         Bodies { kind, all: Vec::new(), places: HashMap::new(), held: 0 }
     }
 
-    /// Whether these are transforms of any frames, such as the robot's own.
+    /// True if these are transforms of any frames, such as the robot's own.
     pub(crate) fn are_frames(&self) -> bool {
         self.kind == Kind::Transforms
     }
 
-    /// Whether they have orientations.
+    /// True if they have orientations.
     pub(crate) fn are_posed(&self) -> bool {
         self.kind.is_posed()
     }
@@ -67,13 +67,13 @@ impl Bodies {
     }
 }
 
-/// Whether these numbers say something: all are finite, and not all zero.
+/// True if these numbers were set: all are finite, and not all are zero.
 fn is_stated(numbers: &[f64]) -> bool {
     numbers.iter().all(|it| it.is_finite()) && numbers.iter().any(|it| *it != 0.0)
 }
 
 impl Body {
-    /// How far it moved, metres.
+    /// Distance that it moved, metres.
     pub(crate) fn moved_m(&self) -> f64 {
         let positions = self.seen.0.iter().map(|it| it.1.position);
         moved_m(&positions.filter(|it| is_stated(it)).collect::<Vec<_>>())

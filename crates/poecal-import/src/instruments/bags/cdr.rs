@@ -2,20 +2,20 @@
 
 use poecal_storage::containers::mcap::LONGEST_NAME;
 
-/// Bytes before the first value, from behind which values are aligned.
+/// Bytes of the head; values are aligned from behind it.
 const HEAD: usize = 4;
 
 /// A message, read from its beginning on.
 #[derive(Clone, Debug)]
 pub(crate) struct Cdr<'m> {
-    /// What is behind the head.
+    /// The bytes behind the head.
     bytes: &'m [u8],
     at: usize,
     is_little: bool,
 }
 
 impl<'m> Cdr<'m> {
-    /// The values of a message; an error says what was found.
+    /// The values of a message; an error states what was found.
     pub(crate) fn new(message: &'m [u8]) -> Result<Self, String> {
         let Some((head, bytes)) = message.split_at_checked(HEAD) else {
             return Err(format!("{} bytes", message.len()));
@@ -27,7 +27,7 @@ impl<'m> Cdr<'m> {
         }
     }
 
-    /// The next bytes, behind those that align them.
+    /// The next bytes, behind the padding that aligns them.
     fn take<const N: usize>(&mut self) -> Result<[u8; N], String> {
         let start = self.at.next_multiple_of(N);
         let found = self.bytes.get(start..).and_then(<[u8]>::first_chunk);
@@ -36,7 +36,7 @@ impl<'m> Cdr<'m> {
         Ok(if self.is_little { found } else { reversed(found) })
     }
 
-    /// What is found where a message ends too soon.
+    /// Description of a message that ends too soon.
     fn end(&self) -> String {
         format!("its end after {} bytes", HEAD + self.bytes.len())
     }
@@ -53,7 +53,7 @@ impl<'m> Cdr<'m> {
         self.take().map(f64::from_le_bytes)
     }
 
-    /// So many numbers.
+    /// An array of `N` numbers.
     pub(crate) fn array<const N: usize>(&mut self) -> Result<[f64; N], String> {
         let mut found = [0.0; N];
         for it in &mut found {
@@ -62,7 +62,7 @@ impl<'m> Cdr<'m> {
         Ok(found)
     }
 
-    /// The number of parts of a sequence, each of so many bytes at least.
+    /// The number of elements of a sequence, each of at least `least` bytes.
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, String> {
         let count = self.u32()? as usize;
         let rest = self.bytes.len().saturating_sub(self.at);
@@ -105,7 +105,7 @@ fn reversed<const N: usize>(mut bytes: [u8; N]) -> [u8; N] {
 mod tests {
     use super::*;
 
-    /// The values of both byte orders: those of four bytes as they are, and one of eight behind what aligns it.
+    /// The values of both byte orders: those of four bytes, and one of eight behind its padding.
     #[test]
     fn values_are_aligned_from_behind_the_head() {
         let little = [

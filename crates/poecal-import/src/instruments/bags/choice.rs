@@ -1,4 +1,4 @@
-//! Which topics of a bag are read: the only ones that can be meant, or those that were asked for.
+//! Choice of the topics of a bag to be read: the only possible ones, or those that the user asked for.
 
 use super::super::bodies::which_move;
 use super::super::maker::Made;
@@ -9,7 +9,7 @@ use super::topics::{Content, Topic, Topics};
 use crate::ReadOptions;
 use poecal_numerics::error::first_few;
 
-/// Most candidates that are named.
+/// Largest number of candidates in a message.
 const NAMED: usize = 12;
 
 /// The body that was measured.
@@ -18,7 +18,7 @@ pub(crate) struct Measured<'t> {
     topic: &'t Topic,
     bodies: &'t Bodies,
     pub(crate) body: &'t Body,
-    /// Others, in words.
+    /// Other bodies, in words.
     left: Vec<String>,
 }
 
@@ -33,17 +33,17 @@ impl Measured<'_> {
     }
 }
 
-/// Why nothing is taken.
+/// The reason why nothing is taken, as an error.
 fn missing<T>(why: String) -> Result<T, Missing> {
     Err(Missing { why, is_nothing: false })
 }
 
-/// Some of what could be meant, in words.
+/// Some candidates, in words.
 fn words<T>(some: &[T], of: impl Fn(&T) -> String) -> String {
     some.iter().take(NAMED).map(of).collect::<Vec<_>>().join(", ")
 }
 
-/// The same of bodies, with the number of the others.
+/// The candidate bodies in words, with the number of the others.
 fn bodies(some: &[Measured<'_>]) -> String {
     let more = match some.len().saturating_sub(NAMED) {
         0 => String::new(),
@@ -52,7 +52,7 @@ fn bodies(some: &[Measured<'_>]) -> String {
     words(some, |it| it.body.words(&it.topic.name)) + &more
 }
 
-/// The topics that hold something, each with that: of these those that were asked for, if some were. `what` is missing if there is none.
+/// The topics with content of a kind, each with its content; if the user asked for topics, only these. An error states that `what` is missing.
 fn wanted<'t, T>(
     topics: &'t Topics<'_>,
     options: &ReadOptions,
@@ -106,7 +106,7 @@ pub(crate) fn joints<'t>(
     }
 }
 
-/// What was measured.
+/// The measured body.
 pub(crate) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Result<Measured<'t>, Missing> {
     let what = "nothing measured (PoseStamped, PointStamped, TransformStamped or TFMessage)";
     let all = wanted(topics, options, what, Content::bodies)?;
@@ -137,7 +137,7 @@ pub(crate) fn measured<'t>(topics: &'t Topics<'_>, options: &ReadOptions) -> Res
     Ok(Measured { left, ..one })
 }
 
-/// Of all that was measured what can be meant: the frame that was asked for, or what is no frame of the robot's own.
+/// Candidates among the measured bodies: the requested frame, or else bodies that are no frames of the robot itself.
 fn narrow<'t>(
     found: &[Measured<'t>],
     all: &[(&Topic, &Bodies)],

@@ -3,27 +3,27 @@
 /// Nanoseconds of a second.
 pub(crate) const SECOND: i64 = 1_000_000_000;
 
-/// When a message was made, nanoseconds.
+/// Time of a message, nanoseconds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stamp {
-    /// By the message; 0 if it was not set.
+    /// Time in the message; 0 if it was not set.
     pub(crate) own: i64,
-    /// When it was written to the bag.
+    /// Time of its entry in the bag.
     pub(crate) log: u64,
 }
 
-/// What messages hold, each with when it was made.
+/// Contents of messages, each with its time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timed<T>(pub(crate) Vec<(Stamp, T)>);
 
 impl<T> Timed<T> {
-    /// The clock of the messages: that of the log where most of them have no time of their own.
+    /// The clock of the messages: that of the log if most of them have no time of their own.
     pub(crate) fn clock(&self) -> Clock {
         let unset = self.0.iter().filter(|it| it.0.own == 0).count();
         Clock { is_log: 2 * unset > self.0.len(), unset }
     }
 
-    /// The times of those that have one, nanoseconds.
+    /// The times of the messages that have one, nanoseconds.
     fn times(&self) -> impl Iterator<Item = (i64, usize, &T)> {
         let clock = self.clock();
         let all = self.0.iter().enumerate();
@@ -35,7 +35,7 @@ impl<T> Timed<T> {
         self.times().map(|it| it.0).min()
     }
 
-    /// In the order of the times, these in seconds since one in whole seconds, each with its place among all.
+    /// The messages in the order of their times, in seconds since a whole second, each with its index among all.
     pub(crate) fn sorted(&self, since_s: i64) -> Vec<(f64, usize, &T)> {
         let mut all: Vec<(i64, usize, &T)> = self.times().collect();
         all.sort_by_key(|it| it.0);

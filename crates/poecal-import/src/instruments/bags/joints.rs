@@ -5,7 +5,7 @@ use super::super::words::quoted;
 use super::clock::{Stamp, Timed};
 use super::messages::JointState;
 
-/// Most names that are kept for messages to the user.
+/// Largest number of names that are kept for messages to the user.
 const NAMES_KEPT: usize = 100;
 
 /// The readings of a robot's joints in the messages of a topic.
@@ -24,12 +24,12 @@ pub(crate) struct Readings {
 }
 
 impl Readings {
-    /// None, of these joints.
+    /// No readings yet, of these joints.
     pub(crate) fn new(joints: &[String]) -> Self {
         Readings { joints: joints.to_vec(), ..Readings::default() }
     }
 
-    /// Takes a message; one that lacks a joint has readings of others alone.
+    /// Takes a message; a message that lacks a joint holds readings of other joints only.
     pub(crate) fn take(&mut self, message: &JointState<'_>, log_ns: u64) {
         self.messages += 1;
         let before = self.values.len();
@@ -61,7 +61,7 @@ impl Readings {
         self.rows.0.len()
     }
 
-    /// What is missing, in words.
+    /// The missing joints, in words.
     pub(crate) fn missing(&self) -> String {
         let missing = quoted(self.joints.iter().filter(|it| !self.names.contains(it)));
         match (missing.is_empty(), self.names.is_empty()) {

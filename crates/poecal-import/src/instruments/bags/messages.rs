@@ -2,7 +2,7 @@
 
 use super::cdr::Cdr;
 
-/// What messages hold.
+/// Kind of content of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Joints,
@@ -22,38 +22,38 @@ const TYPES: [(&str, Kind); 5] = [
 ];
 
 impl Kind {
-    /// By the name of a type.
+    /// The kind by the name of a type.
     pub(crate) fn from_type_name(name: &str) -> Option<Self> {
         let is_same = |known: &str| known == name || known.replace("/msg/", "/") == name;
         TYPES.iter().find(|it| is_same(it.0)).map(|it| it.1)
     }
 
-    /// Whether such a message has an orientation.
+    /// True if such a message has an orientation.
     pub(crate) fn is_posed(self) -> bool {
         self != Kind::Point
     }
 }
 
-/// The readings of a message: of each name its position, where there are positions.
+/// The readings of a message: the position of each name, if there are positions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct JointState<'m> {
-    /// Nanoseconds; 0 if it was not set.
+    /// Time, nanoseconds; 0 if it was not set.
     pub(crate) stamp_ns: i64,
     pub(crate) names: Vec<&'m str>,
     pub(crate) positions: Vec<f64>,
 }
 
-/// Where a message says that something is.
+/// Pose of a body in a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pose<'m> {
-    /// Nanoseconds; 0 if it was not set.
+    /// Time, nanoseconds; 0 if it was not set.
     pub(crate) stamp_ns: i64,
-    /// The frame in which it is.
+    /// The frame in which the pose is expressed.
     pub(crate) parent: &'m str,
-    /// What it is of, if the message says it.
+    /// The body whose pose it is; empty if the message does not name it.
     pub(crate) child: &'m str,
     pub(crate) position: [f64; 3],
-    /// x, y, z, w.
+    /// Quaternion x, y, z, w.
     pub(crate) quaternion: [f64; 4],
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn joint_state(message: &[u8]) -> Result<JointState<'_>, String> {
     let mut cdr = Cdr::new(message)?;
     let (stamp_ns, _) = head(&mut cdr)?;
     let (names, positions) = (cdr.texts()?, cdr.numbers()?);
-    // Velocities and efforts.
+    // Velocities and efforts follow.
     cdr.numbers()?;
     cdr.numbers()?;
     if !positions.is_empty() && positions.len() != names.len() {

@@ -1,4 +1,4 @@
-//! Bags of ROS 2 in MCAP: joint readings and what was measured, by the times that messages state.
+//! Bags of ROS 2 in MCAP: joint readings and measurements, by the times in the messages.
 
 mod bodies;
 mod cdr;
@@ -40,7 +40,7 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     let mut unpacked = 0_u64;
     for part in &parts {
         let unreadable = |error: io::Error| source::unreadable(part, &error, EXPECTED);
-        // What can be read once is held.
+        // A bag that can be read only once is held in memory.
         let (mut input, head) = match is_file(part) {
             true => source::open_streamed(part, EXPECTED, Limit::Bag)?,
             false => source::open_any(part, EXPECTED, Limit::Bag)?,
@@ -60,7 +60,7 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
         let name = part.file_name().map(Path::new).filter(|_| parts.len() > 1);
         let whole = unpack::stream(&mut hashing, is_packed, most).map_err(unreadable)?;
         warned.extend(take(whole, &mut topics, part, name)?);
-        // The checksum is of all bytes.
+        // The checksum covers all bytes.
         io::copy(&mut hashing, &mut io::sink()).map_err(unreadable)?;
     }
     if topics.unknown > 0 {
@@ -69,7 +69,7 @@ pub(crate) fn read(path: &Path, opening: &Opening<'_>) -> Result<Recording> {
     Ok(recording(&topics, opening, &hashing.sha256(), warned))
 }
 
-/// Reads a bag whose messages are at hand.
+/// Reads a bag whose messages are in memory.
 pub(crate) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Recording> {
     let joints = opening.robot.joint_reading_names();
     let mut topics = Topics::new(&joints);
@@ -79,7 +79,7 @@ pub(crate) fn read_given(given: &GivenBag, opening: &Opening<'_>) -> Result<Reco
     Ok(recording(&topics, opening, &given.sha256, warned))
 }
 
-/// Takes the messages of a file, and says what is wrong with it, as a part of this name; of one with more topics, frames or poses than there may be is told.
+/// Takes the messages of a file and returns its defects, named as this part. Too many topics, frames or poses are one of them.
 fn take(
     mut input: impl io::Read,
     topics: &mut Topics<'_>,
@@ -101,7 +101,7 @@ fn take(
     }
 }
 
-/// Refuses a bag of more bytes than there may be after it is unpacked.
+/// Refuses a bag with more bytes than the limit after unpacking.
 fn refuse_large(unpacked: u64, path: &Path) -> Result<()> {
     let size = amount(unpacked, Limit::Bag.row().unit);
     let found = Limit::Bag.refuse(unpacked, format_args!("a bag that states {size} unpacked"));
@@ -116,7 +116,7 @@ fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: V
         joints.as_ref().ok().and_then(|it| it.1.first_ns()),
         measured.as_ref().ok().and_then(|it| it.body.first_ns()),
     ];
-    // The same for both, so that the lag of their clocks is kept.
+    // The same whole second for both, so that the lag of their clocks is kept.
     let since_s = first_ns.into_iter().flatten().min().unwrap_or_default().div_euclid(SECOND);
     let own = |made: Made| made.of_file(BAG, Some(sha256.to_owned()));
     let columns = opening.joint_columns("rad");
@@ -139,7 +139,7 @@ fn recording(topics: &Topics<'_>, opening: &Opening<'_>, sha256: &str, warned: V
     found
 }
 
-/// What is wrong with a part, a sentence each.
+/// Defects of a part, a sentence each.
 fn warnings(damage: &Damage, part: Option<&Path>, topics: &Topics<'_>) -> Vec<String> {
     let name = part.map_or(String::new(), |it| format!("`{}`: ", it.display()));
     let mut found = Vec::new();

@@ -12,16 +12,16 @@ use poecal_storage::folder::{self, LeftOut};
 use poecal_storage::limits::Limit;
 use poecal_storage::source;
 
-/// Endings of the names of files: as they are, and compressed as a whole.
+/// Endings of the names of files, plain and compressed as a whole.
 const ENDINGS: [&str; 2] = [".mcap", ".mcap.zstd"];
 
-/// True of the name of a part of a bag.
+/// True for the name of a part of a bag.
 fn is_part(name: &str) -> bool {
     let small = name.to_ascii_lowercase();
     ENDINGS.iter().any(|it| small.ends_with(it))
 }
 
-/// Whether a path is a bag, by the first bytes of the file, or by the names in the folder.
+/// True if a path is a bag, by the first bytes of the file, or by the names in the folder.
 pub(crate) fn is_bag(path: &Path) -> bool {
     if is_folder(path) {
         return names(path).is_ok_and(|it| !it.0.is_empty());
@@ -31,12 +31,12 @@ pub(crate) fn is_bag(path: &Path) -> bool {
     source::open_any(path, EXPECTED, Limit::Bag).is_ok_and(|(_, head)| begins(head))
 }
 
-/// Names of files of a folder that are parts of a bag, and what has such a name and is none.
+/// Names of files of a folder that are parts of a bag, and entries with such a name that are not.
 fn names(folder: &Path) -> std::io::Result<(Vec<String>, Vec<LeftOut>)> {
     folder::files(folder, is_part)
 }
 
-/// The files of a bag by their numbers, and what is left out of its folder.
+/// The files of a bag by their numbers, and the entries of its folder that are left out.
 pub(crate) fn files_of_bag(path: &Path) -> Result<(Vec<PathBuf>, Vec<LeftOut>)> {
     if !is_folder(path) {
         return Ok((vec![path.to_path_buf()], Vec::new()));

@@ -1,4 +1,4 @@
-//! Bags that are written here, and what is read of them.
+//! Bags written by the tests, and the rows that are read from them.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -19,10 +19,10 @@ const JOINTS: &str = "sensor_msgs/msg/JointState";
 const POSE: &str = "geometry_msgs/msg/PoseStamped";
 const POINT: &str = "geometry_msgs/msg/PointStamped";
 const FRAMES: &str = "tf2_msgs/msg/TFMessage";
-/// The first stamp, nanoseconds, and how much later the clock of the poses is.
+/// The first stamp, and the lag of the poses' clock, nanoseconds.
 const FIRST_NS: u64 = 1_700_000_000_400_000_000;
 const LAG_NS: u64 = 137_500_000;
-/// Time of a stand and of a motion, milliseconds.
+/// Time of a static interval and of a motion, milliseconds.
 const STAND_MS: u64 = 500;
 const MOTION_MS: u64 = 400;
 const STANDS: u64 = 14;
@@ -30,7 +30,7 @@ const STANDS: u64 = 14;
 /// A message: topic, type, time in the log, and its bytes.
 type Message = (&'static str, &'static str, u64, Vec<u8>);
 
-/// A folder that is removed.
+/// A folder that is removed after the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -54,10 +54,10 @@ impl Drop for Folder {
     }
 }
 
-/// Kinds of records that are not read.
+/// Opcodes of records that are not read.
 const HEADER: u8 = 0x01;
 const MESSAGE_INDEX: u8 = 0x07;
-/// Bytes of records from which on a chunk is full.
+/// Size of records, bytes, at which a chunk is full.
 const CHUNK: usize = 20_000;
 
 /// A text with its length.
@@ -65,13 +65,13 @@ fn text(text: &str) -> Vec<u8> {
     [&u32::try_from(text.len()).unwrap().to_le_bytes(), text.as_bytes()].concat()
 }
 
-/// A record of parts.
+/// A record made of parts.
 fn record(opcode: u8, parts: &[&[u8]]) -> Vec<u8> {
     let size: usize = parts.iter().map(|it| it.len()).sum();
     [&[opcode], &(size as u64).to_le_bytes()[..], &parts.concat()].concat()
 }
 
-/// A chunk of records, not packed, and an index of it.
+/// A chunk of records, not packed, and its index.
 fn chunk(records: &[u8], [first, last]: [u64; 2]) -> Vec<u8> {
     let size = (records.len() as u64).to_le_bytes();
     let times = [first.to_le_bytes(), last.to_le_bytes()].concat();
@@ -80,7 +80,7 @@ fn chunk(records: &[u8], [first, last]: [u64; 2]) -> Vec<u8> {
     [own, record(MESSAGE_INDEX, &[&[0; 6]])].concat()
 }
 
-/// The bytes of a bag: types and topics stand in the chunk of their first message.
+/// The bytes of a bag: types and topics are in the chunk of their first message.
 fn bag(messages: &[Message]) -> Vec<u8> {
     let mut out = [MAGIC, &record(HEADER, &[&text("ros2"), &text("tests")])].concat();
     let (mut types, mut topics): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
@@ -120,14 +120,14 @@ fn bag(messages: &[Message]) -> Vec<u8> {
     out
 }
 
-/// A number from -1 to 1 that belongs to another one.
+/// A pseudo-random number from -1 to 1 for a seed.
 fn draw(seed: u64) -> f64 {
     let mixed = (seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// The configuration at a time of a motion from stand to stand.
+/// The configuration at a time of a motion between static intervals.
 fn configuration(at_ms: f64) -> Vec<f64> {
     let stand = (at_ms / (STAND_MS + MOTION_MS) as f64).floor().clamp(0.0, (STANDS - 1) as f64);
     let moved = (at_ms - stand * (STAND_MS + MOTION_MS) as f64 - STAND_MS as f64) / MOTION_MS as f64;
@@ -169,7 +169,7 @@ fn session(robot: &Robot) -> Vec<Message> {
     messages
 }
 
-/// The same as two tables, with times since the same whole second.
+/// The same session as two tables, with times since the same whole second.
 fn tables(robot: &Robot) -> (String, String) {
     let names = robot.joint_reading_names();
     let columns: Vec<String> = names.iter().map(|it| format!("{it}[rad]")).collect();
@@ -191,7 +191,7 @@ fn read_all(paths: &[&Path], options: &ReadOptions) -> Result<MeasurementFile, S
     read(paths, &elbow(), options).map_err(|error| error.to_string())
 }
 
-/// Whether two have the same rows.
+/// True if two files have the same rows.
 fn are_same(one: &MeasurementFile, other: &MeasurementFile) -> bool {
     let measured =
         |it: &MeasurementFile| it.data.observations.iter().map(|it| it.measurement).collect::<Vec<_>>();
@@ -258,7 +258,7 @@ fn bags_that_rosbag2_compressed_by_message_or_by_file_are_the_same_rows() {
         assert!(are_same(&found, &expected), "{}: {:?}", path.display(), found.warnings);
         assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     }
-    // Damaged, cut, and more than there may be.
+    // Damaged, cut, and beyond a limit.
     let mut broken = each.clone();
     broken[5].3.truncate(9);
     let found = read_all(&[&folder.write("cut.mcap", bag(&broken))], &options).unwrap();
@@ -285,7 +285,7 @@ fn several_topics_are_refused_unless_one_is_named() {
         .iter()
         .map(|it| (if it.0 == "/tool/pose" { "/again" } else { "/wanted" }, it.1, it.2, it.3.clone()))
         .collect();
-    // A body that stands, frames, another robot and messages of one joint are no candidates.
+    // A body at rest, frames, another robot and messages of one joint are no candidates.
     let stamp = FIRST_NS;
     for at in 0..5 {
         let log = stamp + at * 1_000_000_000;
@@ -325,7 +325,7 @@ fn several_topics_are_refused_unless_one_is_named() {
     let frames = ReadOptions { body: Some("link3".to_owned()), ..with(&["/joint_states"]) };
     let error = read_all(&[&path], &frames).unwrap_err();
     assert!(error.contains("found no frame `link3`, expected one of"), "{error}");
-    // What others cannot mean.
+    // Other topics cannot be meant.
     let none = vec![("/chatter", "std_msgs/msg/String", 5, vec![0, 1, 0, 0])];
     let error = read_all(&[&folder.write("none.mcap", bag(&none))], &ReadOptions::default()).unwrap_err();
     let expected = "found neither joint readings nor measurements, expected both: it has `/chatter` (std_msgs/msg/String, 1 message)";
@@ -372,7 +372,7 @@ fn a_bag_that_is_cut_or_damaged_is_read_as_far_as_it_goes() {
     };
     assert!(found.warnings.iter().any(is_cut), "{:?}", found.warnings);
     assert!((7..STANDS as usize).contains(&found.data.len()), "{}", found.data.len());
-    // A character of a message within a chunk.
+    // One byte of a message within a chunk is changed.
     let mut damaged = whole.clone();
     let at = memchr::memmem::rfind(&damaged[..whole.len() / 2], b"gripper").unwrap();
     damaged[at] ^= 0x10;
@@ -458,20 +458,20 @@ fn a_bag_beyond_a_limit_is_refused_by_its_name() {
             "{error}"
         );
     }
-    // The parts of a bag count together.
+    // The parts of a bag count as one towards the limit.
     let whole = bag(&session(&robot));
     let parts = folder.0.join("parts");
     (0..2).for_each(|at| drop(folder.write(&format!("parts/b_{at}.mcap"), &whole)));
     let limits = limits::here().with(Limit::Bag, whole.len() as u64);
     let error = limits::on(limits, || read_all(&[&parts], &ReadOptions::default())).unwrap_err();
     assert!(error.contains("found a bag that states") && error.contains("--limit bag=N"), "{error}");
-    // A chunk beyond it is left out as one that is damaged is.
+    // A chunk beyond the limit is left out like a damaged one.
     let limits = limits::here().with(Limit::Chunk, 100);
     let error = limits::on(limits, || read_all(&[&path], &ReadOptions::default())).unwrap_err();
     assert!(error.contains("(limit `chunk`)"), "{error}");
 }
 
-/// Topics and frames are found by their names at once: so many took minutes.
+/// Topics and frames are found by their names at once: a linear search of so many took minutes.
 #[test]
 fn very_many_topics_and_frames_take_no_time() {
     let mut topics = Topics::new(&[]);
@@ -488,7 +488,7 @@ fn very_many_topics_and_frames_take_no_time() {
         let all: Vec<(&str, [f64; 7])> = part.iter().map(|name| (name.as_str(), pose)).collect();
         topics.message(1, 5, &Cdr::transforms(5, &all));
     }
-    // A search through all of them for each would take a minute.
+    // A linear search for each would take a minute.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
     assert_eq!(topics.refused, None);
 }

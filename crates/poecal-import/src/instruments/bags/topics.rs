@@ -1,4 +1,4 @@
-//! Topics of a bag: what they are, how many messages they have, and of those that are read what these hold.
+//! Topics of a bag: their types, their numbers of messages, and the contents of those that are read.
 
 use std::collections::HashMap;
 
@@ -10,10 +10,10 @@ use poecal_storage::containers::mcap::Records;
 use poecal_storage::containers::unpack;
 use poecal_storage::limits::Limit;
 
-/// Most topics in a list.
+/// Largest number of topics in a list.
 const LISTED: usize = 30;
 
-/// What the messages of a topic hold, as far as it is read.
+/// Contents of the messages of a topic, as far as they are read.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Content {
     Joints(Readings),
@@ -66,17 +66,17 @@ impl Topic {
         format!("`{}` ({}, {} {messages}{rate})", shown(&self.name), shown(&self.title), self.count)
     }
 
-    /// Whether it is called so, with or without the stroke that names begin with.
+    /// True if this is its name, with or without the leading slash.
     pub(crate) fn is_called(&self, name: &str) -> bool {
         self.name == name || self.name.strip_prefix('/') == Some(name)
     }
 
-    /// Whether it has messages of a type that is read.
+    /// True if it has messages of a type that is read.
     pub(crate) fn is_read(&self) -> bool {
         self.count > 0 && !matches!(self.content, Content::Other)
     }
 
-    /// Whether its messages name the bodies that they are about.
+    /// True if its messages name the bodies that they are about.
     pub(crate) fn names_bodies(&self) -> bool {
         self.content.bodies().is_some_and(|it| it.all.iter().any(|it| !it.child.is_empty()))
     }
@@ -107,12 +107,12 @@ impl Topic {
 pub(crate) struct Topics<'a> {
     /// Names of the robot's joints.
     joints: &'a [String],
-    /// Names of types of the file that is read.
+    /// Names of the types in the present file.
     schemas: HashMap<u16, String>,
-    /// Topics of the channels of the file that is read.
+    /// Topics of the channels of the present file.
     channels: HashMap<u16, usize>,
     pub(crate) all: Vec<Topic>,
-    /// Places of topics by name and title.
+    /// Indices of topics by name and title.
     places: HashMap<(String, String), usize>,
     /// The limit that is exceeded, in a sentence: nothing is taken from then on.
     pub(crate) refused: Option<String>,
@@ -122,14 +122,14 @@ pub(crate) struct Topics<'a> {
     held: usize,
     /// Bytes of the messages that were unpacked one by one.
     unpacked: u64,
-    /// Number of compressed messages of a file that are damaged, and what was found of the first one.
+    /// Number of damaged compressed messages of a file, and the finding at the first one.
     pub(crate) damaged: Option<(u64, String)>,
-    /// Number of messages of channels that are nowhere described.
+    /// Number of messages of channels that are not described.
     pub(crate) unknown: u64,
 }
 
 impl<'a> Topics<'a> {
-    /// None, of a robot with these joints.
+    /// No topics yet, for a robot with these joints.
     pub(crate) fn new(joints: &'a [String]) -> Self {
         Topics { joints, ..Topics::default() }
     }

@@ -1,4 +1,4 @@
-//! Bounds of workbooks that are ZIP archives, before anything of them is held: their parts unpacked, and the cells that a part of .ods repeats.
+//! Limits of workbooks in ZIP archives, before any part is held: the unpacked size of the parts, and the cells that a part of .ods repeats.
 
 use std::io::{self, BufReader, Cursor, Read};
 
@@ -12,14 +12,14 @@ use poecal_storage::limits::{Limit, amount};
 const BINARY: &str = "xl/workbook.bin";
 /// The part of .ods that holds all sheets.
 const CONTENT: &str = "content.xml";
-/// Most columns of a row in .ods: the others are left out by its reader.
+/// Largest number of columns of a row in .ods: its reader leaves out the others.
 const MOST_COLUMNS: u64 = 16_384;
-/// The tags of cells count with their texts: those are so many times longer.
+/// Ratio of the limit of texts: the tags of cells count with them.
 const MOST_TEXT: u64 = 4;
-/// A workbook in which each sheet could be the largest part is read up to so many times the limit of all parts.
+/// Ratio of the limit of all parts, up to which a workbook is read in which each sheet could be the largest part.
 const READ_AGAIN: u64 = 4;
 
-/// The bytes of an archive's parts.
+/// Sizes of an archive's parts, bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Parts {
     largest: u64,
@@ -28,8 +28,7 @@ pub(crate) struct Parts {
 impl Parts {
     /// Unpacks all parts without holding them.
     ///
-    /// # Errors
-    /// A binary workbook, or the sentence of the limit that is exceeded. An archive that cannot be read is no matter of limits.
+    /// Errors are a binary workbook, and the sentence of the limit that is exceeded. An archive that cannot be read is not an error here.
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else { return Ok(Parts::default()) };
         let most = Limit::Unpacked.most();
@@ -45,7 +44,7 @@ impl Parts {
             let is_content = part.name() == CONTENT;
             let mut counted = Counted { inner: part.take(most - sum + 1), count: 0 };
             let cells = if is_content { cells_of_ods(&mut counted) } else { Ok(()) };
-            // A part that is damaged is named by who needs it.
+            // A reader that needs a damaged part reports it.
             let _ = io::copy(&mut counted, &mut io::sink());
             sum += counted.count;
             parts.largest = parts.largest.max(counted.count);
@@ -57,7 +56,7 @@ impl Parts {
         Ok(parts)
     }
 
-    /// Refuses so many sheets that each would be read for long.
+    /// Refuses a number of sheets whose reading would take too long.
     pub(crate) fn refuse_sheets(self, count: usize) -> Result<(), String> {
         let read = self.largest.saturating_mul(count as u64);
         if read <= Limit::Unpacked.most().saturating_mul(READ_AGAIN) {
@@ -68,7 +67,7 @@ impl Parts {
     }
 }
 
-/// What is read, counted.
+/// A reader that counts its bytes.
 struct Counted<R> {
     inner: R,
     count: u64,
@@ -88,15 +87,15 @@ struct Sheet {
     /// Rows up to the last one with a cell, and empty ones behind it.
     rows: u64,
     empty_rows: u64,
-    /// Of the current row the columns up to the last cell, and empty ones behind it.
+    /// Columns of the current row up to the last cell, and empty ones behind it.
     columns: u64,
     empty_columns: u64,
     repeated: u64,
     /// Columns of the widest row.
     widest: u64,
-    /// Cells of the rows as they stand in the file.
+    /// Cells of the rows as the file states them, without repetitions.
     written: u64,
-    /// Bytes of the current cell and of the current row, repeated ones among them.
+    /// Bytes of the current cell and of the current row, with repetitions.
     of_cell: u64,
     of_row: u64,
 }
@@ -138,13 +137,13 @@ impl Sheet {
     }
 }
 
-/// Refuses the content of .ods whose sheets have more cells than there may be, or texts with more blanks than bytes.
+/// Refuses the content of .ods whose sheets exceed the limit of cells, or whose texts have more blanks than bytes.
 fn cells_of_ods(content: impl Read) -> Result<(), String> {
     let mut reader = Reader::from_reader(BufReader::new(content));
     reader.config_mut().check_end_names = false;
     let (mut buffer, mut before, mut texts) = (Vec::new(), 0_u64, 0_u64);
     let (mut sheet, mut again) = (Sheet::default(), 1);
-    // Whatever is no XML is refused by who reads it.
+    // The reader of the workbook refuses text that is no XML.
     while let Ok(event) = reader.read_event_into(&mut buffer) {
         match event {
             Event::Eof => break,
@@ -203,7 +202,7 @@ fn is_cell(name: &[u8]) -> bool {
     matches!(name, b"table:table-cell" | b"table:covered-table-cell")
 }
 
-/// Whether a cell without content has no value either.
+/// True if a cell without content has no value either.
 fn is_empty(tag: &BytesStart<'_>) -> bool {
     !tag.attributes().flatten().any(|it| {
         let name = it.key.as_ref();
@@ -211,7 +210,7 @@ fn is_empty(tag: &BytesStart<'_>) -> bool {
     })
 }
 
-/// How often something is repeated; once if that is not stated as a number.
+/// The number of repetitions; 1 if it is not stated as a number.
 fn repeated(tag: &BytesStart<'_>, name: &[u8]) -> u64 {
     let stated = tag.attributes().flatten().find(|it| it.key.as_ref() == name);
     let digits = stated.and_then(|it| {
@@ -250,11 +249,11 @@ mod tests {
             format!("<table:table-row table:number-rows-repeated=\"{count}\">{cells}</table:table-row>")
         };
         let value = " office:value='1'";
-        // Empty ones behind the last cell and the last row, as every program writes them, are none.
+        // Empty cells behind the last cell and the last row, as every program writes them, do not count.
         let plain = row(3, &(cell(2, value) + &cell(16_000, ""))) + &row(1_048_000, &cell(16_384, ""));
         assert_eq!(refused(6, &plain), None);
         assert!(refused(5, &plain).is_some_and(|it| it.contains("limit `cells`")));
-        // Those before a cell that stands far off are.
+        // Empty cells before a distant cell count.
         let far = row(1, &cell(1, value)) + &row(999_998, &cell(1, "")) + &row(1, &cell(1, value));
         assert_eq!(refused(1_000_000, &far), None);
         assert!(refused(999_999, &far).is_some());

@@ -1,4 +1,4 @@
-//! The cells of a sheet as a range, once it is known that the range can be held.
+//! The cells of a sheet as a range, once the range is known to be within the limits.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -11,7 +11,7 @@ use poecal_storage::limits::Limit;
 /// A workbook of bytes.
 pub(crate) type Book<'b> = Sheets<Cursor<&'b [u8]>>;
 
-/// What the sheets of a workbook may still take.
+/// Remaining budget of the sheets of a workbook.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Left {
     /// Cells of their ranges.
@@ -21,7 +21,7 @@ pub(crate) struct Left {
 }
 
 impl Left {
-    /// All that a workbook may take.
+    /// The budget of a whole workbook.
     pub(crate) fn of_workbook() -> Self {
         Left { cells: Limit::Cells.most(), texts: Limit::Unpacked.most() }
     }
@@ -36,7 +36,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// Takes a cell, unless the range or the texts are then more than what is left.
+    /// Takes a cell, unless the range or the texts then exceed the remaining budget.
     ///
     /// # Errors
     /// The sentence of the limit.
@@ -52,7 +52,7 @@ impl Found {
         let [top, bottom, first, last] = self.extent.unwrap_or([row, row, column, column]);
         let extent = [top.min(row), bottom.max(row), first.min(column), last.max(column)];
         self.extent = Some(extent);
-        // A cell may be stated again and again.
+        // A file may state one cell repeatedly.
         if self.area() > left.cells || self.cells.len() as u64 >= left.cells {
             let [top, bottom, first, last] = extent.map(u64::from);
             let (rows, columns) = (bottom - top + 1, last - first + 1);
@@ -66,13 +66,13 @@ impl Found {
         Ok(())
     }
 
-    /// The number of cells of the range, empty ones among them.
+    /// The number of cells of the range, including empty ones.
     fn area(&self) -> u64 {
         let [top, bottom, first, last] = self.extent.map(|it| it.map(u64::from)).unwrap_or([1, 0, 1, 0]);
         (bottom + 1 - top).saturating_mul(last + 1 - first)
     }
 
-    /// The range, whose cells are left no more.
+    /// The range; its cells are taken from the budget.
     pub(crate) fn range(self, left: &mut Left) -> Range<Data> {
         left.cells = left.cells.saturating_sub(self.area());
         Range::from_sparse(self.cells)
@@ -82,7 +82,7 @@ impl Found {
 /// A sheet: its name and its cells.
 pub(crate) type ReadSheet = (String, Range<Data>);
 
-/// What is said of a sheet that is damaged.
+/// The message on a damaged sheet.
 pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
     format!("the sheet `{name}` cannot be read ({error}), expected a workbook that is whole: save it again")
 }
@@ -90,7 +90,7 @@ pub(crate) fn broken(name: &str, error: &dyn Display) -> String {
 /// The cells of a sheet.
 ///
 /// # Errors
-/// What is wrong, in a sentence.
+/// The defect, in a sentence.
 pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<Range<Data>, String> {
     let broken = |error: &dyn Display| broken(name, error);
     let mut found = Found::default();
@@ -98,7 +98,7 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
         Sheets::Xlsx(book) => {
             let mut reader = match book.worksheet_cells_reader(name) {
                 Ok(reader) => reader,
-                // A chart or a macro.
+                // The sheet is a chart or a macro.
                 Err(calamine::XlsxError::NotAWorksheet(_)) => return Ok(Range::default()),
                 Err(error) => return Err(broken(&error)),
             };
@@ -106,7 +106,7 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
                 found.add(cell.get_position(), Data::from(cell.get_value().clone()), left)?;
             }
         }
-        // The cells of .ods were counted before it was opened; the others are read elsewhere.
+        // The cells of .ods were counted before it was opened; the other forms are read elsewhere.
         Sheets::Ods(_) | Sheets::Xls(_) | Sheets::Xlsb(_) => {
             return book.worksheet_range(name).map_err(|error| broken(&error));
         }
@@ -117,7 +117,7 @@ pub(crate) fn range(book: &mut Book<'_>, name: &str, left: &mut Left) -> Result<
 /// Formulas of a sheet by row and column.
 pub(crate) type Formulas = BTreeMap<(u32, u32), String>;
 
-/// Formulas of a sheet within a range, by row and column; none of a form of workbook whose formulas cannot be read.
+/// Formulas of a sheet within a range, by row and column; empty if the form of workbook has formulas that cannot be read.
 pub(crate) fn formulas(book: &mut Book<'_>, name: &str, within: &Range<Data>) -> Formulas {
     let mut found = Formulas::new();
     let (Some(start), Some(end)) = (within.start(), within.end()) else { return found };

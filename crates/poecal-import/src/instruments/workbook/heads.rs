@@ -1,4 +1,4 @@
-//! Heads of tables in sheets: a row of names, or two with groups above them, a row of units below, and lines of statistics at the end.
+//! Heads of tables in sheets: a row of names, or two with groups above them, a row of units below. Lines of statistics may be at the end.
 
 use calamine::Data;
 
@@ -6,11 +6,11 @@ use super::super::workbook_cells::{is_empty, text, value};
 use crate::table::header_cells::bracketed;
 use crate::table::roles::{plain, unit_of};
 
-/// Rows in which the header is sought.
+/// Number of rows in which the header is sought.
 const FIRST: usize = 60;
-/// Fewest columns of a table.
+/// Smallest number of columns of a table.
 const FEWEST_COLUMNS: usize = 3;
-/// Names of lines that sum up the rows above them, in letters alone.
+/// Names of lines that summarise the rows above them, only their letters.
 const SUMS: &str = "average avg mean meanvalue max min maximum minimum std stdev stddev stddeviation standarddeviation sd rms sum total median range spread \
                     variance var count sigma σ ø mittelwert mittel standardabweichung streuung spannweite varianz anzahl summe";
 
@@ -22,7 +22,7 @@ pub(super) struct Head {
     pub(super) units: Option<usize>,
     /// The first row of numbers.
     pub(super) begin: usize,
-    /// True if groups stand above the names.
+    /// True if a row of groups is above the names.
     pub(super) is_two: bool,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn head(rows: &[&[Data]]) -> Option<Head> {
     (0..rows.len().min(FIRST)).find_map(|at| two_lines(rows, at).or_else(|| one_line(rows, at)))
 }
 
-/// The row behind one, and behind a row of units, if numbers stand there in half of the columns with names.
+/// The row of units, if any, and the first row of numbers below the header, if half of the columns with names have numbers.
 fn begin(
     rows: &[&[Data]],
     header: usize,
@@ -100,7 +100,7 @@ fn two_lines(rows: &[&[Data]], above: usize) -> Option<Head> {
     Some(Head { names: found, header: above + 1, units, begin, is_two: true })
 }
 
-/// A name below a group: with its words if others are called alike, and with its unit in any case.
+/// A name below a group: with its words if other names are the same, and always with its unit.
 fn joined(group: &str, name: &str, with_words: bool) -> String {
     let parts = |cell: &str| -> (String, Option<String>) {
         let found =
@@ -118,7 +118,7 @@ fn joined(group: &str, name: &str, with_words: bool) -> String {
     unit.or(of_group).map_or(both.trim().to_owned(), |unit| format!("{} [{unit}]", both.trim()))
 }
 
-/// True of a row that sums up those above it: its name is such a word as a whole, beside a unit in brackets.
+/// True for a row that summarises those above it: its whole name, except a unit in brackets, is such a word.
 pub(super) fn is_sum(row: &[Data]) -> bool {
     let first = row.iter().find(|it| !is_empty(it)).filter(is_text);
     first.is_some_and(|it| {

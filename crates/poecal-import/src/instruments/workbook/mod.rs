@@ -1,7 +1,7 @@
-//! Workbooks of spreadsheets (.xlsx, .xlsm, .xls, .ods): the one sheet that holds a table, or the one that was asked for.
+//! Workbooks of spreadsheets (.xlsx, .xlsm, .xls, .ods): the one sheet with a table, or the one that was asked for.
 //!
-//! The sizes of an archive are bounded before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read here
-//! (`old.rs`), since no other reader bounds them.
+//! The sizes of an archive are limited before it is opened (`archive.rs`), those of a sheet while it is read (`cells.rs`). Old workbooks are read
+//! here (`old.rs`), since no other reader limits them.
 
 mod archive;
 mod cells;
@@ -25,7 +25,7 @@ use crate::table::places::Sheet;
 use poecal_numerics::error::first_few;
 use poecal_storage::containers::office;
 
-/// Whether a file is a workbook, or an archive as workbooks are, by its first bytes.
+/// True if a file is a workbook, or an archive like a workbook, by its first bytes.
 pub(crate) fn is_one(head: &[u8]) -> bool {
     head.starts_with(b"PK\x03\x04") || head.starts_with(b"\xd0\xcf\x11\xe0")
 }
@@ -58,7 +58,7 @@ impl<'b> Workbook<'b> {
         }
     }
 
-    /// The cells of a sheet, once.
+    /// The cells of a sheet; they can be taken once.
     fn range(&mut self, name: &str) -> Result<Range<Data>, String> {
         match self {
             Workbook::Archive(book, left) => cells::range(book, name, left),
@@ -69,7 +69,7 @@ impl<'b> Workbook<'b> {
         }
     }
 
-    /// Formulas of a sheet within a range; of those that are read here none.
+    /// Formulas of a sheet within a range; empty for old workbooks, which are read here.
     fn formulas(&mut self, name: &str, within: &Range<Data>) -> Formulas {
         match self {
             Workbook::Archive(book, _) => cells::formulas(book, name, within),
@@ -110,7 +110,7 @@ pub(crate) fn table(bytes: &[u8], opening: &Opening<'_>) -> Result<Made, Refused
     })
 }
 
-/// Last rows of a table among which sums are sought.
+/// Number of rows at the end of a table among which sums are sought.
 const LAST: usize = 10;
 
 /// The table of a sheet: its header, units and rows by their numbers in the range.
@@ -121,7 +121,7 @@ struct Found {
     names: Vec<String>,
     units: Option<usize>,
     rows: Vec<usize>,
-    /// True if groups stand above the names; lines at the end that sum up the rows.
+    /// True if a row of groups is above the names; then the lines at the end that summarise the rows.
     is_two: bool,
     sums: Vec<usize>,
 }
@@ -134,7 +134,7 @@ impl Found {
         let is_filled =
             |at: &usize| rows.get(*at).is_some_and(|it| !it.iter().take(names.len()).all(is_empty));
         let mut rows_at: Vec<usize> = (begin..rows.len()).filter(is_filled).collect();
-        // From the first sum on, what stands below the rows is of the same kind.
+        // From the first sum on, all rows below are of the same kind.
         let first = rows_at.len().saturating_sub(LAST);
         let is_sum = |at: &usize| rows.get(*at).is_some_and(|it| is_sum(it));
         let sum = rows_at.iter().skip(first).position(is_sum).map_or(rows_at.len(), |it| first + it);
@@ -153,7 +153,7 @@ impl Found {
         self.range.get((row, column)).unwrap_or(&Data::Empty)
     }
 
-    /// The table, or of one with two sets of coordinates both, unless a mapping names columns.
+    /// The table, or both tables if it has two sets of coordinates, unless a mapping names columns.
     fn sets(&self, formulas: &Formulas, opening: &Opening<'_>) -> Result<Made, Refused> {
         refuse_uncomputed(formulas, &self.range, &self.sheet, (&self.rows, &self.names))?;
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
@@ -171,7 +171,7 @@ impl Found {
             let texts: Vec<String> = columns.iter().map(|it| text(self.cell(units, it.0))).collect();
             made.row(self.line(units), texts.iter().map(|it| Value::Text(it)));
         }
-        // Columns of numbers, in which a text is a number or a mistake.
+        // Columns of numbers: a text in them is a number or a mistake.
         let is_numeric = |column: usize| {
             let is_number = |at: &&usize| matches!(self.cell(**at, column), Data::Float(_) | Data::Int(_));
             2 * self.rows.iter().filter(is_number).count() > self.rows.len()
@@ -208,7 +208,7 @@ impl Found {
         Ok(made)
     }
 
-    /// The text of a cell, or its number; those that are stored as text in a column of numbers are told.
+    /// The text of a cell, or its number; numbers stored as text in a column of numbers are reported.
     fn typed(
         &self,
         (row, column): (usize, usize),
@@ -237,7 +237,7 @@ impl Found {
     }
 }
 
-/// Whether a number with a comma may be one of thousands: three digits behind it, and one to three before it that are not zero alone.
+/// True if the comma may separate thousands: three digits follow it, and one to three that are not only zero precede it.
 fn is_ambiguous(text: &str) -> bool {
     let Some((before, behind)) = text.trim().split_once(',') else { return false };
     let before = before.trim_start_matches(['-', '+']);

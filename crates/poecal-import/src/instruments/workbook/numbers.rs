@@ -1,16 +1,16 @@
-//! Cells of workbooks that are read here: how numbers are stored, and what cells share: texts, and the styles that say which are dates.
+//! Cells of workbooks without another reader: stored numbers, shared texts, and the styles that mark dates.
 
 use calamine::{Data, ExcelDateTime, ExcelDateTimeType};
 use poecal_storage::containers::fields::Fields;
 
-/// What the cells of a workbook share.
+/// Data that the cells of a workbook share.
 #[derive(Default)]
 pub(crate) struct Shared {
     pub(crate) texts: Vec<String>,
-    /// Formats of their own by number.
+    /// Formats of the workbook itself, by number.
     pub(crate) formats: Vec<(u16, String)>,
     pub(crate) is_1904: bool,
-    /// Whether cells of a style are dates.
+    /// True for each style whose cells are dates.
     dates: Vec<bool>,
 }
 
@@ -24,14 +24,14 @@ impl Shared {
         self.dates = styles.iter().map(is_date).collect();
     }
 
-    /// A number of a style.
+    /// A number with a style.
     pub(crate) fn number(&self, value: f64, style: u16) -> Option<Data> {
         let is_date = self.dates.get(usize::from(style)).copied().unwrap_or_default();
         let date = || ExcelDateTime::new(value, ExcelDateTimeType::DateTime, self.is_1904);
         value.is_finite().then(|| if is_date { Data::DateTime(date()) } else { Data::Float(value) })
     }
 
-    /// A text by its number, which comes next.
+    /// The shared text whose number comes next.
     pub(crate) fn text(&self, fields: &mut Fields<'_>) -> Option<Data> {
         self.texts.get(fields.index()?).cloned().map(Data::String)
     }
@@ -53,14 +53,14 @@ pub(crate) fn short(fields: &mut Fields<'_>) -> Option<f64> {
     Some(if bits & 1 != 0 { value / 100.0 } else { value })
 }
 
-/// So many letters of two bytes.
+/// A text of `count` letters of two bytes.
 pub(crate) fn wide(fields: &mut Fields<'_>, count: usize) -> Option<String> {
     let pairs = fields.bytes(count.checked_mul(2)?)?.chunks_exact(2);
     let units: Vec<u16> = pairs.filter_map(|it| Fields(it).u16()).collect();
     Some(String::from_utf16_lossy(&units))
 }
 
-/// Whether a format of numbers is one of dates or times: a letter of it, outside of quotes and brackets.
+/// True if a format of numbers is one of dates or times: it has a letter of these outside of quotes and brackets.
 fn is_of_dates(format: &str) -> bool {
     let (mut quote, mut bracket, mut is_escaped) = (false, false, false);
     format.chars().any(|letter| {

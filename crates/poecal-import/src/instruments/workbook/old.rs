@@ -1,4 +1,4 @@
-//! Old workbooks (.xls): the numbers and texts of their sheets, MS-XLS (BIFF8). Formulas are what they gave when the workbook was saved.
+//! Old workbooks (.xls): the numbers and texts of their sheets, MS-XLS (BIFF8). Formulas are the results that were saved with the workbook.
 
 use calamine::Data;
 
@@ -64,7 +64,7 @@ impl<'b> Iterator for Records<'b> {
 /// The sheets of a workbook.
 ///
 /// # Errors
-/// What is wrong with it, in a sentence.
+/// The defect, in a sentence.
 pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
     let stream = workbook(bytes).ok_or(
         "found a container of an old office program without a workbook, or a workbook that is damaged, expected a measurement file (CSV), or a workbook: \
@@ -81,7 +81,7 @@ pub(crate) fn sheets(bytes: &[u8]) -> Result<Vec<ReadSheet>, String> {
     Ok(found)
 }
 
-/// What the sheets share, and where each begins, with its name.
+/// The data that the sheets share, and the beginning and the name of each sheet.
 fn shared(stream: &[u8]) -> Result<(Shared, Vec<(usize, String)>), String> {
     let (mut shared, mut named, mut styles) = (Shared::default(), Vec::new(), Vec::new());
     for Record { kind, parts } in Records(Fields(stream)) {
@@ -111,7 +111,7 @@ fn shared(stream: &[u8]) -> Result<(Shared, Vec<(usize, String)>), String> {
 impl Shared {
     /// Reads the cells of a sheet.
     fn read(&self, stream: &[u8], cells: &mut Found, left: &mut Left) -> Result<(), String> {
-        // Where a formula is whose text comes in a record of its own.
+        // The cell of a formula whose text follows in a record of its own.
         let mut waiting = None;
         for Record { kind, parts } in Records(Fields(stream)) {
             let mut data = Fields(parts.first().copied().unwrap_or_default());
@@ -152,7 +152,7 @@ impl Shared {
     }
 }
 
-/// A sheet of numbers: where it begins, and its name.
+/// A sheet of numbers: its beginning and its name.
 fn sheet(mut data: Fields<'_>) -> Option<(usize, String)> {
     let (start, _, kind) = (data.index()?, data.u8()?, data.u8()?);
     let (count, is_wide) = (data.u8()?, data.u8()? & 1 != 0);
@@ -166,7 +166,7 @@ fn text(data: &mut Fields<'_>) -> Option<String> {
     letters(data, usize::from(count), is_wide)
 }
 
-/// So many letters of one or two bytes.
+/// A text of `count` letters of one or two bytes.
 fn letters(data: &mut Fields<'_>, count: usize, is_wide: bool) -> Option<String> {
     if is_wide {
         return wide(data, count);
@@ -174,7 +174,7 @@ fn letters(data: &mut Fields<'_>, count: usize, is_wide: bool) -> Option<String>
     Some(data.bytes(count)?.iter().map(|it| char::from(*it)).collect())
 }
 
-/// The texts that cells share: a list that goes on from record to record, in which a text may be cut, with its width stated anew behind the cut.
+/// The texts that cells share: a list over several records. A text may be cut, and its width is stated again behind the cut.
 fn texts(parts: &[&[u8]]) -> Vec<String> {
     let Some((first, others)) = parts.split_first() else { return Vec::new() };
     let mut parts = Cut { rest: Fields(first), others };
@@ -191,7 +191,7 @@ struct Cut<'p> {
 }
 
 impl<'p> Cut<'p> {
-    /// What is left of the record, or of the next one at the end of one.
+    /// The rest of the record, or of the next one at its end.
     fn here(&mut self) -> Option<&mut Fields<'p>> {
         while self.rest.0.is_empty() {
             let (first, others) = self.others.split_first()?;
@@ -245,7 +245,7 @@ mod tests {
         [&kind.to_le_bytes(), &u16::try_from(data.len()).unwrap().to_le_bytes(), data].concat()
     }
 
-    /// A cell: row, column, style, and what it holds.
+    /// A cell: row, column, style, and content.
     fn cell(kind: u16, [row, column, style]: [u16; 3], data: &[u8]) -> Vec<u8> {
         record(kind, &[&row.to_le_bytes()[..], &column.to_le_bytes(), &style.to_le_bytes(), data].concat())
     }

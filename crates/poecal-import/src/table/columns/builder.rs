@@ -15,7 +15,7 @@ use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 use poecal_storage::numbers::LARGEST_NUMBER;
 
-/// Advice where a column of ours is missing.
+/// Remedy for a missing column of our form.
 const MISSING: &str = ": rename or add a column, or name the right one in a mapping file (--columns)";
 
 /// Finds columns in a header, and records which are used.
@@ -25,9 +25,9 @@ pub(crate) struct Builder<'a> {
     pub(crate) readings: BTreeSet<String>,
     pub(crate) inputs: Vec<Input>,
     used: Vec<bool>,
-    /// Joints with the numbered columns that are taken for them, where no column has the name of a joint.
+    /// Joints with the numbered columns that are taken for them, if no column has the name of a joint.
     pub(crate) numbered: Option<Vec<(String, String)>>,
-    /// Sums that the calibration kept, of a file that has not all of their columns.
+    /// Sums from the calibration, for a file that lacks some of their columns.
     pub(crate) missed: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Builder<'a> {
             let mut columns = kept.readings.iter().flat_map(|it| it.columns.keys());
             columns.all(|column| header.count(column) > 0)
         };
-        // A mapping that says something of the joints precedes what was kept.
+        // A mapping that concerns the joints precedes the kept columns.
         let kept = kept.filter(|_| map.joints.is_empty() && map.third_axis.is_none());
         let missed = kept.filter(|kept| !kept.is_plain() && !has_all(kept)).map(Controller::words);
         let kept = kept.filter(has_all);
@@ -88,7 +88,7 @@ impl<'a> Builder<'a> {
         sum_words(sum.iter().map(|term| (name(term), term.factor)))
     }
 
-    /// Adds the number of a factor, in whatever unit its column is.
+    /// Adds the number of a factor, in any unit of its column.
     fn factor_input(&mut self, name: &str) -> Result<()> {
         if is_our_name(name) {
             return ErrorKind::Option.refuse(format!(
@@ -154,7 +154,7 @@ impl<'a> Builder<'a> {
         self.inputs.len() - 1
     }
 
-    /// What the mapping adds to a joint's columns, in the unit of the first.
+    /// The offset that the mapping adds to a joint's columns, in the unit of the first.
     pub(crate) fn add_offset(&mut self, at: usize, offset: Option<f64>, purpose: &str) -> Result<()> {
         let Some(offset) = offset else { return Ok(()) };
         let Some(input) = self.inputs.get_mut(at) else { return Ok(()) };
@@ -180,7 +180,7 @@ impl<'a> Builder<'a> {
         self.column_or(name, column, quantity, (mapped, None), purpose)
     }
 
-    /// The same with a unit of columns that state none.
+    /// Adds a number from a column, with a unit for a column that states none.
     pub(crate) fn column_or(
         &mut self,
         name: &str,
@@ -201,7 +201,7 @@ impl<'a> Builder<'a> {
         };
         let (unit, unit_from) = match (stated.or(default), self.header.units_line) {
             (Some(known), _) => known,
-            // With a line of units, an empty cell in it may have been forgotten or merged.
+            // In a line of units, an empty cell may be forgotten or merged.
             (None, Some(line)) if quantity != Unit::One => {
                 return Err(self.header.no_unit(index, line, quantity, purpose));
             }
@@ -234,7 +234,7 @@ impl<'a> Builder<'a> {
         Ok(index)
     }
 
-    /// The column with the time of a row, and the seconds of one, if there is one.
+    /// The column with the time of a row, and its unit in seconds, if there is one.
     pub(crate) fn time_column(&mut self) -> Option<(usize, f64)> {
         let cells = self.header.cells.iter().enumerate();
         let mut times = cells

@@ -1,4 +1,4 @@
-//! What is said of columns with two meanings, and of those with none.
+//! Errors of columns with two meanings, and of those with none.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ impl Builder<'_> {
     }
 }
 
-/// A missing name of ours that an unused column resembles, but for a typing error or brackets.
+/// A missing name of our form that an unused column resembles, except for a typing error or brackets.
 fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
     let slips = |ours: &str| if ours.len() < 4 { 0 } else { ours.len() / 4 };
     let with_unit = |ours: &str| Some(format!("{ours}[{}]", unit_in_name(name, ours)?.symbol()));
@@ -63,7 +63,7 @@ fn meant(name: &str, missing: &[&'static str]) -> Option<String> {
     })
 }
 
-/// Error and advice where a joint has the name of a column with a meaning.
+/// Error and remedy if a joint has the name of a column with a meaning.
 fn clash(name: &str) -> String {
     format!(
         "expected different names for the model's joint `{name}` and the measured `{name}`: call the joint's column \

@@ -5,12 +5,12 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 
-/// The name of a column by its number, from 1, as tables without names have them.
+/// The name of a column by its number, from 1, for tables without names.
 pub(crate) fn numbered_column(number: usize) -> String {
     format!("column {number}")
 }
 
-/// The same of a number of a mapping.
+/// The name of a column by a number of a mapping.
 pub(crate) fn counted_column<E: serde::de::Error>(number: i64) -> std::result::Result<String, E> {
     usize::try_from(number).ok().filter(|it| *it > 0).map(numbered_column).ok_or_else(|| {
         E::custom(format!("found the column {number}, expected its name, or its number from 1"))
@@ -68,7 +68,7 @@ pub(crate) fn column_names<'de, D: Deserializer<'de>>(
     Vec::<ColumnName>::deserialize(deserializer).map(|it| Some(it.into_iter().map(|it| it.0).collect()))
 }
 
-/// The number of a column that is named by it, from 1.
+/// The number of a column whose name is a number, from 1.
 pub(crate) fn number_of_column(name: &str) -> Option<usize> {
     name.strip_prefix("column ")?.parse().ok().filter(|it| *it > 0)
 }

@@ -20,7 +20,7 @@ pub(crate) struct ColumnSpec {
     /// Columns with their factors.
     pub(crate) columns: Option<BTreeMap<String, f64>>,
     pub(crate) value: Option<f64>,
-    /// What is added to the columns, in the unit.
+    /// Offset that is added to the columns, in the unit.
     pub(crate) offset: Option<f64>,
     #[serde(default, deserialize_with = "any_unit")]
     pub(crate) unit: Option<NamedUnit>,
@@ -73,7 +73,7 @@ impl<'de> Visitor<'de> for ColumnSpecVisitor {
     }
 }
 
-/// The columns of a sum must be some, with factors that say something.
+/// Checks that a sum has columns, with nonzero factors.
 fn check_columns<E: serde::de::Error>(columns: &BTreeMap<String, f64>) -> std::result::Result<(), E> {
     if columns.is_empty() {
         return Err(E::custom(

@@ -1,4 +1,4 @@
-//! Joint readings that are made of what a controller counts: columns as a calibration kept them, and third axes that count from the level.
+//! Joint readings from the counts of a controller: columns from a calibration, and third axes that count from the horizontal.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use poecal_numerics::named_unit::{NamedUnit, UnitSource};
 use poecal_numerics::unit::Unit;
 
 impl Builder<'_> {
-    /// Takes the third axis as it counts.
+    /// Takes the convention of the third axis.
     pub(crate) fn third_axis(&mut self, robot: &Robot, names: &[String], counts: ThirdAxis) -> Result<()> {
         let in_map = |message: String| Err(ErrorKind::Measurement.error(message).in_file(&self.map.path));
         let at = |name: &String| names.iter().position(|it| it == name);
@@ -50,7 +50,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Adds a joint's reading as the calibration kept it; units of the file precede those that were kept.
+    /// Adds a joint's reading by its columns in the calibration; units of the file precede the units there.
     pub(crate) fn kept_input(
         &mut self,
         kept: &ControllerReading,
@@ -107,7 +107,7 @@ impl Builder<'_> {
         self.joined_input(name, &columns, quantity, unit, purpose)
     }
 
-    /// Adds a sum of columns, each with its factor, and its unit where it states none.
+    /// Adds a sum of columns, each with its factor, and its unit if the column states none.
     pub(crate) fn joined_input(
         &mut self,
         name: &str,
@@ -129,12 +129,12 @@ impl Builder<'_> {
             }
         }
         let label = self.label(&sum);
-        // If unit and place are unique, the first column represents all.
+        // If unit and position are unique, the first column represents all.
         self.inputs.extend(parts.into_iter().next().map(|first| Input { label, sum, ..first }));
         Ok(at)
     }
 
-    /// How the readings of the joints, the first inputs, are made of columns; `None` where each is one column and nothing is stated.
+    /// Conversion of columns into the readings of the joints, the first inputs; `None` if each is one column and nothing is stated.
     pub(crate) fn controller(&self, robot: &Robot) -> Option<Controller> {
         let column = |term: &Term| {
             let name = self.header.cells.get(term.column).map(|cell| cell.name.clone())?;

@@ -6,13 +6,15 @@ use super::builder::Builder;
 use poecal_numerics::unit::Unit;
 
 impl Builder<'_> {
-    /// Whether the position is in columns X, Y, Z, in large letters.
+    /// True if the position is in columns X, Y, Z, in capital letters.
     pub(super) fn has_large_axes(&self) -> bool {
         !["x", "y", "z"].iter().any(|name| self.has(name))
             && ["X", "Y", "Z"].iter().all(|name| self.has(name))
     }
 
-    /// The convention of a maker whose columns the header has beside its X, Y, Z, and these: all with units or none, and numbers in the first row.
+    /// The convention of a maker whose columns the header has beside its X, Y, Z, and these columns. All have units or none, and numbers in the
+    /// first row.
+    /// first row.
     pub(super) fn convention(&self) -> Option<(&'static Convention, Vec<String>)> {
         let has_mapped_position = self.map.position.is_some();
         let first: Vec<Option<f64>> =
@@ -39,11 +41,11 @@ impl Builder<'_> {
         })
     }
 
-    /// The unused column of a maker: letters as the maker writes them, but for those of quaternions, of which there are no more.
+    /// The unused column of a maker: letters in the maker's case, except those of quaternions, which are unique.
     fn makers_column(&self, name: &str) -> Option<usize> {
         let letter = name.strip_suffix(|it: char| it.is_ascii_digit());
         let is_it = |text: &str| text == name || letter.is_some() && text.eq_ignore_ascii_case(name);
-        // Joints may be called q1 to q6.
+        // Joints may be named q1 to q6.
         let numbers = letter.map(|letter| {
             let of = |text: &str| {
                 text.to_lowercase().strip_prefix(letter).is_some_and(|it| it.parse::<u32>().is_ok())

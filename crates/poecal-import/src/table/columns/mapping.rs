@@ -1,4 +1,4 @@
-//! Mapping files: how files with their own column names are read.
+//! Mapping files: interpretation of files with their own column names.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub struct ColumnMap {
     pub(crate) decimal: Option<DecimalSign>,
     pub(crate) skip_lines: usize,
     pub(crate) pose: PoseDirection,
-    /// Columns that are read as if they were not there.
+    /// Columns that are read as if they were absent.
     #[serde(deserialize_with = "some_columns")]
     pub(crate) ignore: Vec<String>,
     #[serde(deserialize_with = "column_name")]
@@ -137,13 +137,13 @@ impl ColumnMap {
     /// Reads a mapping file.
     ///
     /// # Errors
-    /// [`ErrorKind::File`] if it cannot be read, else as [`ColumnMap::parse`].
+    /// [`ErrorKind::File`] if it cannot be read, else those of [`ColumnMap::parse`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         ColumnMap::parse(&source_text::read_up_to(path, "a column mapping (TOML)", Limit::Settings)?, path)
     }
 
-    /// A mapping from its TOML text; messages call it `path`.
+    /// A mapping from its TOML text; `path` is its name in messages.
     ///
     /// # Errors
     /// [`ErrorKind::Syntax`], with line and column, if the text is no TOML, or has an unknown key or value.
@@ -200,13 +200,13 @@ impl ColumnMap {
         Ok(())
     }
 
-    /// The same with units of columns that state none.
+    /// The mapping with units of columns that state none.
     pub(crate) fn with_units(mut self, words: &str) -> Result<Self> {
         self.state_units(words)?;
         Ok(self)
     }
 
-    /// Whether it names columns of joints or of what was measured.
+    /// True if it names columns of joints or of measurements.
     pub(crate) fn names_columns(&self) -> bool {
         let has_columns = |spec: &ColumnSpec| spec.column.is_some() || spec.columns.is_some();
         self.joints.values().any(has_columns)
@@ -218,17 +218,17 @@ impl ColumnMap {
             || self.target.is_some()
     }
 
-    /// Reads columns of these names as if they were not there; a file need not have them.
+    /// Reads columns of these names as if they were absent; a file need not have them.
     pub fn ignore_columns(&mut self, names: impl IntoIterator<Item = String>) {
         self.ignore.extend(names);
     }
 
-    /// Whether it names columns of joints.
+    /// True if it names columns of joints.
     pub(crate) fn names_joints(&self) -> bool {
         self.joints.values().any(|spec| spec.column.is_some() || spec.columns.is_some())
     }
 
-    /// The largest number of a column, where it names the columns of what was measured by their numbers alone.
+    /// The largest number of a column, if it names the columns of the measurements only by their numbers.
     pub(crate) fn measured_numbers(&self) -> Option<usize> {
         let targets = self.targets.iter().map(|it| (Some(&it.position), it.orientation.as_ref()));
         let lists = std::iter::once((self.position.as_ref(), self.orientation.as_ref())).chain(targets);

@@ -1,4 +1,4 @@
-//! Finds the columns of what was measured.
+//! Finds the columns of the measurements.
 
 use std::collections::BTreeMap;
 
@@ -22,13 +22,13 @@ const COVERAGE_FACTOR: f64 = 2.0;
 #[derive(Clone, Debug)]
 pub(crate) struct TargetLayout {
     pub(crate) name: Option<String>,
-    /// None in a file of other kinds of measurements.
+    /// Columns of the position; `None` in a file of other kinds of measurements.
     pub(crate) position: Option<[usize; 3]>,
     pub(crate) orientation: Option<(OrientationForm, Vec<usize>)>,
-    /// The convention of the orientation's columns, where these have the names of a maker.
+    /// The convention of the orientation's columns, if these have the names of a maker.
     pub(crate) convention: Option<&'static Convention>,
     pub(crate) sigma_position: Option<usize>,
-    /// Of each component.
+    /// Standard deviation of each component.
     pub(crate) sigma_components: [Option<usize>; 3],
     pub(crate) sigma_rotation: Option<usize>,
     /// Other kinds of measurements.
@@ -101,7 +101,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Whether the header has a column of this name that is not used otherwise.
+    /// True if the header has a column of this name that is not used otherwise.
     pub(super) fn has(&self, name: &str) -> bool {
         self.header.count(name) > 0 && !self.readings.contains(name)
     }
@@ -121,7 +121,7 @@ impl Builder<'_> {
             let mut numbers = Vec::with_capacity(columns.numbers.len());
             let names = columns.numbers.iter().filter(|name| kind.needs_numbers() || self.has(name));
             for &name in names.collect::<Vec<_>>() {
-                // Kinds that a word tells apart have their numbers in the same columns.
+                // Kinds that a word distinguishes have their numbers in the same columns.
                 let input = match known.get(name) {
                     Some(&input) => input,
                     None => self.column_input(name, name, dimension, None, &purpose)?,
@@ -185,7 +185,7 @@ impl Builder<'_> {
         Ok((spec.form, indices))
     }
 
-    /// The unit of a maker, where nothing states one; with a line of units, an empty cell in it may have been forgotten.
+    /// The unit of a maker, if nothing states one; in a line of units, an empty cell may be forgotten.
     fn usual(&self, unit: Option<NamedUnit>) -> Option<(NamedUnit, UnitSource)> {
         unit.filter(|_| self.header.units_line.is_none()).map(|unit| (unit, UnitSource::Maker))
     }

@@ -10,7 +10,7 @@ use crate::table::orientation::OrientationForm;
 use poecal_arm::lie::angles::{Angles, MAKERS};
 use poecal_numerics::named_unit::UnitSource;
 
-/// Advice on columns that may hold an orientation and are not read as one.
+/// Remedy for columns that may hold an orientation and are not read as one.
 pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMap) -> Option<String> {
     let [target] = layout.targets.as_slice() else { return None };
     match &target.orientation {
@@ -22,7 +22,7 @@ pub(crate) fn warning(header: &Header<'_>, layout: &ColumnLayout, map: &ColumnMa
     }
 }
 
-/// What columns of a maker were taken for.
+/// Note on the interpretation of a maker's columns.
 pub(crate) fn note(layout: &ColumnLayout) -> Option<String> {
     let [target] = layout.targets.as_slice() else { return None };
     let (convention, inputs) = (target.convention?, &target.orientation.as_ref()?.1);
@@ -57,7 +57,7 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
         (columns.join(", "), mapped(form, &columns, if is_stated { "" } else { ", unit = \"deg\"" }))
     };
     let known = CONVENTIONS.iter().filter(|it| it.is_unique()).find_map(|it| {
-        // Joints may be called q1 to q6.
+        // Joints may be named q1 to q6.
         let is_more = it.columns.len() > 3 && left_alone("q5").is_some();
         let form = it.form.mapped();
         all(it.columns).filter(|_| !is_more).map(|cells| (mapping(&form, &cells), it.words.clone()))
@@ -72,7 +72,7 @@ fn unread(header: &Header<'_>, layout: &ColumnLayout) -> Option<String> {
     ))
 }
 
-/// Columns of a rotation vector in the order of turns about z, y, x.
+/// Columns of a rotation vector in the order of rotations about z, y, x.
 fn backwards(header: &Header<'_>, layout: &ColumnLayout, columns: &[usize]) -> Option<String> {
     let place = |&input: &usize| match layout.inputs.get(input)?.source {
         InputSource::Column(column) => Some(column),
@@ -129,7 +129,7 @@ mod tests {
             error("roll,pitch,yaw", &["0,0,-178.5"])
                 .contains("angles of an orientation up to 178.5 rad in the columns roll,")
         );
-        // Few rows, another unit, a full turn, and an angle that counts on.
+        // Few rows, another unit, a full turn, and an angle beyond a turn.
         let sound: Vec<&str> = ["0,1,0.5"; 19].into_iter().chain(["0,0,90"]).collect();
         assert!(read("rx,ry,rz", &sound).is_ok());
         for (header, turn) in [
@@ -173,7 +173,7 @@ mod tests {
         }
     }
 
-    /// Lengths in millimetres and angles in degrees, as `hand-eye` reads the same columns.
+    /// Lengths are in millimetres and angles in degrees, as in `hand-eye` for the same columns.
     #[test]
     fn columns_of_a_maker_mean_what_it_means_by_them() {
         let row = "0,0.1,0.1,0,600,50,100";
@@ -216,7 +216,7 @@ mod tests {
             assert!((pose.translation - Vector3::new(0.6, 0.05, 0.1)).amax() < 1e-15, "{header}");
             assert!(file.notes.iter().any(|it| it.contains(note)), "{:?}", file.notes);
         }
-        // Words, a unit of the place alone, numbers that are no quaternion.
+        // The cells are words, a unit of the position alone, or numbers that are no quaternion.
         for (header, turn) in [
             ("X,Y,Z,A,B,C", "ok,20,30"),
             ("X[mm],Y[mm],Z[mm],A,B,C", "10,20,30"),

@@ -20,9 +20,9 @@ static CHANNELS: [Channels; 8] = [
     Channels::new(&XYZ),
 ];
 
-/// Measured components of a target's position, `e = (y - p)` and `S = [I 0]` of those alone: a camera that looks along z sees x and y, a
-/// gauge on a rail one of them. The device shows its frame but for its place along the others (theory.md §4 (15)). The fourth value is a bit
-/// for each that was measured.
+/// Measured components of a target's position, `e = (y - p)` and `S = [I 0]` of those alone: a camera that looks along z measures x and y, a
+/// gauge on a rail one of them. They determine the device's frame except its position along the others (theory.md §4 (15)). The fourth value
+/// has a bit for each that was measured.
 static COMPONENTS: Function = Function {
     name: "component",
     plural: "components",
@@ -83,12 +83,12 @@ const FROM_ABOVE: Session = Session {
 };
 
 impl Kind {
-    /// Two components of the tip's position, as a camera sees them.
+    /// Two components of the tip's position, as a camera measures them.
     pub const COMPONENT: Kind = Kind::new(&FROM_ABOVE);
 }
 
 impl Measurement {
-    /// Components of a target's position in the device's frame, metres; none of those that were not measured, and one at least.
+    /// Components of a target's position in the device's frame, metres; `None` for those that were not measured, and one at least.
     #[must_use]
     pub fn components(components: [Option<f64>; 3]) -> Self {
         let bits = [0, 1, 2].map(|k| f64::from(u8::from(components[k].is_some()) << k));
@@ -98,7 +98,7 @@ impl Measurement {
         Measurement::new(&COMPONENTS, &[place.x, place.y, place.z, measured])
     }
 
-    /// Whether some components of a position were measured, and not all.
+    /// True if some components of a position were measured, and not all.
     pub fn is_part_of_position(&self) -> bool {
         *self.function() == COMPONENTS
     }

@@ -1,4 +1,4 @@
-//! A fixed direction, as the target sees it.
+//! A fixed direction in the target's axes.
 
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use crate::measurement::{
 };
 use poecal_arm::lie::{Freedom, Pose, rotation, series};
 
-/// The channels of two tilts.
+/// Channels of two tilts.
 pub(crate) const TILTS: [Channel; 2] = [
     Channel { name: "tilt_x", quantity: Quantity::Tilt },
     Channel { name: "tilt_y", quantity: Quantity::Tilt },
@@ -18,8 +18,8 @@ pub(crate) const TILTS: [Channel; 2] = [
 
 static CHANNELS: Channels = Channels::new(&TILTS);
 
-/// The device's z in the target's axes, `u = Rᵀ e_z`, as an inclinometer on the tool sees the upward direction. The residual is the rotation
-/// about the target's axes from the measured direction m to the predicted one, in a basis across m (theory.md §4 (16b)).
+/// The device's z in the target's axes, `u = Rᵀ e_z`, as an inclinometer on the tool measures the upward direction. The residual is the
+/// rotation about the target's axes from the measured direction m to the predicted one, in a basis across m (theory.md §4 (16b)).
 static DIRECTION: Function = Function {
     name: "direction",
     plural: "directions",
@@ -45,24 +45,24 @@ fn seen([x, y, z, ..]: &Values) -> Vector3<f64> {
 /// `θ / sin θ` of directions that are opposite but for rounding.
 const OPPOSITE: f64 = 1e8;
 
-/// Two unit vectors across a measured direction, which end a right-handed frame; x and y of the target where it is z.
+/// Two unit vectors across a measured direction, which complete a right-handed frame; x and y of the target if it is z.
 fn across(measured: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let turn = rotation::shortest_arc(&Vector3::z(), measured);
     [turn.column(0).into_owned(), turn.column(1).into_owned()]
 }
 
-/// The residual of a measured direction of the device's z.
+/// Residual of a measured direction of the device's z.
 pub(crate) fn tilts_between(measured: &Vector3<f64>, predicted: &Pose) -> [f64; 2] {
     let u = predicted.rotation.row(2).transpose();
     let [a, b] = across(measured);
     let angle = measured.cross(&u).norm().atan2(measured.dot(&u));
     let scale = 1.0 / series::sinc(angle * angle);
-    // The opposite direction: about any axis across.
+    // For the opposite direction the rotation is about any axis across.
     let is_clear = scale.is_finite() && scale.abs() < OPPOSITE;
     if is_clear { [-u.dot(&b) * scale, u.dot(&a) * scale] } else { [angle, 0.0] }
 }
 
-/// Its sensitivity.
+/// Sensitivity of the residual of a direction.
 pub(crate) fn turned_by(measured: &Vector3<f64>, predicted: &Pose) -> [Sensitivity; 2] {
     let (turn, u) = (predicted.rotation, predicted.rotation.row(2).transpose());
     let [a, b] = across(measured);
@@ -70,7 +70,7 @@ pub(crate) fn turned_by(measured: &Vector3<f64>, predicted: &Pose) -> [Sensitivi
     let square = angle * angle;
     let sinc = series::sinc(square);
     let scale = (1.0 / sinc).clamp(-OPPOSITE, OPPOSITE);
-    // Of θ / sin θ by cos θ.
+    // Derivative of θ / sin θ by cos θ.
     let growth = -(series::cosc(square) - series::sincc(square)) * scale * scale * scale;
     // A rotation ω of the target, device axes, moves `g · u` by `ω · (R g × e_z)`.
     let by_turn = |g: Vector3<f64>| (turn * g).cross(&Vector3::z());
@@ -80,12 +80,13 @@ pub(crate) fn turned_by(measured: &Vector3<f64>, predicted: &Pose) -> [Sensitivi
     [x, y].map(|w| [0.0, 0.0, 0.0, w.x, w.y, w.z])
 }
 
-/// The direction that a target sees which is turned by these angles about its x and y, radians: the readings of an inclinometer with two axes.
+/// Direction in the axes of a target that is turned by these angles about its x and y, radians: the readings of an inclinometer with two
+/// axes.
 pub(crate) fn of_tilts([x, y]: [f64; 2]) -> Vector3<f64> {
     rotation::exp(&Vector3::new(-x, -y, 0.0)) * Vector3::z()
 }
 
-/// The readings of such an inclinometer, radians.
+/// Readings of such an inclinometer, radians.
 fn tilts_of(direction: &Vector3<f64>) -> [f64; 2] {
     let turn = rotation::log(&rotation::shortest_arc(direction, &Vector3::z()));
     [turn.x, turn.y]

@@ -26,11 +26,12 @@ const READ: Function = Function {
     ..Function::USUAL
 };
 
-/// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It shows where its instrument is, and not how it is turned (theory.md §4 (15a)).
+/// Measured distance, `e = d - |p|`, `S = [pᵀ/|p| 0]`. It determines the position of its instrument, and not its orientation (theory.md §4
+/// (15a)).
 static DISTANCE: Function = READ;
 
-/// The same where the zero of the instrument's readings is unknown, so that only changes count: of an interferometer, of a sphere whose radius
-/// is unknown (theory.md §4 (15d)).
+/// The same function with an unknown zero of the instrument's readings, so that only changes count: of an interferometer, of a sphere whose
+/// radius is unknown (theory.md §4 (15d)).
 static CHANGE: Function = Function { name: "distance change", zero_is_unknown: true, ..READ };
 
 pub(crate) const ROW: Row = Row {
@@ -153,7 +154,7 @@ impl Measurement {
         Measurement::new(&CHANGE, &[metres])
     }
 
-    /// The same with the zero of its readings unknown, if it is a distance.
+    /// The same measurement with an unknown zero of its readings, if it is a distance.
     pub fn with_unknown_zero(self) -> Self {
         if *self.function() == DISTANCE { self.with_function(&CHANGE) } else { self }
     }

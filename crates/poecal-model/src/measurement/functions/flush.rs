@@ -13,7 +13,7 @@ static CHANNELS: Channels =
     Channels::new(&[Channel { name: "height", quantity: Quantity::Height }, TILTS[0], TILTS[1]]);
 
 /// A face of the target, across one of its axes, flush on a plane, the device's xy: the height of the target and two tilts, all zero,
-/// theory.md §4 (15c) and (16b). Of both, height and tilts are all that shows. After the height, the values are the plane's z in the target's
+/// theory.md §4 (15c) and (16b). Only height and tilts of both are determined. After the height, the values are the plane's z in the target's
 /// axes: an axis of the target, forward or backward.
 static FLUSH: Function = Function {
     name: "flush face",
@@ -84,12 +84,12 @@ impl Measurement {
         Measurement::new(&FLUSH, &[height, normal.x, normal.y, normal.z])
     }
 
-    /// The plane's z in the target's axes, of a face that lies flush.
+    /// The plane's z in the target's axes, for a face that lies flush.
     pub fn face_normal(&self) -> Option<Vector3<f64>> {
         (*self.function() == FLUSH).then(|| normal(self.values()))
     }
 
-    /// Another one, if it is a face that lies flush.
+    /// Replaces the normal, if the measurement is a face that lies flush.
     pub fn set_face_normal(&mut self, normal: &Vector3<f64>) {
         if *self.function() == FLUSH {
             *self = Measurement::flush(self.values()[0], normal);

@@ -10,8 +10,8 @@ use poecal_arm::lie::Freedom;
 
 static CHANNELS: Channels = Channels::new(&[Channel { name: "height", quantity: Quantity::Height }]);
 
-/// Height of a target over a plane, the device's xy, `e = h - p_z`: zero of a probe that touches, the reading of a dial gauge that looks
-/// along z. The device shows its height and its tilts alone (theory.md §4 (15c)).
+/// Height of a target over a plane, the device's xy, `e = h - p_z`: zero for a probe in contact, the reading of a dial gauge that looks
+/// along z. Only height and tilts of the device are determined (theory.md §4 (15c)).
 static HEIGHT: Function = Function {
     name: "height",
     plural: "heights",

@@ -1,4 +1,4 @@
-//! The table of everything that is measured.
+//! Table of all measured functions.
 
 mod components;
 mod direction;
@@ -11,17 +11,17 @@ mod socket;
 
 use super::{Columns, Function, Kind, Quantity, Session};
 
-/// What is known of a function: a row of [`FUNCTIONS`].
+/// Properties of a function: a row of [`FUNCTIONS`].
 pub struct Row {
     /// The function.
     pub function: &'static Function,
-    /// Its forms in files; none of what is in the columns of positions and orientations.
+    /// Forms in files; empty for a function in the columns of positions and orientations.
     pub columns: &'static [Columns],
     /// Sessions of it.
     pub sessions: &'static [Session],
 }
 
-/// Everything that is measured. A new sensor is a file of this folder, and its row here.
+/// All measured functions. A new sensor is a file of this folder, and its row here.
 ///
 /// ```
 /// use poecal_model::measurement::FUNCTIONS;
@@ -53,7 +53,7 @@ pub(crate) fn named(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().map(|row| row.function).find(|it| it.name == name)
 }
 
-/// The function that measures these quantities and no others, the plainest if there are several.
+/// Function that measures these quantities and no others, the plainest if there are several.
 pub fn measuring(quantities: &[Quantity]) -> Option<&'static Function> {
     FUNCTIONS.iter().map(|row| row.function).find(|it| it.quantities == quantities)
 }

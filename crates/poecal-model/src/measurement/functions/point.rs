@@ -6,7 +6,7 @@ use super::Row;
 use crate::measurement::session::{Draw, Kind, Session, Stands};
 use crate::measurement::{Channel, Channels, Clue, Function, Kernel, Measurement, Quantity};
 
-/// The channels of a position.
+/// Channels of a position.
 pub(crate) const XYZ: [Channel; 3] = [
     Channel { name: "x", quantity: Quantity::Position },
     Channel { name: "y", quantity: Quantity::Position },
@@ -52,7 +52,7 @@ const POINTS: Session = Session {
 };
 
 impl Kind {
-    /// The tip's position.
+    /// Positions of the tip.
     pub const POINT: Kind = Kind::new(&POINTS);
 }
 

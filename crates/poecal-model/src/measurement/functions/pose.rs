@@ -8,7 +8,7 @@ use crate::measurement::session::{Draw, Drawn, Kind, Session, Stands};
 use crate::measurement::{Channel, Channels, Clue, Function, Kernel, Measurement, Quantity, Values};
 use poecal_arm::lie::{Freedom, Pose, hat, rotation, series};
 
-/// The channels of a pose: position, then rotation vector.
+/// Channels of a pose: position, then rotation vector.
 static FRAME: Channels = Channels::new(&[
     XYZ[0],
     XYZ[1],
@@ -113,7 +113,7 @@ fn noisy(target: &Pose, shift: Vector3<f64>, drawn: &Drawn<'_>) -> Measurement {
 }
 
 impl Kind {
-    /// The tip's position and orientation.
+    /// Position and orientation of the tip.
     pub const POSE: Kind = Kind::new(&POSES);
     /// Poses and points in turn.
     pub const MIXED: Kind = Kind::new(&MIXED);
@@ -143,14 +143,14 @@ impl Measurement {
         seen
     }
 
-    /// Whether it is a pose, or all of a position.
+    /// True if it is a pose, or all of a position.
     #[must_use]
     #[inline]
     pub fn is_place(&self) -> bool {
         *self.function() == POSE || *self.function() == super::point::POINT
     }
 
-    /// The same pose, or position, as another one makes of it; none of what is neither.
+    /// The same pose, or position, after a change; `None` if it is neither.
     #[must_use]
     pub fn changed(&self, to: impl FnOnce(Pose) -> Pose) -> Option<Self> {
         match self.frame() {

@@ -1,4 +1,4 @@
-//! A ball in a socket: its place from the middle of the socket.
+//! A ball in a socket: its position from the middle of the socket.
 
 use nalgebra::Vector3;
 
@@ -14,7 +14,7 @@ static CONTACT: Channels = Channels::new(&[
     Channel { name: "contact_z", quantity: Quantity::Contact },
 ]);
 
-/// A ball that rests in a socket, `e = y - p` with `y = 0`: the socket is a device that shows where it is and has no axes, and the ball's
+/// A ball that rests in a socket, `e = y - p` with `y = 0`. The socket is a device with a position and without axes, and the ball's
 /// centre, the target, is at its origin (theory.md §4 (15b)). A fixed point that is touched in many configurations is the same.
 static SOCKET: Function = Function {
     name: "contact",
@@ -71,7 +71,7 @@ impl Kind {
 }
 
 impl Measurement {
-    /// Where a ball is from the middle of its socket, metres: zero.
+    /// Position of a ball from the middle of its socket, metres: zero.
     #[must_use]
     pub fn socket(place: Vector3<f64>) -> Self {
         Measurement::new(&SOCKET, place.as_slice())

@@ -1,4 +1,4 @@
-//! Residuals over the value of each joint, with smoothed curves. Of several residuals a script shows the one that is chosen.
+//! Residuals over the value of each joint, with smoothed curves. If there are several residuals, a script shows the selected one.
 
 use maud::{Markup, html};
 
@@ -17,7 +17,7 @@ const OWN: &str = "along the joint's own motion";
 struct Residual {
     name: String,
     unit: &'static str,
-    /// Its place among the columns of the page's data, which has no motions.
+    /// Its index among the columns of the page's data, which has no motions.
     column: Option<String>,
     /// Values by drawn row: for all readings, or for each.
     values: Vec<Vec<Option<f64>>>,
@@ -30,7 +30,7 @@ impl Residual {
         self.values.get(own)?.get(row.at).copied().flatten()
     }
 
-    /// One range for all joints, so that they compare: a few rows far off are left out of sight.
+    /// One range for all joints, so that they compare: a few rows with large deviations are left out of sight.
     fn range(&self, rows: &[&Drawn]) -> [f64; 2] {
         let values =
             || (0..self.values.len()).flat_map(|k| rows.iter().filter_map(move |row| self.value(k, row)));
@@ -41,7 +41,7 @@ impl Residual {
         if values().any(|it| it < 0.0) { [-most, most] } else { [0.0, most] }
     }
 
-    /// The axis with the smoothed curve through its values over a reading, of rows in the order of that.
+    /// The axis with the smoothed curve through its values over a reading, of rows sorted by that reading.
     fn side(&self, (reading, name): (usize, &str), rows: &[(&Drawn, f64)], range: [f64; 2]) -> Side {
         let points: Vec<[f64; 2]> =
             rows.iter().filter_map(|(row, at)| Some([*at, self.value(reading, row)?])).collect();
@@ -69,7 +69,7 @@ impl Residual {
     }
 }
 
-/// Residuals that can be drawn over joint values, the first of which is shown.
+/// Residuals that can be drawn over joint values; the first is shown.
 fn residuals(charts: &Charts<'_>, file: &CalibrationFile) -> Result<Vec<Residual>> {
     let motions = Motions::new(file, charts.residuals)?;
     let by_row: Vec<Vec<Option<f64>>> = charts.rows.iter().map(|row| motions.along(row.index)).collect();

@@ -1,4 +1,4 @@
-//! Charts of the rows: dots by row, component and leverage, how the errors are spread, and how they lie against noise.
+//! Charts of the rows: dots by row, component and leverage, the distribution of the errors, and their comparison with noise.
 
 mod by_joint;
 mod motion;
@@ -15,9 +15,9 @@ use poecal_results::residuals::{ResidualRow, Residuals};
 
 /// Rows from which on dots are small.
 const MANY: usize = 800;
-/// A class of what is drawn, and what it is.
+/// A class of drawn elements with its meaning.
 pub(crate) type Key = (&'static str, &'static str);
-/// Sets of rows, and by how much what is drawn behind suspected ones is wider than they are, px.
+/// Sets of rows, and the additional width (px) of the element behind suspected ones.
 const SETS: [Key; 3] = [("alarm", "suspected"), ("s0", "fitted"), ("s1", "held out")];
 const AROUND: u8 = 6;
 /// Points of a normal plot at most.
@@ -29,7 +29,7 @@ const WIDE: [f64; 2] = [980.0, 210.0];
 const HALF: [f64; 2] = [440.0, 190.0];
 pub(crate) const CELL: [f64; 2] = [280.0, 140.0];
 
-/// A chart with the keys of its colours, a place for what the cursor is on, and what is said of it below.
+/// A chart with the keys of its colours, a line for the element under the cursor, and its caption below.
 pub(crate) fn chart(name: &str, title: &str, caption: &str, drawing: &Markup) -> Markup {
     html! {
         figure.chart data-chart=(name) {
@@ -59,7 +59,7 @@ pub(crate) fn with_unit(value: f64, unit: &str) -> String {
     if value.is_finite() { format!("{minus}{}{space}{unit}", number(value.abs())) } else { "–".to_owned() }
 }
 
-/// An axis from the least to the largest of some values, which shows zero if it is told to.
+/// An axis from the least to the largest of some values, which includes zero if `from_zero`.
 fn axis(title: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
     let range = values.filter(|it| it.is_finite()).fold(None, |range: Option<[f64; 2]>, it| {
         let [low, high] = range.unwrap_or([it, it]);
@@ -70,7 +70,7 @@ fn axis(title: &str, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis
     Axis::new(title, Scale::Close).including(&includes)
 }
 
-/// The drawn rows of a calibration, and the error that is told of each.
+/// The drawn rows of a calibration, and the reported error of each.
 pub(crate) struct Charts<'a> {
     pub(crate) residuals: &'a Residuals,
     pub(crate) rows: &'a [Drawn],
@@ -90,7 +90,7 @@ impl<'a> Charts<'a> {
         self.row(drawn).and_then(|row| self.lead.error(row)).map(rounded)
     }
 
-    /// Dots of fitted, held-out and suspected rows at some places, and the keys of those that there are.
+    /// Dots of fitted, held-out and suspected rows at some positions, and the keys of the sets that occur.
     pub(crate) fn by_set(
         &self,
         rows: &[&Drawn],
@@ -113,7 +113,7 @@ impl<'a> Charts<'a> {
             }
             all.push(Spots { class, size, points });
         }
-        // What is suspected is drawn behind, and told last.
+        // Suspected rows are drawn behind, and their key comes last.
         if keys.first().is_some_and(|it| it.0 == "alarm") {
             keys.rotate_left(1);
         }
@@ -149,7 +149,7 @@ impl<'a> Charts<'a> {
         format!("{}, {set}{suspected}: {error}", place(self.residuals, row.index))
     }
 
-    /// Each component of each quantity: its name, its unit, its place among the columns of the page's data, and the values of some rows.
+    /// Each component of each quantity: its name, its unit, its index among the columns of the page's data, and the values of some rows.
     pub(crate) fn components(&self) -> Vec<Component> {
         let measured = self.residuals.measured().into_iter().enumerate();
         let all =
@@ -201,7 +201,7 @@ impl<'a> Charts<'a> {
         let sets = [errors(false), errors(true)];
         let mut sorted: Vec<f64> = sets.iter().flatten().copied().collect();
         sorted.sort_by(f64::total_cmp);
-        // A few rows far off would leave all others in one bar.
+        // A few rows with large errors would leave all others in one bar.
         let most = sorted.last().map_or(1.0, |last| last.min(1.6 * quantile(&sorted, 0.97)));
         let most = if most > 0.0 { most } else { 1.0 };
         let count = (sorted.len() as f64).sqrt().round().clamp(BARS[0], BARS[1]) as usize;
@@ -230,7 +230,7 @@ impl<'a> Charts<'a> {
         html! { (keys(&found)) (graph.svg()) }
     }
 
-    /// The components of the leading unit against where those of a normal distribution would be.
+    /// The components of the leading unit against the quantiles of a normal distribution.
     pub(crate) fn normal(&self) -> Markup {
         let (name, unit) = (self.lead.name(), self.lead.unit());
         let own = self.components().into_iter().filter(|it| it.unit == unit);
@@ -241,7 +241,7 @@ impl<'a> Charts<'a> {
         let mut values: Vec<f64> = own.flat_map(of_component).collect();
         values.sort_by(f64::total_cmp);
         let (all, count) = (values.len(), values.len().min(NORMAL_POINTS));
-        // Both ends, and as many between as can be told apart.
+        // Both ends, and as many between as the chart resolves.
         let rank = |k: usize| (k * all.saturating_sub(1) + count / 2) / count.saturating_sub(1).max(1);
         let ranks = (0..count).map(|k| rank(k).min(all.saturating_sub(1)));
         let expected = |rank: usize| normal_quantile((rank as f64 + 0.5) / all as f64);
@@ -264,7 +264,7 @@ impl<'a> Charts<'a> {
         html! { (keys(&found)) (Graph { x, size: HALF, dots, sides }.svg()) }
     }
 
-    /// The fitted rows by how much each decides of the fit.
+    /// The fitted rows by their influence on the fit.
     pub(crate) fn leverage(&self) -> Markup {
         let found = |row: &Drawn| {
             let judged = self.row(row)?.judged.filter(|_| !row.held_out)?;
@@ -296,9 +296,9 @@ impl<'a> Charts<'a> {
 pub(crate) struct Component {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
-    /// Its place among the columns of the page's data.
+    /// Its index among the columns of the page's data.
     pub(crate) column: String,
-    /// By drawn row.
+    /// Values by drawn row.
     pub(crate) values: Vec<Option<f64>>,
 }
 
@@ -307,7 +307,7 @@ fn outline(errors: &[f64], width: f64, count: usize) -> Vec<[f64; 2]> {
     let mut bars = vec![0.0; count];
     for error in errors {
         let at = (error / width) as usize;
-        // What lies at the end of the last bar is in it.
+        // A value at the end of the last bar is in it.
         let at = if *error <= width * count as f64 { at.min(count - 1) } else { at };
         if let Some(bar) = bars.get_mut(at) {
             *bar += 100.0 / errors.len() as f64;

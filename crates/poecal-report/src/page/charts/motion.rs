@@ -12,7 +12,7 @@ use poecal_numerics::error::Result;
 use poecal_results::calibration_file::CalibrationFile;
 use poecal_results::residuals::{ResidualRow, Residuals};
 
-/// Least motion that has a direction, metres per unit of a reading: what lies on a joint's axis has none.
+/// Least motion that has a direction, metres per unit of a reading: a point on a joint's axis has none.
 const STILL: f64 = 1e-3;
 
 /// A target or an instrument on its body.
@@ -52,8 +52,8 @@ impl<'a> Motions<'a> {
         Ok(Motions { residuals, targets, instruments, columns, robot })
     }
 
-    /// The part of a row's residual along the motion of its place with each reading, millimetres: of vectors alone, and none where the
-    /// place does not move against the instrument.
+    /// The part of a row's residual along the motion of its target with each reading, millimetres: of vectors alone, and `None` if the target does
+    /// not move relative to the instrument.
     pub(crate) fn along(&self, index: usize) -> Vec<Option<f64>> {
         let mut motion = vec![Vector3::zeros(); self.residuals.readings.len()];
         let residual = self.residuals.rows().get(index).and_then(|row| self.moved(index, row, &mut motion));
@@ -64,8 +64,8 @@ impl<'a> Motions<'a> {
         motion.iter().map(part).collect()
     }
 
-    /// Adds up how the place of a row moves with each reading, and gives its residual, both in the base frame; nothing of residuals that
-    /// are no vectors, or whose axes are those of another configuration.
+    /// Adds the motion of a row's target with each reading, and returns its residual, both in the base frame. `None` for residuals that are no
+    /// vectors, or whose axes are those of another configuration.
     fn moved(&self, index: usize, row: &ResidualRow, motion: &mut [Vector3<f64>]) -> Option<Vector3<f64>> {
         let residual = vector_of(row)?;
         let (target, instrument) = (self.targets.get(row.target)?, self.instruments.get(row.station)?);
@@ -77,7 +77,7 @@ impl<'a> Motions<'a> {
             |body: Body| body.joint().and_then(|at| bodies.get(at)).copied().unwrap_or_else(Pose::identity);
         let place = (motion_of(target.body) * target.pose).translation;
         for (k, joint) in self.robot.joints.iter().enumerate() {
-            // A joint that moves both moves neither against the other.
+            // A joint that moves both moves neither relative to the other.
             let [own, other] = [target, instrument].map(|it| it.joints.get(k) == Some(&true));
             let sign = f64::from(i8::from(own) - i8::from(other));
             let before = motion_of(self.robot.body_before(k));
@@ -89,7 +89,7 @@ impl<'a> Motions<'a> {
         Some((motion_of(instrument.body) * instrument.pose).rotation * residual)
     }
 
-    /// The motion of each joint's link from its place at zero. What the joints do beyond geometry is too little to turn a direction.
+    /// The motion of each joint's link from its pose at zero. Joint effects beyond geometry are too small to turn a direction.
     fn bodies(&self, values: &[f64]) -> Vec<Pose> {
         let mut bodies: Vec<Pose> = Vec::with_capacity(self.robot.joints.len());
         for (k, joint) in self.robot.joints.iter().enumerate() {
