@@ -8,7 +8,7 @@
 //! | to | see |
 //! |---|---|
 //! | have an arm, and the pose of its tip | [`Arm`], [`Arm::forward_kinematics`] |
-//! | have joints that turn more than their readings | [`Model`], [`Arm::of`] |
+//! | have joints that turn more than their readings | [`Model`], [`Arm::from_model`] |
 //! | know the parts of joint values beyond readings, with derivatives | [`TermKind`], [`Term`] |
 //! | have many poses, Jacobians, or deflections under weights | [`Arm::forward_kinematics_of`], [`Arm::jacobians_of`], [`Arm::sag_of`] |
 //! | move the tip to a pose, from the current configuration | [`Arm::nearest`] |

@@ -90,7 +90,7 @@ pub(crate) fn is_content(text: &str) -> bool {
 macro_rules! whole_numbers {
     ($($kind:ty)*) => { $(
         impl<'a, 'py> Argument<'a, 'py> for $kind {
-            fn of(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
+            fn from_argument(value: &'a Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
                 let expected = format!("a whole number from 0 to {}", <$kind>::MAX);
                 value.extract().map_err(|_| unexpected(name, value, expected))
             }

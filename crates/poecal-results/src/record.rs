@@ -98,7 +98,7 @@ impl Record {
     /// Key and text of `KEY=TEXT`.
     ///
     /// # Errors
-    /// As [`Record::of`].
+    /// As [`Record::from_pairs`].
     pub fn pair(text: &str) -> Result<(String, String)> {
         let Some((key, value)) = text.split_once('=') else {
             return Err(refused(format!("found `{text}`, expected KEY=TEXT, like serial=4711")));

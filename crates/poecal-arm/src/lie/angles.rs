@@ -17,7 +17,7 @@ use super::rotation;
 /// ```
 /// use poecal_arm::lie::angles::Angles;
 /// let turned = Angles::ZYX.rotation([0.3, -0.2, 0.1]);
-/// let same = Angles::ROLL_PITCH_YAW.of(&turned);
+/// let same = Angles::ROLL_PITCH_YAW.decompose(&turned);
 /// assert!((same[0] - 0.1).abs() < 1e-15 && (same[2] - 0.3).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -29,7 +29,7 @@ pub struct Models {
 /// #     pub use poecal_calibrate::Statistic;
 /// # }
 /// use poecal::Statistic;
-/// let s = Statistic::of(vec![3.0, 4.0]).expect("two values");
+/// let s = Statistic::from_errors(vec![3.0, 4.0]).expect("two values");
 /// assert_eq!((s.mean, s.rms, s.max), (3.5, 12.5_f64.sqrt(), 4.0));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

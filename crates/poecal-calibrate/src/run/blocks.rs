@@ -13,7 +13,7 @@ use poecal_numerics::error::{Error, ErrorKind, Result};
 const LISTED: usize = 12;
 
 /// Deviations of a fit's unknowns from the default: first the blocks of `fix` are held as in the model, then those of `free` are unknown. A word is a
-/// block's name ([`Names::of`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis; or one of `joints`
+/// block's name ([`Names::name_of_block`]), in which `*` and `?` stand for any letters and any letter; a joint's name, which means its axis; or one of `joints`
 /// (all axes), `targets` and `frames`. Further terms are unknown only by their exact names: harmonics (`joint2.sin1`), couplings (`joint3.coupled2`
 /// is the motion of joint3 by the second joint), and terms of weights or factors (`joint2.masses`).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -64,7 +64,7 @@ pub enum Refitted {
 /// # }
 /// use poecal::{Measured, Quantity, Judgement, Statistic};
 /// let errors = Statistic { mean: 0.1, rms: 0.11, p95: 0.2, max: 0.25 };
-/// let calibrated = Measured::of(|quantity| (quantity == Quantity::Position).then_some(errors));
+/// let calibrated = Measured::from_fn(|quantity| (quantity == Quantity::Position).then_some(errors));
 /// let judgement = Judgement { count: 20, refitted: vec![], calibrated: calibrated.into(), corrected: None, nominal: None, promised: None,
 ///     in_sampled_range: None, improvement: None, acceptance: None, moved_device: None, repeats: None,
 ///     base_from_device: poecal_arm::lie::Pose::identity(),

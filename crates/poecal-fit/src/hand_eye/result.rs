@@ -36,7 +36,7 @@ const SAME: f64 = 1e-9;
 ///     Pose::from_xyz_rpy([0.5 + 0.02 * k, 0.1 * k.sin(), 0.6], [3.0 + 0.3 * (1.3 * k).sin(), 0.3 * (2.1 * k).cos(), 0.4 * k.sin()])
 /// }).collect();
 /// let seen: Vec<Pose> = flange.iter().map(|it| (*it * camera).inverse() * board).collect();
-/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::of(CameraPlace::InHand), &|row| format!("row {}", row + 1))?;
+/// let found = hand_eye(&flange.into(), &seen.into(), &HandEyeOptions::new(CameraPlace::InHand), &|row| format!("row {}", row + 1))?;
 /// assert!((found.on_flange.pose.translation - camera.translation).norm() < 1e-9);
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```

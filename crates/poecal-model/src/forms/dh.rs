@@ -109,7 +109,7 @@ impl DhTable {
     /// Table of a robot.
     ///
     /// # Errors
-    /// [`ErrorKind::Export`] as [`AxisFrames::of`], and if a row of Denavit and Hartenberg between nearly parallel axes would have an offset of
+    /// [`ErrorKind::Export`] as [`AxisFrames::from_robot`], and if a row of Denavit and Hartenberg between nearly parallel axes would have an offset of
     /// more than ten reaches.
     pub fn from_robot(robot: &Robot, convention: DhConvention) -> Result<Self> {
         // The call refuses the same robots, and absorbs offsets of readings.

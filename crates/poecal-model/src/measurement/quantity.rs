@@ -294,7 +294,7 @@ impl From<Stated> for ByQuantity<Option<f64>> {
 /// #     pub use poecal_model::measurement::{Measured, Quantity};
 /// # }
 /// use poecal::{Measured, Quantity};
-/// let largest = Measured::of(|quantity| (quantity == Quantity::Position).then_some(0.25));
+/// let largest = Measured::from_fn(|quantity| (quantity == Quantity::Position).then_some(0.25));
 /// assert_eq!((largest.position_mm(), largest.rotation_deg()), (0.25, None));
 /// assert_eq!(serde_json::to_string(&largest).unwrap(), r#"{"position_mm":0.25,"rotation_deg":null}"#);
 /// ```

@@ -75,7 +75,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 
 /// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
 /// let file = CalibrationFile::new(&calibration, &made.data, Inputs::default());
-/// let page = poecal_report::calibration_page(&file, &Residuals::of(&made.data, &calibration))?.concat();
+/// let page = poecal_report::calibration_page(&file, &Residuals::from_calibration(&made.data, &calibration))?.concat();
 /// assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<h1>"));
 /// # Ok::<(), poecal_numerics::error::Error>(())
 /// ```

@@ -151,7 +151,7 @@ pub struct ResidualRow {
 /// use poecal::simulate::{Kind, elbow};
 /// let made = Simulation::default().run(&elbow(), Kind::POINT)?;
 /// let calibration = calibrate(&made.nominal, &made.data, &CalibrationOptions::default())?;
-/// let residuals = Residuals::of(&made.data, &calibration);
+/// let residuals = Residuals::from_calibration(&made.data, &calibration);
 /// let text = residuals.text();
 /// assert_eq!(Residuals::parse(&text, "residuals.csv")?.text(), text);
 /// # Ok::<(), poecal_numerics::error::Error>(())
